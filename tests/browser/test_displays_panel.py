@@ -153,7 +153,7 @@ def test_why_a_display_shows_nothing_is_told_where_one_looks(live, open_page):
     """On its name, below the list when it is selected, and in the diagnostics, from where its row is found."""
     viewer = live(configuration(_SILENT))
     page = open_page(viewer, wait=False)
-    why = "Topic: No messages received: nobody publishes the topic"
+    why = "Topic: No messages received: the topic has no publisher"
     card = page.locator(".diagnostic", has_text="Clicks")
     card.wait_for()
     assert why in card.inner_text()
@@ -161,7 +161,7 @@ def test_why_a_display_shows_nothing_is_told_where_one_looks(live, open_page):
     assert page.locator("[data-key='display-1'] .row-title").get_attribute("title").splitlines() == ["Clicks", why]
     page.evaluate("window.shownFirst = document.querySelector('.diagnostic .text-link')")
     viewer.run(lambda: viewer.node.create_publisher(PointStamped, "/clicked_point", 1))
-    card.get_by_text("nothing came yet").wait_for()
+    card.get_by_text("no message arrived yet").wait_for()
     assert page.evaluate("window.shownFirst.isConnected"), "what is about to be clicked is not replaced"
     why = card.locator("li").inner_text()
     card.get_by_role("button", name="Clicks").click()

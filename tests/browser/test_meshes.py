@@ -123,7 +123,7 @@ def test_a_robot_none_of_whose_meshes_is_there_is_told_of_and_shown_by_its_frame
     file.write_text(text)
     page = open_page(start("view", str(file)))
     banner = page.locator(".banner.warning")
-    banner.get_by_text("nothing of robot 'r' is seen: none of its meshes can be read").wait_for()
+    banner.get_by_text("robot 'r' is not visible: none of its meshes can be read").wait_for()
     until(page, "lw.displays.some((each) => each.class.endsWith('/TF') && each.enabled)")
     banner.get_by_role("button", name="Show").click()
     page.locator(".diagnostics").get_by_text("package 'elsewhere' not found").first.wait_for()

@@ -100,7 +100,7 @@ async def test_a_page_feature_of_another_package_answers_its_messages(brought):
         await client.opened()
         await client.send("greet", name="you")
         assert (await client.until("greeting"))["text"] == "hello you"
-        assert "The page feature 'broken' cannot be had: AttributeError" in w.logged()
+        assert "The page feature 'broken' cannot be loaded: AttributeError" in w.logged()
 
 
 def test_what_is_found_is_what_the_metadata_of_the_installation_say():

@@ -245,7 +245,7 @@ async def test_a_broken_depth_image_is_one_row_of_the_status_until_a_whole_one_c
 async def test_a_depth_cloud_says_that_theora_is_not_read_until_another_transport_is_chosen():
     topics = {"Depth_Map_Topic": "/depth/image", "Color_Image_Topic": "/c", "Color_Transport_Hint": "theora"}
     async with world(clouds.config("DepthCloud", **topics)) as w:
-        text = "Images of transport 'theora' are not read: choose raw, compressed or compressedDepth"
+        text = "Images of transport 'theora' are not supported: choose raw, compressed or compressedDepth"
         assert w.status("DepthCloud") == {"Color Transport Hint": ("error", text)}
         w.display("DepthCloud").set_property(("Color Transport Hint",), "compressed")
         await w.settle()
@@ -295,5 +295,5 @@ async def test_a_camera_shows_depths_beside_its_camera_info():
 @pytest.mark.parametrize("cls", ["Image", "Camera"])
 async def test_images_of_theora_are_not_read_and_their_topics_that_are_named(cls):
     async with world(images.config(cls, "/camera/image/theora")) as w:
-        text = "Images of transport 'theora' are not read: choose /camera/image or /camera/image/compressed"
+        text = "Images of transport 'theora' are not supported: choose /camera/image or /camera/image/compressed"
         assert w.status(cls)["Topic"] == ("error", text)

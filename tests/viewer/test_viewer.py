@@ -147,7 +147,7 @@ async def test_every_page_begins_with_the_view_of_the_file():
             state = (await client.opened())["view_state"]
             assert (state["view"]["values"]["Distance"], state["whole_robot"]) == (3.0, True)
     assert RvizConfig.parse(config.text()).views.current.values["Distance"] == 7.0
-    assert "a view that is none" in made.logged()
+    assert "an invalid view" in made.logged()
 
 
 async def test_a_page_that_has_drawn_the_meshes_says_how_large_grid_and_axes_are():
@@ -195,7 +195,7 @@ async def test_what_the_file_says_wrong_is_in_the_terminal():
     text = "Visualization Manager:\n  Global Options: {Frame Rate: often}\n  Displays:\n    - {Name: x}\n"
     async with world(RvizConfig.parse(text, "a.rviz")) as made:
         made.viewer.config.options.rows()
-    assert "a.rviz:2:32: 'Frame Rate': a whole number is expected, not 'often'; 30 is used" in made.logged()
+    assert "a.rviz:2:32: 'Frame Rate': an integer is expected, not 'often'; 30 is used" in made.logged()
     assert "a.rviz:4:7: a display without a 'Class' is left out" in made.logged()
 
 
@@ -278,7 +278,7 @@ async def test_a_page_that_answers_nothing_does_not_hold_up_the_end():
 
 async def test_listening_to_other_machines_is_pointed_out():
     async with world(host="0.0.0.0") as made:
-        assert "whoever reaches it" in made.logged()
+        assert "anyone who reaches it" in made.logged()
         assert made.viewer.url.startswith("http://127.0.0.1:")
     async with world() as made:
         assert made.logged() == ""

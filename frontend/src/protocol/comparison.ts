@@ -2,14 +2,14 @@
 
 export type Mark = "added" | "removed" | "changed";
 
-/** A robot of the comparison: its RobotModel display, empty where none shows it, its name, and the links to mark. */
+/** A robot of the comparison: its RobotModel display, empty if none shows it, its name, and the links to mark. */
 export interface ComparedRobot {
   display: string;
   label: string;
   marks: Record<string, Mark>;
 }
 
-/** A place in a text, from 1: as readers know it, and as the Source panel does, or with no file. */
+/** A place in a text, 1-based: for readers, and for the Source panel, or without a file. */
 export interface ComparedPlace {
   text: string;
   file: string;

@@ -64,7 +64,7 @@ export interface ConfigurationSaved {
   type: "configuration_saved";
 }
 
-/** A request of a page was refused. With a question, the page may confirm it and ask again. */
+/** A request of a page was refused. With a question, the page may confirm it and repeat the request. */
 export interface ConfigurationRefused {
   message: string;
   question: Question | null;
@@ -81,26 +81,26 @@ export interface AddDisplay {
   type: "add_display";
 }
 
-/** Add a display alike after each of these. */
+/** Add a copy after each of these displays. */
 export interface DuplicateDisplays {
   displays: string[];
   type: "duplicate_displays";
 }
 
-/** Give a display another name. */
+/** Rename a display. */
 export interface RenameDisplay {
   display: string;
   name: string;
   type: "rename_display";
 }
 
-/** Remove displays, and what is in them. */
+/** Remove displays with their content. */
 export interface RemoveDisplays {
   displays: string[];
   type: "remove_displays";
 }
 
-/** Put displays into a group (None for none), in front of one of it (None for the end). */
+/** Move displays into a group (None for the top level), before one of its displays (None for the end). */
 export interface MoveDisplays {
   displays: string[];
   group: string | null;
@@ -108,7 +108,7 @@ export interface MoveDisplays {
   type: "move_displays";
 }
 
-/** Put displays into a new group, where the first of them is. */
+/** Put displays into a new group, in the place of the first of them. */
 export interface GroupDisplays {
   displays: string[];
   name: string;
@@ -120,12 +120,12 @@ export interface Undo {
   type: "undo";
 }
 
-/** Repeat the edit that was undone last. */
+/** Redo the edit that was undone last. */
 export interface Redo {
   type: "redo";
 }
 
-/** Asks for the classes of displays that can be added, the topics, and the displays that show them. */
+/** Ask for the classes of displays that can be added, the topics, and the displays that show them. */
 export interface AskDisplayChoices {
   type: "ask_display_choices";
 }
@@ -136,13 +136,13 @@ export interface AskFolder {
   type: "ask_folder";
 }
 
-/** Begin anew with RViz's default; `discard` says that what is unsaved may be lost. */
+/** Start with RViz's default configuration; `discard` allows losing unsaved edits. */
 export interface NewConfiguration {
   discard: boolean;
   type: "new_configuration";
 }
 
-/** Open a file of the server; `discard` says that what is unsaved may be lost. */
+/** Open a file of the server; `discard` allows losing unsaved edits. */
 export interface OpenConfiguration {
   path: string;
   discard: boolean;
@@ -157,7 +157,7 @@ export interface LoadConfiguration {
   type: "load_configuration";
 }
 
-/** Open the file again, without what was edited. */
+/** Open the file again, without the edits. */
 export interface RevertConfiguration {
   type: "revert_configuration";
 }
@@ -169,7 +169,7 @@ export interface SaveConfiguration {
   type: "save_configuration";
 }
 
-/** Asks for the file as it would be saved now, to be kept on the browser's machine. */
+/** Ask for the file as it would be saved now, to store it on the browser's machine. */
 export interface AskConfigurationText {
   type: "ask_configuration_text";
 }
@@ -191,7 +191,7 @@ export interface Panels {
   type: "panels";
 }
 
-/** The user opened or closed one of these panels, and these are open in the page now. The file takes that over. */
+/** The user opened or closed one of these panels; the file stores the open ones. */
 export interface ShowPanels {
   shown: PanelName[];
   type: "show_panels";

@@ -17,7 +17,7 @@ export interface SourceRange {
   end_column: number;
 }
 
-/** The place of an element: in the expanded text, and where it was written, with the calls between them. */
+/** The place of an element: in the expanded text, and in its file, with the calls between them. */
 export interface Written {
   expanded: SourceRange | null;
   origin: SourceRange | null;
@@ -32,7 +32,7 @@ export interface LinkInertia {
   quaternion: number[];
 }
 
-/** A link as it is described; `frame` is its name in tf. */
+/** A link as described; `frame` is its name in tf. */
 export interface LinkDetails {
   name: string;
   frame: string;
@@ -48,7 +48,7 @@ export interface JointMimic {
   offset: number;
 }
 
-/** A joint as it is described: the origin in the parent's frame, the unit axis in the joint's frame; SI units. */
+/** A joint as described: the origin in the parent's frame, the unit axis in the joint's frame; SI units. */
 export interface JointDetails {
   name: string;
   kind: "revolute" | "continuous" | "prismatic" | "fixed" | "floating" | "planar";
@@ -84,7 +84,7 @@ export interface Description {
   type: "description";
 }
 
-/** A display shows another description now; the links and joints that say something else than before are named. */
+/** A display shows another description now; lists the links and joints that differ. */
 export interface DescriptionChanged {
   display: string;
   revision: number;
@@ -93,7 +93,7 @@ export interface DescriptionChanged {
   type: "description_changed";
 }
 
-/** A text of a description, or the expanded one where `file` is empty; None for what is no file of it. */
+/** A text of a description, or the expanded one if `file` is empty; None for a file that is not part of it. */
 export interface DescriptionText {
   display: string;
   revision: number;
@@ -110,7 +110,7 @@ export interface InertiaFinding {
   hint: string;
 }
 
-/** All that is implausible about the masses of a robot; answers `AskInertia`. */
+/** All implausible masses of a robot; answers `AskInertia`. */
 export interface InertiaFindings {
   display: string;
   revision: number;
@@ -131,7 +131,7 @@ export interface AskDescriptionText {
   type: "ask_description_text";
 }
 
-/** The page wants to mark links whose masses are implausible, which takes the server a while. */
+/** Ask for implausible masses, which the page marks; takes the server a while. */
 export interface AskInertia {
   display: string;
   type: "ask_inertia";
@@ -160,7 +160,7 @@ export interface DiagnosticItem {
   hints: string[];
 }
 
-/** The findings on the description now; none clears the list. */
+/** The current findings on the description; an empty list clears them. */
 export interface Diagnostics {
   items: DiagnosticItem[];
   type: "diagnostics";

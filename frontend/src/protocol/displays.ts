@@ -8,7 +8,7 @@ export type PropertyValue = boolean | number | string | null;
 
 export type RowDetails = "frame" | "link" | "joint" | "effort";
 
-/** The topics offered for a row: those of one of the types with one of the words, if any, in their names. */
+/** The topics offered for a row: those of one of the types, whose names contain one of the words, if any. */
 export interface TopicOffer {
   messages: string[];
   words: string[];
@@ -31,7 +31,7 @@ export interface Property {
   topics: TopicOffer | null;
 }
 
-/** A row below a display's Status. Its text, as a rule a phrase, goes to each page in the page's language. */
+/** A row below a display's Status. Its text is usually a phrase, which each page gets in its language. */
 export interface StatusRow {
   name: string;
   level: StatusLevel;
@@ -60,7 +60,7 @@ export interface Display {
   properties: Property[];
 }
 
-/** The whole Displays tree: sent at the start and whenever displays come or go. */
+/** The complete Displays tree: sent at the start and when displays are added, removed or moved. */
 export interface Tree {
   global_options: Property[];
   global_status: StatusRow[];
@@ -69,7 +69,7 @@ export interface Tree {
   type: "tree";
 }
 
-/** The property rows of one display anew (the links of a new robot, the frames of TF). */
+/** All property rows of one display again (the links of a new robot, the frames of TF). */
 export interface DisplayProperties {
   display: string;
   properties: Property[];

@@ -4,7 +4,7 @@ import type { DiagnosticItem } from "./description";
 
 export type EditedPart = "joint" | "axis" | "visual" | "collision" | "inertial";
 
-/** Something with a place: the origin of a joint, visual, collision or inertial, or the axis of a joint. */
+/** A part of a robot with a pose: the origin of a joint, visual, collision or inertial, or the axis of a joint. */
 export interface EditablePart {
   part: EditedPart;
   name: string;
@@ -17,7 +17,7 @@ export interface EditablePart {
   line: number;
 }
 
-/** The editable parts of a link of a display, the joint above it first; `why_not` is empty where there are some. */
+/** The editable parts of a link of a display, the joint above it first; `why_not` is the reason for none. */
 export interface EditableParts {
   display: string;
   link: string;
@@ -26,13 +26,13 @@ export interface EditableParts {
   type: "editable_parts";
 }
 
-/** A file that an edit changes: its whole name, and the lines that it takes away, adds and has around. */
+/** A file that an edit changes: its full name, and the lines that it removes, adds and keeps around them. */
 export interface EditedFile {
   file: string;
   diff: string[];
 }
 
-/** The outcome of an edit, or why it is refused; `also` is what would change with it. */
+/** The outcome of an edit, or why it is refused; `also` lists further changes. */
 export interface EditPreview {
   number: number;
   files: EditedFile[];
@@ -41,28 +41,28 @@ export interface EditPreview {
   type: "edit_preview";
 }
 
-/** The outcome of writing files: `refusal` says why they were not; `files` were written, after an undo too. */
+/** The outcome of writing files: `refusal` is the reason if it failed; `files` were written, also by an undo. */
 export interface EditWritten {
   files: string[];
   refusal: DiagnosticItem | null;
   type: "edit_written";
 }
 
-/** Whether an edit can be taken back, or made again. */
+/** Whether an edit can be undone, or redone. */
 export interface EditHistory {
   can_undo: boolean;
   can_redo: boolean;
   type: "edit_history";
 }
 
-/** The user wants to edit a link of a display. */
+/** The user selects a link of a display for editing. */
 export interface AskEditableParts {
   display: string;
   link: string;
   type: "ask_editable_parts";
 }
 
-/** The user moves or turns something; None for what stays. */
+/** The user moves or rotates a part; None for a value that does not change. */
 export interface PreviewEdit {
   number: number;
   display: string;
@@ -75,18 +75,18 @@ export interface PreviewEdit {
   type: "preview_edit";
 }
 
-/** The user wants the edit of the preview with this number to be written. */
+/** The user applies the edit of the preview with this number. */
 export interface ApplyEdit {
   number: number;
   type: "apply_edit";
 }
 
-/** The user takes the last edit that was written back. */
+/** Undo the last edit written to the files. */
 export interface UndoEdit {
   type: "undo_edit";
 }
 
-/** The user makes the edit again that was taken back last. */
+/** Redo the edit that was undone last. */
 export interface RedoEdit {
   type: "redo_edit";
 }

@@ -2,14 +2,14 @@
 
 import type { View } from "./views-and-tools";
 
-/** The user wants what is seen as a file; `view` is the camera as the page has it. */
+/** The user exports the scene as a file; `view` is the page's camera. */
 export interface AskExport {
   format: "html" | "glb";
   view: View;
   type: "ask_export";
 }
 
-/** The file can be fetched, once, from an address of the server; answers `AskExport`. */
+/** The file can be fetched once, from an address of the server; answers `AskExport`. */
 export interface ExportReady {
   url: string;
   name: string;

@@ -13,7 +13,7 @@ export interface PoseMarks {
   kind: "pose_marks";
 }
 
-/** ParticleCloud: poses as in `PoseMarks`, and how likely each is, shape (N,). */
+/** ParticleCloud: poses as in `PoseMarks`, and the weight of each, shape (N,). */
 export interface ParticleMarks {
   poses: Float32Array;
   weights: Float32Array;
@@ -36,7 +36,7 @@ export interface GridSurface {
   kind: "grid_surface";
 }
 
-/** Range: a cone along x of the frame of the content, metres and radians; no cone where `range` is 0. */
+/** Range: a cone along x of the frame of the content, metres and radians; no cone if `range` is 0. */
 export interface RangeCone {
   range: number;
   field_of_view: number;

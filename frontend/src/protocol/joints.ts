@@ -18,7 +18,7 @@ export interface Joints {
   type: "joints";
 }
 
-/** Positions of the Joints panel's joints, rad or m, mimicking joints included. */
+/** Positions of the Joints panel's joints, rad or m, including mimicking ones. */
 export interface JointPositions {
   positions: Record<string, number>;
   type: "joint_positions";
@@ -31,7 +31,7 @@ export interface SetJoint {
   type: "set_joint";
 }
 
-/** A pose was recalled, or a sweep goes on: several joints at once, rad or m. */
+/** A pose was recalled, or a sweep advances: several joints at once, rad or m. */
 export interface SetJoints {
   positions: Record<string, number>;
   type: "set_joints";

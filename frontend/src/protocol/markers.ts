@@ -101,7 +101,7 @@ export interface InteractiveMarkerMoved {
   kind: "interactive_marker_moved";
 }
 
-/** The user did something to an interactive marker; poses and points are in the marker's frame. */
+/** The user acted on an interactive marker; poses and points are in the marker's frame. */
 export interface MarkerFeedback {
   display: string;
   marker: string;

@@ -26,7 +26,7 @@ export interface WorldThing {
   parts: string[];
 }
 
-/** Whether the world can be edited and is, and what stands in it. */
+/** Whether the world can be edited and is being edited, and its content. */
 export interface ModellingState {
   available: boolean;
   active: boolean;
@@ -50,7 +50,7 @@ export interface ModelChoices {
   type: "model_choices";
 }
 
-/** A change of a model or light; fields that are None stay. */
+/** The change of a model or light; fields that are None stay. */
 export interface ThingChange {
   name: string;
   pose: number[] | null;
@@ -60,13 +60,13 @@ export interface ThingChange {
   colour: number[] | null;
 }
 
-/** The user begins or ends to edit the world; while it is edited, time stands still at the beginning. */
+/** The user starts or stops editing the world; meanwhile the simulation is paused at its start. */
 export interface SetModelling {
   active: boolean;
   type: "set_modelling";
 }
 
-/** The user adds something; `address` is that of a model, `size` may be empty for the usual one. */
+/** The user adds an object; `address` is that of a model, an empty `size` means the default one. */
 export interface AddThing {
   shape: NewKind;
   address: string;
@@ -75,55 +75,55 @@ export interface AddThing {
   type: "add_thing";
 }
 
-/** The user changes things, in one step of undo. */
+/** The user changes objects, in one undo step. */
 export interface ChangeThings {
   changes: ThingChange[];
   type: "change_things";
 }
 
-/** The user copies things; the copies stand at an offset (x y z) from them. */
+/** The user copies objects; the copies are placed at an offset (x y z) from them. */
 export interface CopyThings {
   names: string[];
   offset: number[];
   type: "copy_things";
 }
 
-/** The user takes things out of the world. */
+/** The user deletes objects from the world. */
 export interface DeleteThings {
   names: string[];
   type: "delete_things";
 }
 
-/** The user makes one model of several, which are then its parts. */
+/** The user makes one model of several, which become its parts. */
 export interface GroupThings {
   names: string[];
   name: string;
   type: "group_things";
 }
 
-/** The user makes models of the world of the parts of one. */
+/** The user splits a model into its parts. */
 export interface UngroupThing {
   name: string;
   type: "ungroup_thing";
 }
 
-/** The user takes the last change of the world back. */
+/** Undo the last change of the world. */
 export interface UndoWorld {
   type: "undo_world";
 }
 
-/** The user makes the change again that was taken back last. */
+/** Redo the change that was undone last. */
 export interface RedoWorld {
   type: "redo_world";
 }
 
-/** The user saves the world: into its file, or as another where `path` names one. */
+/** The user saves the world: into its file, or into `path` if it is set. */
 export interface SaveWorld {
   path: string | null;
   type: "save_world";
 }
 
-/** The user wants to choose among the models on the search path. */
+/** The user opens the choice of models on the search path. */
 export interface AskModels {
   type: "ask_models";
 }

@@ -6,7 +6,7 @@ export type GoalState = "none" | "active" | "canceling" | "succeeded" | "cancele
 
 export type NavigationCommand = "startup" | "pause" | "resume" | "reset" | "cancel";
 
-/** The page shows its panel, or shows it no more. */
+/** Whether the page shows its panel. */
 export interface WatchNavigation {
   open: boolean;
   type: "watch_navigation";

@@ -18,7 +18,7 @@ export interface CellGrid {
   kind: "cell_grid";
 }
 
-/** The user selected a point of a display's content and wants to know its fields; answered by `PointFields`. */
+/** The user selected a point of a display's content; answered by `PointFields`. */
 export interface AskPoint {
   display: string;
   key: string;

@@ -75,7 +75,7 @@ export interface JointScene {
   upper: number | null;
 }
 
-/** The robot of a RobotModel display; `revision` counts descriptions. No links means no robot. */
+/** The robot of a RobotModel display; `revision` counts descriptions. An empty list of links means no robot. */
 export interface RobotScene {
   display: string;
   revision: number;
@@ -85,7 +85,7 @@ export interface RobotScene {
   type: "robot_scene";
 }
 
-/** The outcome of loading a mesh in the page; `error` is None when it is drawn. */
+/** The outcome of loading a mesh in the page; `error` is None if it is drawn. */
 export interface MeshStatus {
   display: string;
   link: string;
@@ -94,7 +94,7 @@ export interface MeshStatus {
   type: "mesh_status";
 }
 
-/** The user selected a link of a RobotModel display and wants to know where it was written. */
+/** The user selected a link of a RobotModel display; ask for its place in the files. */
 export interface AskProvenance {
   display: string;
   link: string;

@@ -2,7 +2,7 @@
 
 export const PROTOCOL_VERSION = 5;
 
-/** First message on every connection; `run` is another one when the program was started again. */
+/** First message on every connection; `run` changes when the program is started again. */
 export interface Hello {
   protocol: number;
   version: string;

@@ -26,7 +26,7 @@ export interface TimeReset {
   type: "time_reset";
 }
 
-/** The user pauses, goes on, or leads time by a display's messages. */
+/** The user pauses or resumes, or synchronizes time with a display's messages. */
 export interface SetTime {
   paused: boolean;
   mode: SyncMode;
@@ -39,7 +39,7 @@ export interface ResetTime {
   type: "reset_time";
 }
 
-/** A page shows the clocks, or no more. */
+/** Whether a page shows the clocks. */
 export interface WatchClock {
   watching: boolean;
   type: "watch_clock";

@@ -16,7 +16,7 @@ export interface ViewClass {
   defaults: Record<string, PropertyValue>;
 }
 
-/** All classes of views; comes before the first view. */
+/** All classes of views; sent before the first view. */
 export interface ViewClasses {
   classes: ViewClass[];
   type: "view_classes";
@@ -30,25 +30,25 @@ export interface ViewState {
   type: "view_state";
 }
 
-/** A saved view and its id, which stays while it is renamed or changed. */
+/** A saved view and its id, which stays the same when the view is renamed or changed. */
 export interface SavedView {
   id: string;
   view: View;
 }
 
-/** The saved views, in their order, whenever they change. */
+/** The saved views, in their order, sent after each change. */
 export interface SavedViews {
   views: SavedView[];
   type: "saved_views";
 }
 
-/** The camera as the page has it now, at most a few times a second; the last of any page is saved in the file. */
+/** The page's current camera, sent at most a few times a second; the last one of any page is saved in the file. */
 export interface ViewChanged {
   view: View;
   type: "view_changed";
 }
 
-/** The extent of robots with their meshes, measured by a page whose camera nobody has moved. */
+/** The extent of robots with their meshes, measured by a page whose camera the user has not moved. */
 export interface RobotMeasured {
   diagonal: number;
   ground: number;
@@ -61,20 +61,20 @@ export interface SaveView {
   type: "save_view";
 }
 
-/** Give a saved view another name or other values. */
+/** Change the name or the values of a saved view. */
 export interface ChangeSavedView {
   id: string;
   view: View;
   type: "change_saved_view";
 }
 
-/** Take a saved view away. */
+/** Remove a saved view. */
 export interface RemoveSavedView {
   id: string;
   type: "remove_saved_view";
 }
 
-/** A tool of the toolbar. `supported` is false for a class that this program does not know; the file keeps it. */
+/** A tool of the toolbar. `supported` is false for an unknown class, which the file keeps. */
 export interface Tool {
   id: string;
   cls: string;
@@ -89,14 +89,14 @@ export interface ToolClass {
   name: string;
 }
 
-/** The tools in the order of the toolbar, whenever they change; the first is the default one. */
+/** The tools in the order of the toolbar, sent after each change; the first is the default one. */
 export interface Tools {
   tools: Tool[];
   classes: ToolClass[];
   type: "tools";
 }
 
-/** A new setting of a tool, set by any page; a refused value is answered with the present one. */
+/** A new setting of a tool, set by any page; the answer to a refused value is the present one. */
 export interface ToolPropertyChanged {
   id: string;
   value: PropertyValue;
@@ -116,7 +116,7 @@ export interface AddTool {
   type: "add_tool";
 }
 
-/** Take a tool out of the toolbar. */
+/** Remove a tool from the toolbar. */
 export interface RemoveTool {
   id: string;
   type: "remove_tool";

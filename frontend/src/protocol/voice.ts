@@ -8,13 +8,13 @@ export const MOST_SAMPLES = 1600;
 
 export const MOST_LOST_SAMPLES = 80000;
 
-/** Whether a node is there that carries out spoken commands. */
+/** Whether there is a node that carries out spoken commands. */
 export interface VoiceNode {
   present: boolean;
   type: "voice_node";
 }
 
-/** Start or stop sending what is heard and answered. */
+/** Start or stop sending recognized commands and answers. */
 export interface WatchVoice {
   watched: boolean;
   type: "watch_voice";
@@ -28,7 +28,7 @@ export interface Talk {
   type: "talk";
 }
 
-/** A command as text, as if it had been heard. */
+/** A command as text, handled like a spoken one. */
 export interface SayCommand {
   text: string;
   type: "say_command";
@@ -48,7 +48,7 @@ export interface VoiceState {
 
 export type SaidPart = "partial" | "text" | "command" | "response";
 
-/** A text of the conversation: what is being heard, was heard, was understood, is answered. */
+/** A text of the conversation: partial or final speech, a recognized command, or an answer. */
 export interface VoiceSaid {
   number: number;
   part: SaidPart;

@@ -50,7 +50,7 @@ export interface CameraScene {
   far: number;
 }
 
-/** Fog of a world: its colour, red, green, blue; from `start` to `end` in m, or with `density` by that, in 1/m. */
+/** Fog of a world: its colour, red, green, blue; from `start` to `end` in m, or with `density` in 1/m. */
 export interface FogScene {
   color: number[];
   start: number;
@@ -58,7 +58,7 @@ export interface FogScene {
   density: number | null;
 }
 
-/** World: what is drawn; `revision` counts descriptions. */
+/** World: the content to draw; `revision` counts descriptions. */
 export interface WorldScene {
   revision: number;
   name: string;

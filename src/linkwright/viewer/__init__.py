@@ -23,4 +23,4 @@ __getattr__ = deferred(
         "viewer": ("Viewer",),
     },
 )
-"""So that the server can give out the page while the rest is loaded."""
+"""Deferred, so that the server can serve the page while the rest is loaded."""

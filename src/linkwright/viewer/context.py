@@ -1,4 +1,4 @@
-"""The context of a viewer: its node, files and pages, and notice of changes in the graph, for all its parts."""
+"""The context of a viewer: its node, files and pages, and notifications of changes in the graph."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from linkwright.viewer.web.audience import PageGroup
 from linkwright.viewer.web.files import Downloads, MeshFolders
 
 _QUIET = 0.1
-"""Seconds that changes are gathered for: a node that starts makes dozens of endpoints."""
+"""Seconds to collect changes: a node that starts creates dozens of endpoints."""
 
 
 class GraphChanges:
-    """The changes of a graph, for those who listen; costs nothing while nobody does.
+    """Notifies listeners of the changes of a graph; costs nothing while there are none.
 
     Args:
         graph: the graph to listen to; its changes may happen in any thread.
@@ -53,7 +53,7 @@ class GraphChanges:
                 self._due = None
 
     def _changed(self) -> None:
-        with suppress(RuntimeError):  # the loop is closed: nobody listens any more
+        with suppress(RuntimeError):  # the loop is closed: there are no listeners any more
             self._loop.call_soon_threadsafe(self._wait)
 
     def _wait(self) -> None:
@@ -68,10 +68,10 @@ class GraphChanges:
 
 
 class HeldTime:
-    """Whether the viewer's clock is held at another time than the present, by whoever shows the past.
+    """Whether the viewer's clock is held at a past time, by the component that shows the past.
 
     Attributes:
-        switching: the clock is being held, or let go: nothing is to be forgotten because of that.
+        switching: whether the clock is being held or released: displays must not reset because of that.
     """
 
     def __init__(self) -> None:
@@ -79,7 +79,7 @@ class HeldTime:
         self.switching = False
 
     def show(self, clock: ROSClock, now_ns: int) -> bool:
-        """Make a clock show a time, nanoseconds since the epoch; False for one that shows simulated time anyway."""
+        """Make a clock show a time, nanoseconds since the epoch; False if it shows simulated time."""
         if clock.ros_time_is_active and not self._held:
             return False
         clock.override(now_ns)
@@ -111,13 +111,13 @@ class ViewerContext:
         finder: finds packages.
         pages: every open page.
         transforms: the history of transforms, to place messages by the time in their headers.
-        graph_changes: tells that nodes or endpoints came or went.
+        graph_changes: notifies of nodes or endpoints that appear or disappear.
         published: the topics that others publish.
         meshes: the folders that pages may read from.
         downloads: files that were made for a page, to be fetched once.
         held_time: whether its clock shows the past.
         display_ids: ids that no display of the viewer has had.
-        folder: in which the program was started; files that pages ask for go there.
+        folder: the working directory of the program, for files that pages create.
     """
 
     node: Node
@@ -137,7 +137,7 @@ class ViewerContext:
         """Show a finding in the terminal."""
         where = f"{diagnostic.span}: " if diagnostic.span else ""
         logger = self.node.get_logger()
-        if diagnostic.severity is Severity.ERROR:  # two lines, as a logger knows its calls by their lines
+        if diagnostic.severity is Severity.ERROR:  # two calls, as a logger identifies calls by their lines
             logger.error(where + diagnostic.message)
         else:
             logger.warning(where + diagnostic.message)

@@ -1,6 +1,6 @@
 """Recordings that pages uploaded or made: each in a graph and a viewer of its own, on that viewer's server.
 
-Nothing of them comes to the graph of that viewer, nor to the network.
+They reach neither the graph of that viewer nor the network.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ PATIENCE = 60.0
 _MOST = 4
 _LOOK = 5.0
 _LEFT = 10.0
-"""Seconds without a page after which a recording makes room for another one."""
+"""Seconds without a page after which another recording may replace one."""
 
 
 @dataclass(slots=True)
@@ -57,12 +57,12 @@ class GuestRecordings:
 
         Args:
             path: the path of its file or folder.
-            scratch: the folder that it is in, which is removed afterwards; None for one that stays where it is.
+            scratch: its temporary folder, which is removed afterwards; None for a permanent file.
 
         Raises:
-            LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, as many are shown as may be.
+            LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, the limit of recordings is reached.
         """
-        from linkwright.bag import BagReader, Playback  # few viewers are ever given a recording
+        from linkwright.bag import BagReader, Playback  # here, because few viewers show uploaded recordings
         from linkwright.viewer.recorded_robot import published, robot_of
         from linkwright.viewer.recording_config import recording_config
 
@@ -104,7 +104,7 @@ class GuestRecordings:
         return key
 
     def audience(self, key: str) -> Audience | None:
-        """The pages of a recording that is shown; None where there is none of that name."""
+        """Return the pages of a recording that is shown, or None if there is none of that name."""
         guest = self._guests.get(key)
         return None if guest is None else guest.viewer.audience
 
@@ -116,7 +116,7 @@ class GuestRecordings:
         await asyncio.gather(*(_end(guest) for guest in guests.values()), *self._closing)
 
     async def _make_room(self) -> None:
-        """At the limit, end the recording that its pages left first, so that one may be tried after another."""
+        """At the limit, end the recording that has been without pages longest, so that another can be opened."""
         if len(self._guests) < _MOST:
             return
         until = asyncio.get_running_loop().time() - _LEFT

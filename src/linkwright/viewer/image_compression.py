@@ -11,26 +11,26 @@ from msgspec.structs import replace
 from linkwright.viewer.protocol.images import ImageFrame
 
 _STEPS = ((1, 85), (1, 70), (1, 50), (2, 70), (2, 50), (3, 50), (4, 50), (6, 45), (8, 40), (12, 35), (16, 30))
-"""The factor of scaling down and the quality of the WebP: each step has about two thirds of the bytes before."""
+"""The scale factors and WebP qualities: each step has about two thirds of the bytes of the one before."""
 
 _MOST_TRIES = 3
 _MOST_PIXELS = 1 << 26
-"""The most pixels of a file that is decoded to be scaled down; a small file can claim any size."""
+"""The most pixels of a file that is decoded for scaling; a small file can claim any size."""
 
 _ROOMY = 2.5
-"""With so much room left the next image may be better."""
+"""With so much room left the next image may have a higher quality."""
 
 
 class ImageCompressor:
-    """Makes WebP files of the images of a display; remembers for each size which step was right for the last one."""
+    """Makes WebP files of the images of a display; remembers for each size the last suitable step."""
 
     def __init__(self) -> None:
         self._steps: dict[int, int] = {}
 
     def compressed(self, frame: ImageFrame, size: int) -> ImageFrame:
-        """The image as a WebP of at most so many bytes, or the smallest there is.
+        """Return the image as a WebP of at most so many bytes, or the smallest one.
 
-        What cannot be read stays as it is: the page says that of it.
+        A file that cannot be read stays unchanged: the page reports the error.
         """
         try:
             return self._compressed(frame, size)
@@ -70,7 +70,7 @@ def _opened(frame: ImageFrame) -> Any:
 
 
 def _encoded(image: Any, reduction: int, quality: int) -> tuple[bytes, int, int]:
-    """A WebP, and its columns and rows."""
+    """Return a WebP, and its columns and rows."""
     small = image.reduce(reduction) if reduction > 1 else image
     file = BytesIO()
     small.save(file, "WEBP", quality=quality, method=0)

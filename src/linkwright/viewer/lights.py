@@ -14,7 +14,7 @@ _DOWN = (0.0, 0.0, -1.0)
 
 
 def lights_of(world: World) -> list[LightScene]:
-    """The lights of a world and of its links that are lit; one that cannot be placed is left out.
+    """Return the lights of a world and of its links that are on, without those that cannot be placed.
 
     Args:
         world: with its includes resolved.
@@ -44,7 +44,7 @@ def _light(light: Light, link: str | None, pose: Transform) -> LightScene:
     x, y, z = rotate(pose[3:], light.direction)
     length = (x * x + y * y + z * z) ** 0.5
     found = LightScene(
-        kind=light.type,  # type: ignore[arg-type]  # the reader takes no other words
+        kind=light.type,  # type: ignore[arg-type]  # the reader accepts no other words
         link=link,
         position=list(pose[:3]),
         direction=[x / length, y / length, z / length] if length > 0.0 else list(_DOWN),

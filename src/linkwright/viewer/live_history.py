@@ -1,4 +1,4 @@
-"""The messages that the viewer received in the last minutes, kept to be shown again to its own subscriptions."""
+"""The messages of the last minutes, stored to be shown again to the viewer's own subscriptions."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
 _BYTES = (bytes, bytearray, memoryview)
 
 _MOST_FRESH = 16
-"""Messages that wait to be written as bytes: while one is on its way to the page, it costs no more than its place."""
+"""Messages that wait to be serialized: while one is on its way to the page, it only costs its place."""
 
 
 class LiveHistory:
-    """Keeps messages of the viewer's subscriptions, and shows them at another time than the present.
+    """Stores messages of the viewer's subscriptions, and shows them at another time than the present.
 
-    Nothing is subscribed to for it. While another time is shown, what comes is kept but shown to nobody.
+    It adds no subscriptions. While another time is shown, new messages are stored but not shown.
 
     Args:
         context: the context of the viewer.
-        most_bytes: the most bytes that are kept.
+        most_bytes: the most bytes that are stored.
         failed: called with an error of the playback.
 
     Attributes:
@@ -63,13 +63,13 @@ class LiveHistory:
 
     @property
     def history(self) -> History:
-        """The kept messages, to the newest one."""
+        """The stored messages, including the newest one."""
         with self._lock:
             return self._written()
 
     @cached_property
     def playback(self) -> Playback:
-        """The playback whose output are the subscriptions; made when another time than the present is first shown."""
+        """The playback whose output are the subscriptions; created when a past time is first shown."""
         from linkwright.bag.playback import Playback
 
         made = Playback(self._handle, self.history, self, self._failed)
@@ -79,12 +79,12 @@ class LiveHistory:
 
     @property
     def has_playback(self) -> bool:
-        """Whether another time than the present was ever asked for."""
+        """Whether another time than the present was ever shown."""
         return "playback" in self.__dict__
 
     @property
     def span_ns(self) -> tuple[int, int]:
-        """The times of the oldest message and of the newest, nanoseconds since the epoch; now, where there is none."""
+        """The times of the oldest and the newest message, nanoseconds since the epoch; now, if there is none."""
         with self._lock:
             if self._kept is not None:
                 return self._kept.start_ns, self._kept.end_ns
@@ -93,11 +93,11 @@ class LiveHistory:
 
     @property
     def size(self) -> int:
-        """The bytes that it takes, but for the newest messages."""
+        """The bytes that it takes, without the newest messages."""
         return 0 if self._kept is None else self._kept.size
 
     def freeze(self) -> None:
-        """Pause what is shown, while messages go on being kept."""
+        """Pause the display while messages are still stored."""
         if not self.live:
             return
         with self._lock:
@@ -117,11 +117,11 @@ class LiveHistory:
         self.playback.pause()
         self._context.graph_changes.ignore(self._review)
         self._context.held_time.release(self._context.node.get_clock())
-        # A turn of the loop later: whoever is told of jumps of time forgets what was, then comes what is.
+        # A turn of the loop later: listeners to the time jump drop the past data first, then the present is shown.
         asyncio.get_running_loop().call_soon(self._show_present)
 
     def topics(self) -> dict[str, KeptTopic]:
-        """The topics whose messages are kept, with the profiles of those who publish them now."""
+        """Return the topics whose messages are stored, with the profiles of their present publishers."""
         from linkwright.bag.saving import KeptTopic
 
         graph = self._context.node.graph
@@ -132,14 +132,14 @@ class LiveHistory:
         return found
 
     def part(self, topics: Mapping[str, KeptTopic], start_ns: int, end_ns: int, *, simulated: bool) -> list[Recorded]:
-        """The kept messages between two times, with those that its beginning is shown by, as a recording has them.
+        """Return the stored messages between two times, with those that its beginning needs, as in a recording.
 
         Args:
             topics: see `topics`.
             start_ns: the earlier time, nanoseconds since the epoch.
             end_ns: the later time.
-            simulated: whether messages get the times that ``/clock`` told; then those from before the last reset of
-                the simulation are left out, because time begins anew there.
+            simulated: whether messages get the times of ``/clock``; those from before the simulation's last reset are
+                then left out, because time starts again there.
         """
         from linkwright.bag.saving import in_simulated_time, last_reset_ns
 
@@ -154,7 +154,7 @@ class LiveHistory:
         return in_simulated_time(messages)
 
     def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
-        """The messages of some topics in the time up to the one that is shown; none where they are too many bytes."""
+        """Return the messages of some topics in the time up to the one that is shown; none if they are too large."""
         if not self.live:
             return self.playback.before(topics, length_ns, most_bytes)
         history = self.history
@@ -170,7 +170,7 @@ class LiveHistory:
         return found
 
     def close(self) -> None:
-        """Stop keeping messages."""
+        """Stop storing messages."""
         self._handle.intake = None
         self._context.graph_changes.ignore(self._review)
         if self._kept is not None:
@@ -181,7 +181,7 @@ class LiveHistory:
     # --- the output of the playback ---------------------------------------------------------------------------
 
     def wanted(self) -> frozenset[str]:
-        """The topics that the viewer is subscribed to; the clock is told by `tell_time`."""
+        """Return the topics that the viewer is subscribed to, except the clock, which `tell_time` sets."""
         return frozenset(subscription.name for subscription in self._subscriptions()) - {CLOCK_TOPIC}
 
     def tell_time(self, stamp_ns: int) -> None:
@@ -194,14 +194,14 @@ class LiveHistory:
                 self.publish(*message)
 
     def publish(self, topic: str, stamp_ns: int, data: bytes) -> None:
-        """Give a message to the subscriptions of its topic."""
+        """Deliver a message to the subscriptions of its topic."""
         if not self.live:
             self._give(self._subscriptions(), topic, stamp_ns, data)
 
     # ----------------------------------------------------------------------------------------------------------
 
     def _intake(self, subscription: Subscription[Any], message: Any) -> bool:
-        """Keep a message, once for all subscriptions of its topic; returns whether to deliver it. Thread-safe."""
+        """Store a message, once for all subscriptions of its topic; returns whether to deliver it. Thread-safe."""
         topic = subscription.name
         keeper = self._keepers.get(topic)
         if keeper is None or keeper.destroyed:
@@ -210,14 +210,14 @@ class LiveHistory:
             return self.live
         if type(message) is Detailed:
             message = message.message
-        with self._lock:  # so that what comes while the present is gone back to is shown once, and in its order
+        with self._lock:  # so that a message that arrives on the return to the present is shown once, and in order
             self._fresh.append((topic, self._now_ns(), message))
             if not self.live or len(self._fresh) >= _MOST_FRESH:
                 self._written()
             return self.live
 
     def _written(self) -> History:
-        """The history with the newest messages appended; published messages never change, so that this can wait."""
+        """Return the history with the newest messages appended; these never change, so that this can wait."""
         if self._kept is None:
             from linkwright.bag.history import History
 
@@ -230,7 +230,7 @@ class LiveHistory:
         return history
 
     def _keep(self, history: History, topic: str, at_ns: int, message: Any, *, thins: bool) -> None:
-        """Keep a message; with `thins`, not for long where it repeats those before: what is played on needs each."""
+        """Store a message; with `thins`, briefly if it repeats those before: playback needs each of these."""
         from linkwright.bag.stillness import content_of
 
         data = bytes(message) if isinstance(message, _BYTES) else serialize(message)

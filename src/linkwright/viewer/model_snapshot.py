@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 def snapshot_of_model(
     text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder, old: OldDescription | None = None
 ) -> Snapshot:
-    """A snapshot of what `linkwright view` shows of a model, its joints at zero or as near as their limits allow.
+    """Return a snapshot of a model as `linkwright view` shows it, its joints at zero or as near as limits allow.
 
     Args:
         text: the description.
         robot: the robot of the text.
-        library: knows where its parts were written.
+        library: has the source positions of its elements.
         finder: finds its meshes.
         old: the description to compare with; None for none.
     """
@@ -47,7 +47,7 @@ class OldDescription:
 
     Attributes:
         pair: both.
-        text: the text that stands for the old one in the library.
+        text: the text that identifies the old one in the library.
     """
 
     pair: Pair

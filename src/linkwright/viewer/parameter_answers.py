@@ -15,11 +15,11 @@ _LOOK_EVERY = 0.05
 
 
 class NoAnswerError(Exception):
-    """A node did not answer in time; the text says what was asked."""
+    """A node did not answer in time; the text names the request."""
 
 
 async def services_ready(client: AsyncParameterClient) -> None:
-    """Wait until a node's parameter services are there.
+    """Wait until a node's parameter services are available.
 
     Raises:
         NoAnswerError: they do not appear in time.
@@ -33,10 +33,10 @@ async def services_ready(client: AsyncParameterClient) -> None:
 
 
 async def answer(client: AsyncParameterClient, future: Awaitable[Any]) -> Any:
-    """The response to a request that a method of a client has sent.
+    """Return the response to a request that a method of a client has sent.
 
     Raises:
-        NoAnswerError: none comes.
+        NoAnswerError: there is none in time.
     """
 
     async def wait() -> Any:

@@ -1,4 +1,4 @@
-"""The topics that others publish, looked up once for all displays until the graph changes."""
+"""The topics that other nodes publish, cached for all displays until the graph changes."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ if TYPE_CHECKING:
 
 
 class PublishedTopics:
-    """What the nodes of a graph publish, but for one of them: a viewer, whose publishers are its tools.
+    """The topics that the nodes of a graph publish, except one node: a viewer, whose publishers are its tools.
 
-    Displays without messages look every second why there are none, and a configuration has hundreds of them.
+    Displays without messages check every second why there are none, and a configuration has hundreds of them.
 
     Args:
         node: the viewer's node.
@@ -27,7 +27,7 @@ class PublishedTopics:
         self._topics: dict[str, list[str]] = {}
 
     def publishers(self, topic: str) -> list[tuple[str, str]]:
-        """Node and type of each publisher of a topic, named as the viewer's node names it.
+        """Return node and type of each publisher of a topic, by its name in the viewer's node.
 
         Raises:
             InvalidTopicNameError: the name is not valid.
@@ -37,12 +37,12 @@ class PublishedTopics:
         return self._publishers.get(name, [])
 
     def of_type(self, message: str) -> list[str]:
-        """The topics that carry messages of a type, sorted."""
+        """Return the topics that carry messages of a type, sorted."""
         self._look()
         return self._topics.get(message, [])
 
     def close(self) -> None:
-        """Stop listening to the graph."""
+        """Stop watching the graph."""
         if self._watches:
             self._node.graph.unwatch(self._changed)
             self._watches = False
@@ -56,7 +56,7 @@ class PublishedTopics:
             self._node.graph.watch(self._changed)
         if self._is_current:
             return
-        self._is_current = True  # first: what changes while it looks is looked at the next time
+        self._is_current = True  # first: a change during the lookup is seen by the next one
         publishers: dict[str, list[tuple[str, str]]] = {}
         topics: dict[str, set[str]] = {}
         own = self._node.get_name()

@@ -1,4 +1,4 @@
-"""The robot of a recording without transforms: the poses of its links follow from recorded joint states."""
+"""The robot of a recording without transforms: its link poses are computed from recorded joint states."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _DESCRIPTION = "/robot_description"
 
 
 def description_topic(bag: BagReader) -> str | None:
-    """The topic with the description of the recording's robot; None where there is none."""
+    """Return the topic with the description of the recording's robot, or None."""
     names = [topic.name for topic in bag.topics if topic.count and topic.name.endswith(_DESCRIPTION)]
     own = namespace_of_transforms(bag) + _DESCRIPTION
     return own if own in names else next(iter(names), None)
 
 
 def namespace_of_transforms(bag: BagReader) -> str:
-    """The namespace of the robot that is shown where all transforms are in namespaces, such as ``/robot1``; or nothing.
+    """Return the namespace of the first robot if all transforms are in namespaces, such as ``/robot1``; else nothing.
 
     Of several robots it is the first that has a description.
     """
@@ -40,13 +40,13 @@ def namespace_of_transforms(bag: BagReader) -> str:
 
 
 def lacks_transforms(bag: BagReader) -> bool:
-    """Whether a recording does not tell how joints stand but by joint states."""
+    """Return whether a recording has only joint states for the positions of joints."""
     moving = namespace_of_transforms(bag) + TRANSFORMS
     return not any(topic.name == moving and topic.count for topic in bag.topics)
 
 
 def robot_of(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
-    """The robot of a recording; None where there is none that can be read.
+    """Return the robot of a recording, or None if there is none that can be read.
 
     Args:
         bag: the recording.
@@ -59,16 +59,16 @@ def robot_of(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
         first = next(iter(bag.messages([topic])), None)
         return None if first is None else library.read(deserialize(first[2], String).data).robot
     except LinkwrightError:
-        return None  # the display of the robot says what is wrong with it
+        return None  # the display of the robot reports the error
 
 
 class PlacedRobot:
-    """Publishes a recording, and the transforms of its robot by its joint states, as robot_state_publisher would.
+    """Publishes a recording, and its robot's transforms from joint states, as robot_state_publisher would.
 
-    Joints that no message has told of stand at zero, or in the middle of limits without zero.
+    Joints without a message yet are at zero, or in the middle of limits without zero.
 
     Args:
-        recording: publishes what was recorded.
+        recording: publishes the recorded messages.
         node: publishes the transforms.
         bag: the recording.
         robot: the robot, which has no transforms in the recording.
@@ -84,21 +84,21 @@ class PlacedRobot:
         self._shown_ns = 0
         self._moving = node.create_publisher(TFMessage, TRANSFORMS, TF_QOS)
         self._fixed = node.create_publisher(TFMessage, STATIC_TRANSFORMS, STATIC_TF_PUBLISHER_QOS)
-        node.get_logger().info("The recording has no /tf: where the robot's links are follows from its joint states")
+        node.get_logger().info("The recording has no /tf: the robot's transforms are computed from its joint states")
 
     def wanted(self) -> frozenset[str]:
-        """The topics with subscriptions, and those that the robot's transforms follow from when they have some."""
+        """Return the topics with subscriptions, and the sources of the robot's transforms if these have some."""
         wanted = self._recording.wanted()
         if self._moving.get_subscription_count():
             wanted |= {each for each in (self._description, self._joint_states) if each is not None}
         return wanted
 
     def tell_time(self, stamp_ns: int) -> None:
-        """Publish on ``/clock``."""
+        """Publish a time on ``/clock``."""
         self._recording.tell_time(stamp_ns)
 
     def publish(self, topic: str, stamp_ns: int, data: bytes) -> None:
-        """Publish a message, and the transforms that follow from it."""
+        """Publish a message, and the transforms that it changes."""
         self._recording.publish(topic, stamp_ns, data)
         if stamp_ns < self._shown_ns:
             self._positions = dict(self._zeros)
@@ -119,22 +119,22 @@ class PlacedRobot:
 
 
 def published(bag: BagReader, node: Node, robot: Robot | None) -> PublishedRecording | PlacedRobot:
-    """The publisher for a recording that has a graph to itself.
+    """Return the publisher for a recording that has a graph to itself.
 
     Args:
         bag: the recording.
-        node: publishes.
+        node: the node that publishes.
         robot: the robot of `robot_of`.
     """
     namespace = namespace_of_transforms(bag)
     recording = PublishedRecording(node, bag, namespace)
     if namespace:
-        node.get_logger().info(f"The recording has no /tf: {namespace}{TRANSFORMS} stands for it")
+        node.get_logger().info(f"The recording has no /tf: {namespace}{TRANSFORMS} replaces it")
     return PlacedRobot(recording, node, bag, robot) if robot is not None and lacks_transforms(bag) else recording
 
 
 def _zeros(robot: Robot) -> dict[str, float]:
     try:
         return {joint.name: joint.zero for joint in layout_of(robot, JointSettings()).free}
-    except LinkwrightError:  # joints that follow one another in a circle: those stand that messages tell of
+    except LinkwrightError:  # joints that mimic one another in a circle: only joints with messages have a position
         return {}

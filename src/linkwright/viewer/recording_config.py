@@ -20,13 +20,13 @@ _FIRST_NS = 2_000_000_000
 """The time of a recording that is read for its frames, nanoseconds."""
 
 _USUAL_ROOTS = ("map", "odom", "world", "base_link", "base_footprint")
-"""Frames to be looked from, the best first, where several are not in any other one (REP 105)."""
+"""Frames for the camera to target, the best first, if there are several roots (REP 105)."""
 
 _PLACES = ("map", "odom")
-"""Frames in which a robot drives about (REP 105)."""
+"""Frames in which a mobile robot moves (REP 105)."""
 
 _LEAST_DISTANCE, _DISTANCE_FACTOR = 5.0, 1.5
-"""The least distance of the camera from a robot that drives about, metres, and a factor on that to see all of it."""
+"""The least distance of the camera from a mobile robot, metres, and a factor on its size to see all of it."""
 
 _DISPLAYS = (
     ("nav_msgs/msg/OccupancyGrid", "Map", 1),
@@ -39,14 +39,14 @@ _DISPLAYS = (
     ("sensor_msgs/msg/Image", "Image", 1),
     ("sensor_msgs/msg/CompressedImage", "Image", 1),
 )
-"""Types, the display that shows them, and how many of these are switched on; others of them are there, but off."""
+"""Types, the display for each, and how many of these are enabled; further ones are added disabled."""
 
 
 def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
-    """The first configuration for a recording: its robot, and a display for each topic of the usual types.
+    """Return the first configuration for a recording: its robot, and a display for each topic of the usual types.
 
-    Transforms are drawn where there is no robot, which their axes would cover. A recording of a simulation shows its
-    world, in the frame of the world; the model of the robot is there, but off, as the world has the robot in it.
+    Transforms are drawn if there is no robot, which their axes would cover. A recording of a simulation shows its
+    world, in the frame of the world; its robot model is disabled, because the world contains the robot.
 
     Args:
         bag: the recording.
@@ -87,7 +87,7 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
 
 
 def _has_world(bag: BagReader) -> bool:
-    """Whether it is of a simulation: the world, and where things are in it."""
+    """Return whether it is of a simulation: whether it has the world, and the poses in it."""
     there = {topic.name for topic in bag.topics if topic.count}
     return {DESCRIPTION_TOPIC, POSES_TOPIC} <= there
 
@@ -105,15 +105,15 @@ def _add(config: RvizConfig, kind: str, topic: BagTopic, *, checked: bool) -> No
 
 
 def _bases(robot: Robot | None) -> list[str]:
-    """The candidates for the frame of a robot as a whole, the best first (REP 105, REP 120)."""
+    """Return the candidates for the base frame of a robot, the best first (REP 105, REP 120)."""
     return ["base_footprint", "base_link"] if robot is None else [robot.root, *robot.links]
 
 
 def _tree(bag: BagReader, namespace: str) -> tuple[str | None, set[str]]:
-    """The frame that all others hang on, None where there are none, and the others, by the transforms of two moments.
+    """Return the root frame, or None, and the other frames, from the transforms of two moments.
 
-    These are the beginning of the transforms and the middle of the recording: who finds out where the robot is on a map
-    may have begun later.
+    These are the beginning of the transforms and the middle of the recording: a node that localizes the robot on a map
+    may have started later.
     """
     both = namespace + TRANSFORMS, namespace + STATIC_TRANSFORMS
     names = [topic.name for topic in bag.topics if topic.name in both and topic.count]
@@ -129,7 +129,7 @@ def _tree(bag: BagReader, namespace: str) -> tuple[str | None, set[str]]:
 
 
 def _frame_of_messages(bag: BagReader) -> str:
-    """The frame of the first message that is shown: without transforms, it becomes the Fixed Frame."""
+    """Return the frame of the first message that is shown: without transforms, it becomes the Fixed Frame."""
     for message, _, _ in _DISPLAYS:
         for topic in (topic for topic in bag.topics if topic.type_name == message and topic.count):
             first = next(iter(bag.messages([topic.name])), None)

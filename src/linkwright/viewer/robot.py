@@ -1,6 +1,6 @@
 """A robot for the page: the source of its description, and its shapes.
 
-A description comes from a topic of the graph, or a file. Drawn are links with their shapes, colours, files and places.
+A description comes from a topic of the graph, or a file. Pages draw links with their shapes, colours, files and poses.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ FILE = "Description File"
 TOPIC = "Description Topic"
 
 DESCRIPTION_SPECS = (
-    PropertySpec(SOURCE, "enum", "Topic", "Where the description comes from.", options=("Topic", "File")),
+    PropertySpec(SOURCE, "enum", "Topic", "The source of the description.", options=("Topic", "File")),
     PropertySpec(
         FILE,
         "string",
@@ -50,11 +50,11 @@ DESCRIPTION_SPECS = (
     topic_spec(
         TOPIC,
         "/robot_description",
-        "The topic that carries the description, as std_msgs/msg/String.",
+        "The topic of the description, std_msgs/msg/String.",
         depth=1,
         durability="Transient Local",
-        durability_help="Whether a description published before counts too. It always does here: most files say "
-        "Volatile, and then it would be chance whether the robot is seen.",
+        durability_help="Whether to receive a description that was published before. This display always "
+        "does: most files set Volatile, with which the robot would appear only by chance.",
         when=((SOURCE,), "Topic"),
     ),
 )
@@ -64,10 +64,10 @@ class DescriptionSource:
     """Follows the source that a display's properties name.
 
     Args:
-        context: of the viewer; its library is told of files read, so that the robot knows its places in them.
+        context: of the viewer; its library receives the files that were read, which gives the robot source positions.
         properties: the display's properties, with `DESCRIPTION_SPECS`.
         on_text: called with each description.
-        on_refusal: called with what is wrong when there is none to be had.
+        on_refusal: called with the findings if there is no description.
     """
 
     def __init__(
@@ -85,17 +85,17 @@ class DescriptionSource:
         self._reading: asyncio.Task[None] | None = None
         self._heard: dict[bytes, EndpointInfo | None] = {}
         self.publisher: bytes | None = None
-        """The GID of who published the description that was received last; None before, and of files."""
+        """The GID of the publisher of the last description; None before, and for files."""
 
     def follow(self) -> Phrase | None:
-        """Follow the source named now instead of the one before; returns RViz's words for why that failed, or None."""
+        """Follow the source named now instead of the one before; returns RViz's text for the failure, or None."""
         self.close()
         if self._properties.text(SOURCE) == "File":
             return self._read_file(self._properties.text(FILE).strip())
         return self._subscribe(self._properties.text(TOPIC).strip())
 
     def close(self) -> None:
-        """Leave the source."""
+        """Unsubscribe."""
         for subscription in self._subscriptions:
             with suppress(ValueError):  # the node may have been destroyed before
                 self._context.node.destroy_subscription(subscription)
@@ -110,7 +110,7 @@ class DescriptionSource:
         if not topic:
             return phrase("Error subscribing: Empty topic name")
         asked = qos_of(self._properties, TOPIC)
-        # Transient local first, then what the file asks for, for publishers that do not offer it.
+        # Transient local first, then the file's setting, for publishers that do not offer it.
         profiles = [qos_of(self._properties, TOPIC, lasting=True)]
         if asked.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
             profiles.append(asked)
@@ -124,7 +124,7 @@ class DescriptionSource:
         return None
 
     def publishers(self) -> dict[bytes, str]:
-        """The publishers of received descriptions that are still there, by GID: node, and machine where known."""
+        """Return the present publishers of received descriptions, by GID: node, and machine if known."""
         if not self._heard:
             return {}
         gids = set(map(self.current, self._heard))
@@ -135,7 +135,7 @@ class DescriptionSource:
         }
 
     def current(self, gid: bytes) -> bytes:
-        """The present GID of a publisher of descriptions: one in this process gets another by joining a network."""
+        """Return the present GID of a publisher of descriptions, which changes when this process joins a network."""
         known = self._heard.get(gid)
         if known is None or not known.local:
             return gid
@@ -179,10 +179,10 @@ def _node_text(publisher: EndpointInfo) -> str:
 
 
 def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
-    """Mass, centre of mass and equivalent box of a link; None without numbers that can be drawn."""
+    """Return mass, centre of mass and equivalent box of a link, or None if these cannot be computed."""
     if inertial is None:
         return None
-    from linkwright.inertia.inertial import from_inertial  # the room of inertias is for those who ask for one
+    from linkwright.inertia.inertial import from_inertial  # here, because few pages ask for inertias
     from linkwright.inertia.magnitudes import is_computable
 
     if not is_computable(inertial):
@@ -200,7 +200,7 @@ def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
 
 
 def place_of(element: Element | None) -> Place | None:
-    """The place where an element was written, with its macro calls and includes; None if a program made it."""
+    """Return the place where an element was written, with its macro calls and includes; None if a program made it."""
     if element is None:
         return None
     origin = origin_of(element)
@@ -215,19 +215,19 @@ def place_of(element: Element | None) -> Place | None:
 
 
 def folder_of(element: Element | None) -> Path | None:
-    """The folder of the file an element was written in, from which relative paths in it start; None if it has none."""
+    """Return the folder of an element's file, from which relative paths start, or None if it has none."""
     if element is None or element.source is None or element.source.name.startswith("<"):
         return None
     return Path(element.source.name).parent
 
 
 def frame_of(link: str, prefix: str) -> str:
-    """The tf frame of a link for a display's TF Prefix; RViz joins them with a slash."""
+    """Return the tf frame of a link for a display's TF Prefix; RViz joins them with a slash."""
     return f"{prefix}/{link}" if prefix else link
 
 
 def has_visuals(robot: Robot, finder: PackageFinder) -> bool:
-    """Whether some visual of a robot can be drawn, so that it is seen without its frames.
+    """Return whether a visual of a robot can be drawn, so that the robot is visible without its frames.
 
     Args:
         robot: its description.
@@ -237,14 +237,14 @@ def has_visuals(robot: Robot, finder: PackageFinder) -> bool:
 
 
 class SceneBuilder:
-    """Converts a robot to what the page draws.
+    """Converts a robot to the page's form.
 
     A visual has the colour of its material; each of several visuals its own, which RViz gets wrong. A collision has
     that of the link's first visual, as in RViz.
 
     Attributes:
         index: the files found on the way, for `MeshFolders`.
-        problems: link -> what is wrong with files that it names, in RViz's manner of speaking.
+        problems: link -> problems with its files, in RViz's words.
     """
 
     def __init__(self, index: MeshIndex) -> None:
@@ -252,12 +252,12 @@ class SceneBuilder:
         self.problems: dict[str, list[Phrase]] = {}
 
     def links(self, robot: Robot, prefix: str) -> list[LinkScene]:
-        """The links in file order, with frames named by the display's TF Prefix."""
+        """Return the links in file order, with frames named by the display's TF Prefix."""
         parents = {joint.child: joint.name for joint in robot.joints.values()}
         return [self._link(link, prefix, parents.get(link.name)) for link in robot.links.values()]
 
     def joints(self, robot: Robot) -> list[JointScene]:
-        """The joints in file order."""
+        """Return the joints in file order."""
         return [
             JointScene(
                 name=joint.name,

@@ -18,9 +18,9 @@ _MOST_ROWS = 16
 _MOST_RAYS = 720
 """The largest number of rays of a lidar that pages draw."""
 _FARTHEST = 10_000.0
-"""In m: so far a camera is drawn to see at most."""
+"""The largest far distance of a camera that is drawn, in m."""
 _ENDLESS = 30.0
-"""In m: how long the rays of a lidar are drawn that says no range."""
+"""The length of a lidar's rays that are drawn if it has no range, in m."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +29,8 @@ class ShownLidar:
 
     Attributes:
         scene: the message about it for pages.
-        measured: rows and columns of what it measures.
-        every: every how many of the rows and of the columns are drawn.
+        measured: the numbers of rows and columns that it measures.
+        every: draw every n-th row and every m-th column.
     """
 
     scene: LidarScene
@@ -39,7 +39,7 @@ class ShownLidar:
 
 
 def sensors_of(world: World) -> tuple[list[ShownLidar], list[CameraScene]]:
-    """The lidars and the cameras of a world, in the order of the file; none where something cannot be placed.
+    """Return the lidars and the cameras of a world, in the order of the file; none if one cannot be placed.
 
     Args:
         world: with its includes resolved.

@@ -19,10 +19,10 @@ _APART = 1e-6
 
 
 def size_of(robot: Robot) -> ModelSize | None:
-    """The size of a robot whose joints are at zero; None for one that is a single point.
+    """Return the size of a robot whose joints are at zero, or None for one that is a single point.
 
     It is measured by the frames of its links and by its visuals and collisions that are simple shapes: a page that has
-    read the meshes knows better, but first there are axes to be drawn.
+    read the meshes has the exact size, but axes are drawn before that.
     """
     tree = KinematicTree(robot)
     frames = dict(zip(tree.link_names, map(_placement, tree.forward({})), strict=True))
@@ -41,7 +41,7 @@ def size_of(robot: Robot) -> ModelSize | None:
 
 
 def _simple_shapes(robot: Robot, link: str) -> Iterator[Bounds]:
-    """The boxes around the simple shapes of a link, in the link's frame."""
+    """Return the boxes around the simple shapes of a link, in the link's frame."""
     parts: tuple[Visual | Collision, ...] = (*robot.links[link].visuals, *robot.links[link].collisions)
     for part in parts:
         if not isinstance(part.geometry, Mesh):

@@ -8,11 +8,11 @@ from linkwright.sdf.skies import Fog, Sky
 from linkwright.viewer.protocol.worlds import FogScene
 
 _TWILIGHT = 1.0
-"""Hours that it takes to become bright or dark."""
+"""Hours between bright and dark."""
 
 
 def daylight(sky: Sky | None) -> float | None:
-    """The brightness of a sky, from 0 at night to 1; None for none."""
+    """Return the brightness of a sky, from 0 at night to 1, or None if there is no sky."""
     if sky is None:
         return None
     time = sky.time % 24.0
@@ -21,7 +21,7 @@ def daylight(sky: Sky | None) -> float | None:
 
 
 def fog_of(fog: Fog | None) -> FogScene | None:
-    """Fog, if there is any."""
+    """Return the fog, or None."""
     if fog is None or fog.type.strip() in ("", "none") or not all(map(isfinite, (fog.start, fog.end, fog.density))):
         return None
     density = None if fog.type.strip() == "linear" else max(fog.density, 0.0)

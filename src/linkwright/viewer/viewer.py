@@ -39,30 +39,30 @@ if TYPE_CHECKING:
 
 _NAME = "rviz2"
 _FIXED_FRAME = "fixed_frame"
-"""A parameter of the node, by which tools learn what the viewer shows and say what it is to show."""
+"""A parameter of the node, with which tools get and set the Fixed Frame."""
 
 
 class Viewer:
     """Shows what RViz would show of a graph, in a browser.
 
-    It must be made inside of a running asyncio loop. What pages change is kept in `config`; they save it, or
-    `config.save` does.
+    It must be created inside a running asyncio loop. Edits of pages are in `config`; the pages, or `config.save`, save
+    them.
 
     Args:
         graph: the graph that it is a node of.
         library: reads descriptions, each once for the whole process.
         finder: finds packages, and so meshes.
         config: displays, options and view.
-        host: the address to listen on; any but this machine's loopback address lets others in who know the token.
+        host: the address to listen on; any but this machine's loopback address admits others who know the token.
         port: 0 for any; None for 7448 or the next free one.
-        server: the server, which may give out the page already; None for one at `host` and `port`.
+        server: the server, which may serve the page already; None for one at `host` and `port`.
         title: the title of the page.
         options: the node's name, remappings, parameters and ROS arguments.
-        history: the bytes of received messages that are kept, for pages to go back to the last minutes; 0 for none.
-        beside: another viewer, on whose server this one's pages are; None for a server of its own.
+        history: the bytes of received messages that are stored, for pages to show the last minutes; 0 for none.
+        beside: another viewer, whose server has this one's pages too; None for a server of its own.
 
     Attributes:
-        guests: shows the recordings that pages give to this viewer; None where it takes none.
+        guests: shows the recordings that pages upload to this viewer; None if it accepts none.
 
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
@@ -93,13 +93,13 @@ class Viewer:
         frame = self._node.declare_parameter(
             _FIXED_FRAME,
             config.options.text("Fixed Frame"),
-            ParameterDescriptor(description="the frame that everything is shown in"),
+            ParameterDescriptor(description="the reference frame of the scene"),
         )
         config.options.set(("Fixed Frame",), frame.value)
         self._receivers: dict[type, Callable[[Page, Any], object]] = {}
         self._audience = Audience(self._opening, self._receivers, self._page_gone, self._node.get_logger())
         shared: dict[str, Any] = {"meshes": self._server.meshes, "downloads": self._server.downloads}
-        if beside is not None:  # what the server gives out, by names that none of its viewers has twice
+        if beside is not None:  # served content with ids that are unique among its viewers
             served = beside.context
             shared = {"meshes": served.meshes, "downloads": served.downloads, "display_ids": served.display_ids}
         self.context: ViewerContext = ViewerContext(
@@ -126,7 +126,7 @@ class Viewer:
         """Listen, subscribe, and serve.
 
         Raises:
-            LinkwrightError: VIEW101 to VIEW103, it cannot listen where it should.
+            LinkwrightError: VIEW101 to VIEW103, it cannot listen at the address.
         """
         try:
             if self._beside is None:
@@ -139,7 +139,7 @@ class Viewer:
                 feature.start()
             if self._beside is None:
                 self._server.show(self._audience, self.guests)
-        except BaseException:  # cancelled, too: whoever ends the program does not know this viewer yet
+        except BaseException:  # cancelled, too: the code that ends the program does not know this viewer yet
             self._node.destroy_node()
             await self._server.close()
             raise
@@ -150,13 +150,13 @@ class Viewer:
         if self._server.is_open_to_others:
             host = self._server.host
             self._node.get_logger().warning(
-                f"Listening on '{host}': whoever reaches it and knows the token can see and move the robot"
+                f"Listening on '{host}': anyone who reaches it and knows the token can see and move the robot"
             )
 
     async def close(self) -> None:
         """Close the connections to pages, leave the graph and stop listening."""
         self._server.leave_token(pages_wait=len(self._audience) > 0)
-        async with AsyncExitStack() as stack:  # each of these is done, also where one before it fails
+        async with AsyncExitStack() as stack:  # all of these run, even after one fails
             stack.callback(self._node.destroy_node)
             stack.callback(self.context.published.close)
             if self._beside is not None:
@@ -170,11 +170,11 @@ class Viewer:
 
     @property
     def pages_wait(self) -> bool:
-        """Whether pages of the program that was ended at this port before look for this one."""
+        """Whether pages of the former program at this port are looking for this one."""
         return self._server.pages_wait
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Keep unsaved edits of pages, before the program ends; returns the notices about it."""
+        """Store unsaved edits of pages, before the program ends; returns the findings about it."""
         kept = keep_unsaved(manager.config for manager in self.managers.all() if manager.history.unsaved)
         return [*kept, *(notice for feature in self._features for notice in feature.keep_unsaved())]
 
@@ -206,7 +206,7 @@ class Viewer:
     # --- what the rest of the program shows --------------------------------------------------------------------
 
     def attach_joint_panel(self, panel: JointPanel | None) -> None:
-        """Show sliders for the joints of a panel; None takes them away."""
+        """Show sliders for the joints of a panel; None removes them."""
         self.add_feature(JointsFeature).attach(panel)
 
     def attach_recording(self, playback: Playback, bag: BagReader) -> None:
@@ -217,7 +217,7 @@ class Viewer:
             feature.recording_shown()
 
     def playback_failed(self, error: LinkwrightError) -> None:
-        """Show pages an error: the recording cannot be read on."""
+        """Show pages an error: the rest of the recording cannot be read."""
         self._timeline.failed(error)
 
     def attach_comparison(self, pair: Pair, node: Node) -> Callable[[str], None]:
@@ -231,7 +231,7 @@ class Viewer:
         return self.add_feature(TimelineFeature)
 
     def add_feature(self, cls: type[F], receives: Iterable[type] = ()) -> F:
-        """A feature of a class, told of all events from now on; the present one, if any.
+        """Return the feature of a class, which receives all events from now on; the existing one, if any.
 
         Args:
             cls: its class.
@@ -250,7 +250,7 @@ class Viewer:
         self._receivers.update((message, feature.receive) for message in (*feature.RECEIVES, *receives))
 
     def show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Show the findings on the description; none clears the list."""
+        """Show the findings on the description; an empty list clears them."""
         for feature in self._features:
             feature.diagnostics_changed(diagnostics)
 
@@ -259,11 +259,11 @@ class Viewer:
     def _opening(self, page: Page) -> list[Payload]:
         manager = self.managers.enter(page)
         messages, frames = self.opening_messages(manager)
-        manager.pages.add(page)  # what it is told from here on comes after all this
+        manager.pages.add(page)  # later messages follow all of these
         return [*(encode(message, page.language) for message in messages), *frames]
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
-        """Messages for a page that begins to see a configuration, the frame table last; and binary frames."""
+        """Return messages for a page that begins to see a configuration, the frame table last; and binary frames."""
         messages: list[ServerMessage] = [Hello(PROTOCOL_VERSION, __version__, self._title, self._run)]
         shown, table, frames = manager.opening()
         messages += self._openings(before_displays=True)
@@ -273,13 +273,13 @@ class Viewer:
 
     def _openings(self, *, before_displays: bool) -> list[ServerMessage]:
         messages: list[ServerMessage] = []
-        for feature in self._features:  # one may make others, which have something to tell, too
+        for feature in self._features:  # one may create others, which have messages too
             if feature.BEFORE_DISPLAYS is before_displays:
                 messages += feature.opening()
         return messages
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """The messages of all features about a configuration."""
+        """Return the messages of all features about a configuration."""
         return [message for feature in self._features for message in feature.configured(manager)]
 
     def _page_gone(self, page: Page) -> None:
@@ -290,22 +290,22 @@ class Viewer:
     # --- what happens to managers ------------------------------------------------------------------------------
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Undo, redo or whether something is unsaved may have changed."""
+        """Handle a change of undo, redo or the unsaved state."""
         for feature in self._features:
             feature.edited(manager)
 
     def robot_changed(self) -> None:
-        """A display shows another robot."""
+        """Handle another robot of a display."""
         for feature in self._features:
             feature.robot_changed()
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """A manager was closed."""
+        """Handle the end of a manager."""
         for feature in self._features:
             feature.manager_closed(manager)
 
     def fixed_frame_changed(self, manager: VisualizationManager) -> None:
-        """The Fixed Frame has changed; that of the shared configuration is a parameter of the node."""
+        """Handle another Fixed Frame; that of the shared configuration is a parameter of the node."""
         frame = manager.fixed_frame
         if manager is self.manager and self._node.get_parameter(_FIXED_FRAME).value != frame:
             self._node.set_parameters([Parameter(_FIXED_FRAME, value=frame)])

@@ -1,4 +1,4 @@
-"""The first view of a world: its own camera, or the models that it is about."""
+"""The first view of a world: its own camera, or one that shows its robots."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from linkwright.sdf.worlds import World
 from linkwright.xmltree import Element
 
 _FEWEST_JOINTS = 2
-"""A model without sensors and plugins that has so many moving joints is a robot, and no door."""
+"""A model without sensors and plugins that has so many moving joints is a robot, not a door."""
 _POSE_NUMBERS = 6
 
 
 def camera_of(world: World) -> Transform | None:
-    """The pose of the camera that a world asks for, in the frame of the world; it looks along its x axis.
+    """Return the pose of the camera in a world's file, in the frame of the world; it looks along its x axis.
 
-    Gazebo classic reads ``<gui><camera><pose>``, gz the ``<camera_pose>`` of the window's plugin that draws. None
-    where the world says neither, or no six numbers.
+    Gazebo classic reads ``<gui><camera><pose>``, gz the ``<camera_pose>`` of the window's plugin that renders. None
+    if the world has neither, or not six numbers.
     """
     gui = world.element.first("gui") if world.element is not None else None
     if gui is None:
@@ -30,7 +30,7 @@ def camera_of(world: World) -> Transform | None:
 
 
 def robots_of(world: World) -> list[str]:
-    """The names of the models that are robots: they move, and have sensors, plugins, or some moving joints."""
+    """Return the names of the models that are robots: they move, and have sensors, plugins, or some moving joints."""
     return [model.name for model in world.models if not model.static and _is_robot(model)]
 
 

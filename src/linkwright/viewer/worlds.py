@@ -35,11 +35,11 @@ from linkwright.viewer.web.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 _UNCOLOURED = [0.7, 0.7, 0.7, 1.0]
 """The colour of shapes without a material, which are grey in Gazebo."""
 _MOST_HEIGHTS = 257
-"""The largest number of heights along a side of a ground."""
+"""The largest number of heights along a side of a heightmap."""
 _COLLISION = [1.0, 0.55, 0.1, 0.6]
 
 _PoseInLink = Callable[[RawPose], Transform]
-"""The function that gives a link's part its pose in the link's frame."""
+"""Returns the pose of a link's part in the link's frame."""
 
 
 @dataclass(slots=True)
@@ -49,7 +49,7 @@ class WorldContent:
     Attributes:
         links: all links that draw something or move, named as in the poses of the simulation: ``robot::arm::tip``.
         poses: the first pose of each in the world.
-        problems: link -> what is wrong with files that it names.
+        problems: link -> problems with its files.
     """
 
     links: list[LinkScene] = field(default_factory=list)
@@ -58,14 +58,14 @@ class WorldContent:
 
 
 def content_of(world: World, index: MeshIndex) -> WorldContent:
-    """The content drawn for a world.
+    """Return the content drawn for a world.
 
     Args:
         world: with its includes resolved.
-        index: finds the files that it names, and keeps which these are.
+        index: finds the files that it names, and collects them.
 
     Raises:
-        FrameError: something in it cannot be placed.
+        FrameError: an element in it cannot be placed.
     """
     return _Builder(index).build(world)
 
@@ -171,7 +171,7 @@ class _Builder:
             shape.texture = self._located(link, texture.diffuse, IMAGE_TYPES)
 
     def _heights(self, link: str, uri: str) -> NDArray[np.float32] | None:
-        """The heights of a ground, by the reader of the simulation; browsers read neither TIFF nor 16 bits of grey."""
+        """Return the heights of a heightmap, with the simulation's reader; browsers read no TIFF or 16-bit grey."""
         if self._located(link, uri, IMAGE_TYPES) is None:
             return None
         try:
@@ -213,21 +213,21 @@ class _Builder:
 
 
 def _maps(workflow: Workflow) -> tuple[str, ...]:
-    """The images of a surface but for that of its colour, in the order of `Surface`."""
+    """Return the images of a surface except that of its colour, in the order of `Surface`."""
     reflecting = (workflow.normal_map, workflow.roughness_map, workflow.metalness_map)
     return (*reflecting, workflow.emissive_map, workflow.ambient_occlusion_map)
 
 
 def _reflects(workflow: Workflow) -> bool:
-    """Whether a material says how it reflects light, and not only which image it wears."""
+    """Whether a material specifies how it reflects light, and not only an image."""
     usual = Workflow()
     return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (usual.roughness, usual.metalness)
 
 
 def _look(material: Material) -> tuple[Sequence[float] | None, str]:
-    """Colour and image of a material: None and nothing where it says none.
+    """Return colour and image of a material: None and nothing if it sets none.
 
-    Scripts were read where the world was; of a model that came as a text only Gazebo's own names are known here.
+    Scripts were read with the world; for a model from a text only Gazebo's own names are known here.
     """
     named = gazebo_look(material.script.name) if material.script else None
     if named is not None:

@@ -55,7 +55,7 @@ def test_they_are_kept_and_the_terminal_says_where(
     assert running.end(number)[0] == 128 + number
     (file,) = kept.iterdir()
     assert [display.name for display in RvizConfig.load(file).walk()] == ["Grid", "Added"]
-    said = f"changes of '{config}' that were not saved are kept in '{file}': open that file on the page, or with 'rviz2"
+    said = f"unsaved changes of '{config}' are stored in '{file}': open that file in the page, or with 'rviz2"
     assert said in running.err
     again = start(tmp_path / "a.launch.py")
     again.until("Robot initialized")

@@ -96,7 +96,7 @@ async def test_displays_of_no_file_are_kept_too(tmp_path):
         await change(client)
         (said,) = made.viewer.keep_unsaved()
     assert [path.name for path in kept()] == ["untitled.rviz"]
-    assert said.message.startswith("displays that were not saved are kept in")
+    assert said.message.startswith("unsaved displays are stored in")
 
 
 async def test_those_of_a_single_page_are_kept_beside_the_shared_ones(tmp_path):

@@ -53,7 +53,7 @@ def test_an_alias_is_a_copy_of_what_it_stands_for():
 @pytest.mark.parametrize(
     ("text", "word"),
     [
-        ("a: &x [*x]\n", "stands for itself"),
+        ("a: &x [*x]\n", "refers to itself"),
         (
             "a: &a ["
             + "x," * 99
@@ -116,7 +116,7 @@ def test_put_replaces_and_makes_what_is_missing():
         ("a: b: c\n", "RVIZ102", 1, "not valid YAML"),
         ("a: 1\nb: [1\n", "RVIZ102", 3, "not valid YAML"),
         ("a: *gone\n", "RVIZ102", 1, "undefined alias"),
-        ("- a\n", "RVIZ103", 1, "holds no keys"),
+        ("- a\n", "RVIZ103", 1, "is not a mapping"),
         ("", "RVIZ103", 1, "is empty"),
     ],
 )

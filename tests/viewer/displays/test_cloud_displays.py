@@ -211,7 +211,10 @@ async def test_a_scan_is_shown():
     ("ranges", "said"),
     [
         ([math.nan, math.nan], "All 2 ranges are NaN: the sensor could not measure"),
-        ([0.05, 12.5], "The ranges are 0.05 to 12.50 m, and the message's range_min and range_max 0.10 and 10.00 m"),
+        (
+            [0.05, 12.5],
+            "All ranges, 0.05 to 12.50 m, are outside of the message's range_min and range_max, 0.10 and 10.00 m",
+        ),
         ([math.inf, math.inf], None),
         ([math.nan, math.inf], None),
         ([], None),

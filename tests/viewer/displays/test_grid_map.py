@@ -153,9 +153,9 @@ async def test_a_large_map_is_thinned_and_said_so():
     ("broken", "text"),
     [
         ({"layers": ["a"]}, "The map has no layer 'elevation'; its layers: 'a'"),
-        ({"layers": []}, "The map has 0 layers and data of 1"),
-        ({"resolution": 0.0}, "The resolution, lengths or pose of the map are no numbers that can be"),
-        ({"length_x": NAN}, "The resolution, lengths or pose of the map are no numbers that can be"),
+        ({"layers": []}, "The map has 0 layers, but data for 1"),
+        ({"resolution": 0.0}, "The resolution, lengths or pose of the map are not valid"),
+        ({"length_x": NAN}, "The resolution, lengths or pose of the map are not valid"),
         ({"length_y": 0.0}, "The map has 2 x 0 cells"),
         ({"length_y": 9.0}, "Layer 'elevation' has 4 numbers for 2 x 9 cells"),
     ],

@@ -399,12 +399,12 @@ async def test_whose_description_is_shown_is_told_where_two_nodes_publish_one():
         await made.settle()
         level, text = made.status("RobotModel")["Topic"]
         assert (level, "of /second is shown; /first" in text) == ("ok", True)
-        assert "takes the place" not in made.logged()
+        assert "replaces that of" not in made.logged()
         published(made, "third", other)
         await made.settle()
         level, text = made.status("RobotModel")["Topic"]
         assert (level, "of /third is shown; /first, /second publish" in text) == ("warn", True)
-        assert "The description of /third takes the place of that of /second" in made.logged()
+        assert "The description of /third replaces that of /second" in made.logged()
         for node in (first, second):
             node.destroy_node()
 
@@ -447,4 +447,4 @@ async def test_a_description_of_a_node_that_was_started_again_takes_its_place_wi
         published(made, "first", ARM.replace('name="arm"', 'name="other"'))
         await made.settle()
         assert made.display("RobotModel").robot.name == "other"
-        assert "takes the place" not in made.logged()
+        assert "replaces that of" not in made.logged()

@@ -46,7 +46,7 @@ def test_every_status_is_a_phrase_and_so_in_the_catalogues():
 async def test_each_page_reads_statuses_in_its_language():
     silent = {
         "zh": "没有收到消息：没有节点发布这个话题",
-        "en": "No messages received: nobody publishes the topic",
+        "en": "No messages received: the topic has no publisher",
     }
     wrong = {"zh": "订阅出错：话题名为空", "en": "Error subscribing: Empty topic name"}
     async with world(config()) as w:

@@ -61,7 +61,7 @@ def points(world) -> list[list[float]]:
 async def test_a_point_is_drawn_where_it_was_in_the_fixed_frame():
     async with world(config()) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
-        assert w.status("PointStamped") == {"Topic": ("warn", "No messages received: nobody publishes the topic")}
+        assert w.status("PointStamped") == {"Topic": ("warn", "No messages received: the topic has no publisher")}
         w.move({("base", "tip"): (1, 2, 3, 0, 0, 2**-0.5, 2**-0.5)}, static=True)
         publisher.publish(point(1.0, "tip"))
         await w.settle()
@@ -235,16 +235,16 @@ async def test_a_silent_topic_says_who_is_silent_and_where_such_messages_are(mon
         def said() -> str:
             return w.status("PointStamped")["Topic"][1].removeprefix("No messages received: ")
 
-        assert said() == "nobody publishes the topic"
+        assert said() == "the topic has no publisher"
         node = w.graph.create_node("clicks")
         node.create_publisher(PointStamped, "/other", 5)
-        there = "nobody publishes the topic; there is geometry_msgs/msg/PointStamped on /other"
+        there = "the topic has no publisher; there is geometry_msgs/msg/PointStamped on /other"
         await eventually(lambda: said() == there, what=said)
         for name in ("/a", "/b", "/clicked_points", "/c"):
             node.create_publisher(PointStamped, name, 5)
         await eventually(lambda: said().startswith(there.replace("/other", "/clicked_points, ")), what=said)
         node.create_publisher(PointStamped, "/clicked_point", 5)
-        await eventually(lambda: said() == "nothing came yet from clicks", what=said)
+        await eventually(lambda: said() == "no message arrived yet from clicks", what=said)
 
 
 async def test_a_topic_of_another_type_is_told(monkeypatch):
@@ -268,7 +268,7 @@ async def test_stamps_of_another_clock_are_told_of():
         await asyncio.sleep(2)
         level, text = w.status("PointStamped")["Transform"]
         assert level == "error"
-        assert text.startswith("The message is stamped 60 s after the time here: look at the clocks of both computers")
+        assert text.startswith("The message's stamp is 60 s after the local time: check the clocks of both computers")
 
 
 @pytest.mark.parametrize(
@@ -314,7 +314,7 @@ async def test_many_displays_that_wait_describe_no_endpoints_but_publishers(monk
 async def test_a_path_is_no_warning_before_the_first_plan_once_somebody_plans():
     path = RvizConfig.parse(FILE.replace("PointStamped", "Path").replace("/clicked_point", "/plan"))
     async with world(path) as w:
-        assert w.status("Path")["Topic"][0] == "warn", "nobody publishes the topic"
+        assert w.status("Path")["Topic"][0] == "warn", "the topic has no publisher"
         w.graph.create_node("planner").create_publisher("nav_msgs/msg/Path", "/plan", 5)
-        awaited = ("ok", "No messages received: nothing came yet from planner")
+        awaited = ("ok", "No messages received: no message arrived yet from planner")
         await eventually(lambda: w.status("Path")["Topic"] == awaited)

@@ -136,7 +136,10 @@ async def test_without_a_frame_world_the_world_is_placed_by_a_frame_of_its_robot
         made.move({("odom", "base"): (3, 0, 0.5, 0, 0, half, half)})
         await made.settle()
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))  # where it was when tf had it there
-        assert made.status("World")["Frame"] == ("ok", "tf has no 'world': the world is where 'base' is in both")
+        assert made.status("World")["Frame"] == (
+            "ok",
+            "tf has no 'world': the world is placed so that 'base' coincides in both",
+        )
 
 
 async def test_a_world_without_transforms_is_at_its_own_frame_and_nothing_warns():
@@ -158,7 +161,7 @@ async def test_with_the_fixed_frame_world_the_frames_of_tf_are_placed_in_the_wor
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
         assert sent(made, "world_poses").frame == "world"
-        told = "tf has no 'world': its frames are where 'base' is in both"
+        told = "tf has no 'world': its frames are placed so that 'base' coincides in both"
         await eventually(lambda: made.status("World")["Frame"] == ("ok", told))
         transforms = made.viewer.context.transforms
         await eventually(lambda: transforms.own("world").parent == "odom")

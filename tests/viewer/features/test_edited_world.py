@@ -78,7 +78,7 @@ def test_no_other_file_is_written_over(tmp_path):
     with pytest.raises(EditError, match=r"cannot write '.*none/w.world'"):
         world.save("none/w.world")
     for name in ("", "w.txt", "w.world.xacro", "a\0.world", "~nobody-at-all/w.world"):
-        with pytest.raises(EditError, match=r"let it end in \.world or \.sdf"):
+        with pytest.raises(EditError, match=r"it must end in \.world or \.sdf"):
             world.save(name)
     assert (other.read_text(), path.read_text()) == ("mine", PLAIN)
     world.save(str(path))
@@ -96,7 +96,7 @@ def test_a_world_that_xacro_makes_is_saved_as_what_came_of_it(tmp_path):
     assert (world.file, world.path) == (None, tmp_path / "w.world")
     with pytest.raises(EditError, match="no file of its own"):
         world.save(None)
-    with pytest.raises(EditError, match="let it end in"):
+    with pytest.raises(EditError, match="it must end in"):
         world.save("w.world.xacro")
     world.save("made.world")
     assert world.file == tmp_path / "made.world"

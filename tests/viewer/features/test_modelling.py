@@ -182,7 +182,7 @@ async def test_what_cannot_be_is_told_to_who_asked(tmp_path):
         await client.send("delete_things", names=["box"])
         assert (await client.until("simulation_notice"))["text"] == "too many links"
         await client.send("save_world", path="notes.txt")
-        assert "let it end in .world or .sdf" in (await client.until("simulation_notice"))["text"]
+        assert "it must end in .world or .sdf" in (await client.until("simulation_notice"))["text"]
 
 
 async def test_a_simulator_that_loads_no_worlds_is_told(tmp_path):

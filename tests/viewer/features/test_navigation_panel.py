@@ -165,7 +165,7 @@ async def test_buttons_command_both_managers_in_the_order_of_nav2():
         nav2.refuses = True
         await client.send("command_navigation", command="pause")
         told = await client.until("navigation_state", busy=False, navigation="active")
-        assert told["problem"] == "lifecycle_manager_navigation could not do that; its log says why"
+        assert told["problem"] == "lifecycle_manager_navigation could not do that; its log has the reason"
 
 
 async def test_a_goal_is_cancelled_alone_and_by_a_reset():

@@ -161,7 +161,7 @@ async def test_a_recording_of_nothing_is_not_kept(folder: Path):
         await begun(client, "/nobody")
         await client.send("stop_recording")
         state = await ended(client)
-        assert "nothing came" in state["problem"]
+        assert "no messages arrived" in state["problem"]
         assert not state["files"]
         assert made_in(folder) == set()
 
@@ -211,7 +211,7 @@ async def test_a_disk_with_little_room_is_left_to_others(monkeypatch: pytest.Mon
         with BagReader(state["path"]) as bag:
             assert not bag.findings, "it has its end"
         await client.send("record_topics", topics=[])
-        while not (refused := await client.until("recording_state"))["problem"].startswith("there is too little room"):
+        while not (refused := await client.until("recording_state"))["problem"].startswith("there is not enough space"):
             pass
         assert not refused["path"]
         assert made_in(folder) == {Path(state["path"]).name}
@@ -243,7 +243,7 @@ async def test_a_reset_of_simulated_time_ends_the_recording():
         clock.publish(clock.msg_type(clock=Time(sec=1)))
         await made.settle()
         stopped = await ended(client)
-        assert "simulated time began anew" in stopped["problem"]
+        assert "simulated time was reset" in stopped["problem"]
         with BagReader(state["path"]) as bag:
             assert 100 <= bag.start_ns / 1e9 <= bag.end_ns / 1e9 <= 102
 
@@ -266,7 +266,7 @@ async def test_the_last_minutes_and_a_part_of_them_are_saved():
             later = [stamp for _, stamp, _ in bag.messages([TF]) if stamp / 1e9 > between[1] + 1e-6]
             assert len(later) == 2
         nothing = await saved(client, 1.0, 2.0)
-        assert "nothing came in that time" in nothing["problem"]
+        assert "no messages arrived in that time" in nothing["problem"]
 
 
 @skipping

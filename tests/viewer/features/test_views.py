@@ -200,4 +200,4 @@ async def test_pages_share_the_saved_views():
         await one.send("remove_saved_view", id=saved["id"])
         await one.send("save_view", view=view | {"cls": "no/Such"})
         assert (await one.until("saved_views"))["views"] == []
-    assert "a view that is none" in made.logged()
+    assert "an invalid view" in made.logged()

@@ -93,7 +93,7 @@ def test_a_loose_mesh_opens_its_folder_and_the_folders_in_it(index, tmp_path):
         ("package://nobody/meshes/a.dae", "package 'nobody' not found"),
         ("http://example.org/a.dae", "scheme 'http'"),
         ("", "is empty"),
-        ("package://robot/launch/secret.py", "no format that is shown"),
+        ("package://robot/launch/secret.py", "is not supported"),
         ("package://robot/meshes", "no file '"),
         ("package://robot/meshes/a\0.dae", "no file '"),
     ],

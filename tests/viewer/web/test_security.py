@@ -262,7 +262,7 @@ async def test_nonsense_is_passed_over_and_logged_but_not_forever(served):
         await client.socket.send_str('{"type": "set_joint", "name": 1}')
         await client.set("global/Fixed Frame", "tip")
         assert (await client.until("property_changed", id="global/Fixed Frame"))["value"] == "tip"
-        assert "A page sent what is no message" in served.logged()
+        assert "A page sent an invalid message" in served.logged()
         for _ in range(30):
             await client.socket.send_str("nonsense")
         assert await closed_with(client) == 1008

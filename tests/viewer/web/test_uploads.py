@@ -194,7 +194,7 @@ async def test_what_cannot_be_read_is_said_without_where_it_lay(scratch: Path, d
 async def test_why_not_is_said_in_the_language_of_the_page():
     async with host() as (_, sender):
         announced = {"name": "x", "files": [{"name": "x.txt", "size": 1}]}
-        for language, words in (("en", "is no file of a recording"), ("zh", "不是录制")):
+        for language, words in (("en", "is not a file of a recording"), ("zh", "不是录制")):
             _, answer = await sender.ask("POST", "recordings", language, json=announced)
             assert words in answer["problem"], answer
 

@@ -100,7 +100,7 @@ class _Planner:
         request = self._request
         for given in (request.xyz, request.rpy):
             if given is not None and not all(isfinite(each) and abs(each) <= _LARGEST for each in given):
-                raise EditRefusedError(Diagnostic("EDIT102", phrase("these are no numbers that a robot can have")))
+                raise EditRefusedError(Diagnostic("EDIT102", phrase("these numbers are not valid for a robot")))
         if request.xyz is not None:
             if request.tag == "axis" and not any(abs(each) > EXACT for each in request.xyz):
                 message = phrase("an axis needs a direction: 0 0 0 is none")

@@ -1,4 +1,4 @@
-"""RViz's colour transformers: which a cloud offers, and the colours they give its points."""
+"""RViz's colour transformers: those that a cloud supports, and the colours they give its points."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ INTENSITY, AXIS, FLAT, RGB8, RGBF32 = TRANSFORMERS = ("Intensity", "AxisColor", 
 AXES = ("X", "Y", "Z")
 
 _LARGEST_INTENSITY = 999999.0
-"""RViz's computed bounds go no further."""
+"""The limit of RViz's computed bounds."""
 
 _RAINBOW_STEPS = 5 * 255
 """Steps of the rainbow from magenta to red, along five edges of the colour cube."""
@@ -25,7 +25,7 @@ _RAINBOW_STEPS = 5 * 255
 _MIX_STEPS = 255
 
 Colours = NDArray[np.uint8]
-"""Shape (N, 4): red, green, blue, alpha. Of no rows when all points have the display's one colour."""
+"""Shape (N, 4): red, green, blue, alpha. Without rows if all points have the display's one colour."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,14 +35,14 @@ class ColourSettings:
     Attributes:
         transformer: one of `TRANSFORMERS`.
         channel: the channel of ``Intensity``.
-        rainbow: whether ``Intensity`` goes through the rainbow instead of from `darkest` to `brightest`.
-        inverted: whether that rainbow begins with the other end.
+        rainbow: whether ``Intensity`` uses the rainbow instead of a gradient from `darkest` to `brightest`.
+        inverted: whether that rainbow is reversed.
         darkest: colour of the least intensity.
         brightest: colour of the largest intensity.
-        intensities: least and largest intensity, or None to take those of the cloud.
+        intensities: least and largest intensity, or None for those of the cloud.
         axis: the axis of ``AxisColor``, an index of `AXES`.
-        values: least and largest coordinate, or None to take those of the cloud.
-        in_fixed_frame: whether ``AxisColor`` looks at coordinates in the Fixed Frame.
+        values: least and largest coordinate, or None for those of the cloud.
+        in_fixed_frame: whether ``AxisColor`` uses coordinates in the Fixed Frame.
     """
 
     transformer: str = INTENSITY
@@ -58,7 +58,7 @@ class ColourSettings:
 
 
 def supported_transformers(points: Points) -> tuple[str, ...]:
-    """The transformers that can colour these points; the first is the one that RViz would choose."""
+    """Return the transformers that can colour these points; the first is the one that RViz would choose."""
     found = [INTENSITY, AXIS, FLAT]
     if packed := _packed_channel(points):
         values = points.channels[packed]
@@ -73,12 +73,12 @@ def supported_transformers(points: Points) -> tuple[str, ...]:
 def coloured(
     points: Points, settings: ColourSettings, pose: NDArray[np.float64] | None = None
 ) -> tuple[Colours, tuple[float, float] | None]:
-    """The colours of the points, and the bounds that were computed for them.
+    """Return the colours of the points, and the bounds that were computed for them.
 
     Args:
         points: the points.
         settings: with a transformer that the points support.
-        pose: the pose of their frame in the Fixed Frame, x y z qx qy qz qw; None where they are in it.
+        pose: the pose of their frame in the Fixed Frame, x y z qx qy qz qw; None for points in the Fixed Frame.
     """
     if settings.transformer == INTENSITY:
         return _by_intensity(points, settings)
@@ -128,7 +128,7 @@ def _by_axis(
 
 
 def _bounds(values: NDArray[Any], limit: float) -> tuple[float, float]:
-    """Least and largest of the values that are numbers; 0 and 0 of none."""
+    """Return the least and the largest of the finite values, or 0 and 0 without any."""
     if values.size == 0:
         return 0.0, 0.0
     least, largest = float(values.min()), float(values.max())
@@ -154,7 +154,7 @@ def _looked_up(table: NDArray[np.uint32], values: NDArray[Any], least: float, sp
 
 @cache
 def rainbow() -> NDArray[np.uint32]:
-    """RViz's rainbow, packed colours: magenta at 0, then blue, cyan, green, yellow, red."""
+    """Return RViz's rainbow as packed colours: magenta at 0, then blue, cyan, green, yellow, red."""
     corners = np.array([(1, 0, 1), (0, 0, 1), (0, 1, 1), (0, 1, 0), (1, 1, 0), (1, 0, 0)]) * 255.0
     return _gradient(corners, _RAINBOW_STEPS)
 
@@ -164,7 +164,7 @@ def _mixed(darkest: tuple[int, int, int], brightest: tuple[int, int, int]) -> ND
 
 
 def _gradient(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
-    """A table of packed colours, interpolated evenly between corners, opaque."""
+    """Return a table of packed colours, interpolated evenly between corners, opaque."""
     places = np.linspace(0, len(corners) - 1, steps + 1)
     table = np.full((steps + 1, 4), 255, np.uint8)
     for part in range(3):
@@ -174,12 +174,12 @@ def _gradient(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
 
 
 def _packed_channel(points: Points) -> str | None:
-    """The later of ``rgb`` and ``rgba``, as RViz looks for them."""
+    """Return the later of ``rgb`` and ``rgba``, as RViz looks for them."""
     return next((name for name in reversed(list(points.channels)) if name in ("rgb", "rgba")), None)
 
 
 def _unpacked(points: Points) -> Colours:
-    """The bytes of ``rgb``, else of ``rgba``: blue, green, red and alpha from the lowest on."""
+    """Return the bytes of ``rgb``, else of ``rgba``: blue, green, red and alpha from the lowest on."""
     name = "rgb" if "rgb" in points.channels else "rgba"
     values = points.channels[name]
     packed = np.ascontiguousarray(values.astype(values.dtype.newbyteorder("<"))).view(np.uint8).reshape(-1, 4)

@@ -1,4 +1,4 @@
-"""Points from a depth image: the camera's rays as long as the image says, coloured by an image of the same size."""
+"""Points from a depth image: the depths along the camera's rays, coloured by an image of the same size."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class DepthCamera:
 
     @classmethod
     def of(cls, info: Any, width: int, height: int) -> DepthCamera:
-        """The camera of a sensor_msgs/msg/CameraInfo, for images of a size.
+        """Return the camera of a sensor_msgs/msg/CameraInfo, for images of a size.
 
         Raises:
             BadCloudError: the image has another size than the camera, or the camera has no focal length.
@@ -67,13 +67,13 @@ class DepthCamera:
 
 
 class DepthCloudBuilder:
-    """Makes points of depth images; with occlusion compensation points stay for a while when something covers them."""
+    """Makes points from depth images; with occlusion compensation covered points stay for a while."""
 
     def __init__(self) -> None:
         self._hidden: _Hidden | None = None
 
     def reset(self) -> None:
-        """Forget what was covered: the camera moved, or began anew."""
+        """Drop the covered points: the camera moved or restarted."""
         self._hidden = None
 
     def points(
@@ -85,13 +85,13 @@ class DepthCloudBuilder:
         keep_covered: float | None = None,
         now: float = 0.0,
     ) -> Points:
-        """The points of an image.
+        """Return the points of an image.
 
         Args:
             depth: sensor_msgs/msg/Image, 16UC1 or mono16 in millimetres or 32FC1 in metres.
             camera: a camera of the image's size.
             colour: an image of the same size; None for white points.
-            keep_covered: seconds that covered points stay, in half their colour; None for not at all.
+            keep_covered: seconds that covered points stay, in half their colour; None to drop them at once.
             now: the time, seconds.
 
         Raises:
@@ -150,7 +150,7 @@ class _Hidden:
 
 
 def _metres(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-    """Depths, shape (height, width), and where there is one."""
+    """Return the depths, shape (height, width), and a mask of the valid ones."""
     kinds = {"32FC1": "f4", "16UC1": "u2", "mono16": "u2"}
     kind = kinds.get(image.encoding)
     if kind is None:
@@ -180,7 +180,7 @@ def _metres(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
 
 
 def _packed(picture: Picture) -> NDArray[np.uint32]:
-    """Colours as ``rgb`` channels have them."""
+    """Return colours in the form of ``rgb`` channels."""
     rgb = picture.rgb().astype(np.uint32)
     packed: NDArray[np.uint32] = np.bitwise_or(rgb[..., 0] << 16 | rgb[..., 1] << 8, rgb[..., 2], dtype=np.uint32)
     return packed

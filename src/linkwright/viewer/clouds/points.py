@@ -1,4 +1,4 @@
-"""The points of clouds and laser scans: where they are, and what else is known of each.
+"""The points of clouds and laser scans: their coordinates and their other fields.
 
 Scans are projected as laser_geometry does.
 """
@@ -42,7 +42,7 @@ class Points:
         return len(self.positions)
 
     def values(self, name: str) -> NDArray[Any] | None:
-        """A channel, or a coordinate; None for what these points do not have."""
+        """Return a channel, or a coordinate; None if these points do not have it."""
         if name in _AXES:
             column: NDArray[Any] = self.positions[:, _AXES.index(name)]
             return column
@@ -50,14 +50,14 @@ class Points:
 
 
 def points_of_cloud(message: Any) -> Points:
-    """The points of a PointCloud2 whose coordinates are finite, as RViz takes them.
+    """Return the points of a PointCloud2 whose coordinates are finite, as RViz takes them.
 
-    Of several fields with one name the first counts; of a field with several values the first value. Fields of types
-    that are none are passed over.
+    Of several fields with one name the first counts; of a field with several values the first value. Fields of
+    unknown types are ignored.
 
     Raises:
-        BadCloudError: the size of the data is not that of the points, a field lies outside of the point, or there are
-            no coordinates in float32.
+        BadCloudError: the size of the data is not that of the points, a field reaches beyond the point, or there are no
+            coordinates in float32.
     """
     count = message.width * message.height
     step = message.point_step
@@ -94,10 +94,10 @@ def points_of_cloud(message: Any) -> Points:
 
 
 def points_of_legacy_cloud(message: Any) -> Points:
-    """The points of a sensor_msgs/msg/PointCloud whose coordinates are finite.
+    """Return the points of a sensor_msgs/msg/PointCloud whose coordinates are finite.
 
     Raises:
-        BadCloudError: a channel has not one value for each point.
+        BadCloudError: a channel does not have one value for each point.
     """
     positions = np.array([(point.x, point.y, point.z) for point in message.points], dtype=np.float32).reshape(-1, 3)
     channels: dict[str, NDArray[Any]] = {}
@@ -118,7 +118,7 @@ def points_of_legacy_cloud(message: Any) -> Points:
 
 
 def _fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
-    """Type and offset of each field by name."""
+    """Return type and offset of each field by name."""
     found: dict[str, tuple[str, int]] = {}
     for point_field in fields:
         kind = _FORMATS.get(point_field.datatype)
@@ -138,7 +138,7 @@ def _fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
 
 
 def _coordinates(data: NDArray[np.uint8], offsets: list[int], order: str, step: int, count: int) -> NDArray[np.float32]:
-    """Shape (N, 3); its own memory, so that the message may go."""
+    """Return the coordinates, shape (N, 3), in memory of their own, so that the message can be freed."""
     first = offsets[0]
     if offsets == [first, first + 4, first + 8]:
         view: NDArray[Any] = np.ndarray((count, 3), order + "f4", data.data, first, (step, 4))
@@ -153,7 +153,7 @@ def _column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: i
 
 
 def decimated(cloud: CloudPoints, size: int) -> CloudPoints:
-    """Every k-th point, so that the arrays have at most so many bytes; at least one point is left."""
+    """Return every k-th point, so that the arrays have at most so many bytes; at least one point."""
     whole = cloud.positions.nbytes + cloud.colours.nbytes
     step = -(-whole // max(1, size))
     if step <= 1:
@@ -162,14 +162,14 @@ def decimated(cloud: CloudPoints, size: int) -> CloudPoints:
 
 
 class ScanProjector:
-    """Projects scans; the directions of the rays are kept as long as scans of the same shape come."""
+    """Projects scans; caches the directions of the rays for scans of the same shape."""
 
     def __init__(self) -> None:
         self._shape: tuple[float, float, int] = (0.0, 0.0, 0)
         self._directions: NDArray[np.float32] = np.empty((0, 2), np.float32)
 
     def points(self, scan: Any) -> Points:
-        """The points of the rays that hit something, in the frame of the scanner.
+        """Return the points at which rays hit an object, in the frame of the scanner.
 
         A ray counts whose range is at least `range_min` and less than `range_max`; rays without an echo are infinite or
         NaN. The channels are ``intensity`` (where the scan has one for each ray), ``range`` and ``index``.
@@ -194,7 +194,7 @@ class ScanProjector:
         return Points(positions[valid], {name: values[valid] for name, values in channels.items()})
 
     def _rays(self, first: float, step: float, count: int) -> NDArray[np.float32]:
-        """Cosine and sine of each ray's angle."""
+        """Return cosine and sine of each ray's angle."""
         shape = (first, step, count)
         if shape != self._shape:
             with np.errstate(all="ignore"):
@@ -205,7 +205,7 @@ class ScanProjector:
 
 
 def swept(points: Points, parts: NDArray[Any], first: NDArray[np.float64], last: NDArray[np.float64]) -> Points:
-    """Points that were seen on the way from one pose to another, in the frame that the poses are in.
+    """Return points that were measured on the way from one pose to another, in the frame of the poses.
 
     Args:
         points: in the moving frame.

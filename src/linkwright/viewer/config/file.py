@@ -11,7 +11,7 @@ from linkwright.input_files import read_file
 from linkwright.whole_files import write_whole_file
 
 MAXIMUM_SIZE = 16 * 1024 * 1024
-"""Largest file read, bytes; those that RViz writes have some ten thousand."""
+"""Largest file that is read, bytes; those that RViz writes have some ten thousand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class FileState:
 
 
 def read(path: Path) -> tuple[str, FileForm]:
-    """The text of a file, with its own line ends, and its form.
+    """Return the text of a file, with its own line ends, and its form.
 
     Raises:
         LinkwrightError: RVIZ101, it cannot be read.
@@ -68,7 +68,7 @@ def read(path: Path) -> tuple[str, FileForm]:
 
 
 def write(path: Path, text: str, form: FileForm) -> None:
-    """Write a text to a file, whole or not at all.
+    """Write a text to a file, completely or not at all.
 
     Raises:
         LinkwrightError: RVIZ104, it cannot be written.
@@ -86,7 +86,7 @@ def write(path: Path, text: str, form: FileForm) -> None:
 
 
 def state_of(path: Path) -> FileState | None:
-    """The state of a file now; None when there is none."""
+    """Return the state of a file now, or None if there is none."""
     try:
         facts = path.stat()
     except OSError:

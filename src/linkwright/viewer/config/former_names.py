@@ -1,7 +1,7 @@
 """The names that RViz 1 used for classes, and for keys of displays and tools that have changed since.
 
 A file of RViz 1 says ``Class: rviz/Grid``, ``Topic: /scan`` with ``Queue Size`` beside it, and ``Robot Description``.
-It is read through these names, and what is edited in it is written under them, so that it stays a file of RViz 1.
+It is read through these names, and edits are written under them, so that it stays a file of RViz 1.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def is_former(cls: str) -> bool:
 
 
 def modern_class(cls: str) -> str:
-    """RViz 2's name of a class of displays, tools or views, whichever RViz wrote it."""
+    """Return RViz 2's name of a class of displays, tools or views, for a name of either RViz."""
     if not is_former(cls):
         return cls
     name = cls.removeprefix(_FORMER)
@@ -36,7 +36,7 @@ def modern_class(cls: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class FormerKey:
-    """The key under which RViz 1 kept a property of today.
+    """The key of RViz 1 for a property of RViz 2.
 
     Attributes:
         key: beside the display's ``Class``.
@@ -50,7 +50,7 @@ class FormerKey:
 
 
 def former_keys(cls: str) -> Mapping[Path, FormerKey]:
-    """By the path of today's property, the keys that a class has under RViz 1; none for a class named as today."""
+    """Return the keys of RViz 1 for a class, by the path of the property; none for a class of RViz 2."""
     if not is_former(cls):
         return _NONE
     return _BY_CLASS.get(cls.removeprefix(_FORMER), _TOPIC)

@@ -1,6 +1,6 @@
 """The files of configurations: recent ones, folders of the server, and recovery files of unsaved edits.
 
-When the program ends, what pages edited and did not save is kept in a recovery file for each configuration: RViz asks
+When the program ends, unsaved edits are stored in a recovery file for each configuration: RViz asks
 before its window is closed, Ctrl-C in a terminal does not.
 """
 
@@ -38,7 +38,7 @@ def state_folder() -> Path:
 
 
 def configuration_path(text: str, folder: Path) -> Path:
-    """The file that a page names.
+    """Return the file that a page names.
 
     Args:
         text: absolute, from ``~``, or from the folder.
@@ -61,7 +61,7 @@ def configuration_path(text: str, folder: Path) -> Path:
 
 
 def list_folder(text: str | None, folder: Path) -> Folder:
-    """The folders and configuration files in a folder, but for hidden ones.
+    """Return the folders and configuration files of a folder, without hidden ones.
 
     Args:
         text: absolute, from ``~``, or from the folder of the open file; None for that one.
@@ -91,16 +91,16 @@ def list_folder(text: str | None, folder: Path) -> Folder:
             )
         ) from None
     parent = None if path.parent == path else str(path.parent)
-    from linkwright.viewer.protocol.configuration import Folder  # not above: tokens of pages need only the folder
+    from linkwright.viewer.protocol.configuration import Folder  # here, because tokens of pages need only the folder
 
     return Folder(str(path), parent, sorted(folders)[:_MOST_ENTRIES], sorted(files)[:_MOST_ENTRIES])
 
 
 class RecentFiles:
-    """The files opened or saved last, kept for the next time.
+    """The files that were opened or saved last, stored for the next start.
 
     Args:
-        store: the file that they are kept in; by default one of the user's state.
+        store: the file with their paths; by default one in the user's state folder.
     """
 
     def __init__(self, store: Path | None = None) -> None:
@@ -115,7 +115,7 @@ class RecentFiles:
         return self._paths
 
     def add(self, path: Path) -> None:
-        """Remember a file as the newest; a list that cannot be saved is no error."""
+        """Put a file at the top; a list that cannot be saved is not an error."""
         name = str(path)
         self._write([name, *(other for other in self._read() if other != name)][:_MOST_RECENT])
 
@@ -143,16 +143,16 @@ _UNNAMED = "untitled"
 _UNFIT = re.compile(r"[^\w. -]+|^\.+")
 _LONGEST_NAME = 56
 """Characters, of which a file system may count four bytes each."""
-_HOW = phrase("open that file on the page, or with 'rviz2 -d'")
+_HOW = phrase("open that file in the page, or with 'rviz2 -d'")
 
 
 def recovery_folder() -> Path:
-    """The folder of these files, below the user's state."""
+    """Return the folder of these files, below the user's state."""
     return state_folder() / "unsaved"
 
 
 def recovery_file(config: RvizConfig) -> Path:
-    """The recovery file of a configuration; one that was opened as such, and has no other file yet, keeps it."""
+    """Return the recovery file of a configuration; one that was opened as such, and has no other file, keeps it."""
     folder = recovery_folder()
     if config.path is not None:
         path = _whole(config.path)
@@ -175,7 +175,7 @@ def keep_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
             continue
         path = _free(recovery_file(config), taken)
         taken.add(path)
-        with suppress(OSError):  # writing says what is wrong
+        with suppress(OSError):  # the write below reports the error
             path.parent.mkdir(parents=True, exist_ok=True)
         try:
             configuration_file.write(path, text, FileForm())
@@ -193,7 +193,7 @@ def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
     if config.path is None or _whole(config.path) == _whole(path) or not path.is_file():
         return []
     message = phrase(
-        "changes of '{path}' that were not saved at an earlier time are in '{kept}': {how}",
+        "earlier unsaved changes of '{path}' are in '{kept}': {how}",
         path=config.path,
         kept=path,
         how=_HOW,
@@ -202,12 +202,12 @@ def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
 
 
 def forget_unsaved(former: Path | None, config: RvizConfig, recent: RecentFiles) -> None:
-    """Remove what was kept of a configuration that was saved a moment ago.
+    """Remove the recovery file of a configuration that has just been saved.
 
     Args:
-        former: the file that it had before: a recovery file that now is saved elsewhere has done its work.
+        former: the file that it had before: a recovery file that is now saved elsewhere is not needed any more.
         config: the configuration, with the file that it was saved to.
-        recent: the list from which removed files go.
+        recent: the list from which removed files are dropped.
     """
     done = {recovery_file(config)}
     if former is not None and _whole(former).parent == _whole(recovery_folder()):
@@ -222,10 +222,10 @@ def forget_unsaved(former: Path | None, config: RvizConfig, recent: RecentFiles)
 
 def _kept(config: RvizConfig, path: Path) -> Diagnostic:
     if config.path is None or _whole(config.path) == _whole(path):
-        message = phrase("displays that were not saved are kept in '{path}': {how}", path=path, how=_HOW)
+        message = phrase("unsaved displays are stored in '{path}': {how}", path=path, how=_HOW)
     else:
         message = phrase(
-            "changes of '{path}' that were not saved are kept in '{kept}': {how}",
+            "unsaved changes of '{path}' are stored in '{kept}': {how}",
             path=config.path,
             kept=path,
             how=_HOW,
@@ -234,7 +234,7 @@ def _kept(config: RvizConfig, path: Path) -> Diagnostic:
 
 
 def _is_saved(config: RvizConfig, text: str) -> bool:
-    """Whether the file has a text: what was edited was edited back."""
+    """Whether the file has a text already: the user reverted all edits."""
     if config.path is None:
         return False
     try:
@@ -244,14 +244,14 @@ def _is_saved(config: RvizConfig, text: str) -> bool:
 
 
 def _name_for(name: str) -> str:
-    """A name in the recovery folder for a configuration that is called like this, which a page may have done."""
-    mark = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # of two files of one name
+    """Return a name in the recovery folder for a configuration of this name, which a page may have chosen."""
+    mark = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # distinguishes files of the same name
     stem = _UNFIT.sub("_", Path(name).stem)[:_LONGEST_NAME]
     return f"{stem or _UNNAMED}-{mark}{ENDING}"
 
 
 def _free(path: Path, taken: set[Path]) -> Path:
-    """The file, or for a page's own displays, which began as a copy of the same configuration, one beside it."""
+    """Return the file, or a free one beside it for a page's own copy of the same configuration."""
     number, found = 1, path
     while found in taken:
         number += 1

@@ -1,4 +1,4 @@
-"""The panels of a .rviz file: which of those that RViz brings along are open, and what leads the Time panel.
+"""The panels of a .rviz file: the open ones of RViz's panels, and the settings of the Time panel.
 
 RViz keeps the first in three places. ``Panels`` lists the panels that there are. The state of the window has those of
 them that the user closed. ``Window Geometry`` says of those that went with a whole side of the window that they are
@@ -54,7 +54,7 @@ _NOT_OF_RVIZ_1 = frozenset({"transformation", "navigation"})
 
 
 class PanelsConfig:
-    """``Panels`` of a file, and what its ``Window Geometry`` says of them. Panels of other classes stay as they are.
+    """``Panels`` of a file, and their state in its ``Window Geometry``. Panels of other classes stay unchanged.
 
     Args:
         document: the file.
@@ -73,14 +73,14 @@ class PanelsConfig:
 
     @property
     def shown(self) -> list[PanelName] | None:
-        """The panels that RViz would show, in the order of the file; None where it says nothing of panels."""
+        """The panels that RViz would show, in the order of the file; None if it does not list panels."""
         if entries(self._document, _PANELS) is None:
             return None
         found = (_panel(section) for section in self._listed() if self._is_shown(section))
         return list(dict.fromkeys(panel for panel in found if panel is not None))
 
     def show(self, panels: Collection[PanelName]) -> bool:
-        """Write which panels are open; returns whether that changed anything.
+        """Write the open panels; returns whether that changed the file.
 
         Closing a panel does what RViz does: its entry stays and the window's state says that it is hidden. Where the
         file has no such state, or has the entry only since the panel was opened here, the entry goes, as with RViz's
@@ -112,7 +112,7 @@ class PanelsConfig:
                 remove_section(self._document, _PANELS, section)
 
     def _listed(self) -> list[Section]:
-        """The entries that RViz loads; it passes over those that lack a class or a name."""
+        """Return the entries that RViz loads; it skips those without a class or a name."""
         return [
             section
             for section in self._document.sections(_PANELS)
@@ -126,7 +126,7 @@ class PanelsConfig:
         return is_shown(self._document.text(*_STATE) or "", name) is not False
 
     def _set_shown(self, section: Section, *, shown: bool) -> None:
-        """Write whether a panel is shown into the window's state, where the file has one."""
+        """Write whether a panel is shown into the window's state, if the file has one."""
         name = section.text("Name") or ""
         state = self._document.text(*_STATE) or ""
         if is_shown(state, name) not in (None, shown):
@@ -135,7 +135,7 @@ class PanelsConfig:
             self._document.put((_GEOMETRY, name, "collapsed"), "false")
 
     def _add(self, panel: PanelName) -> Section | None:
-        """An entry for a panel: the one that it had, in its place, or a new one; None in a file that cannot have it."""
+        """Return an entry for a panel: its former one, in its place, or a new one; None if the file cannot have one."""
         there = list(self._document.sections(_PANELS))
         gone = next((section for section in self._order if _panel(section) == panel and section not in there), None)
         if gone is None:
@@ -161,7 +161,7 @@ def _panel(section: Section) -> PanelName | None:
 
 
 def is_shown(state: str, name: str) -> bool | None:
-    """Whether a dock is shown; None where the state does not know it, or is none that Qt wrote.
+    """Return whether a dock is shown; None if the state does not have it, or was not written by Qt.
 
     Args:
         state: the hexadecimal digits.
@@ -173,26 +173,26 @@ def is_shown(state: str, name: str) -> bool | None:
 
 
 def with_shown(state: str, name: str, *, shown: bool) -> str:
-    """The state with a dock shown or hidden; the same one where that is so already or the dock is not known."""
+    """Return the state with a dock shown or hidden; unchanged if it already is or is unknown."""
     content = _bytes(state)
     at = _flags(content, name)
     if at is None or bool(content[at] & _SHOWN) is shown:
         return state
-    # Of two digits a byte: the others stay in the case that they have.
+    # Change only these digits: the others keep their case.
     return f"{state[: 2 * at]}{content[at] ^ _SHOWN:02x}{state[2 * at + 2 :]}"
 
 
 def _bytes(state: str) -> bytes:
-    """The bytes of hexadecimal digits; empty for any other text."""
+    """Return the bytes of hexadecimal digits; empty for any other text."""
     try:
         content = bytes.fromhex(state)
     except ValueError:
         return b""
-    return content if 2 * len(content) == len(state) else b""  # `fromhex` passes over white space
+    return content if 2 * len(content) == len(state) else b""  # `fromhex` skips white space
 
 
 def _flags(content: bytes, name: str) -> int | None:
-    """The index of the byte with a dock's flags."""
+    """Return the index of the byte with a dock's flags."""
     text = name.encode("utf-16-be", "surrogatepass")
     mark = _DOCK + len(text).to_bytes(4, "big") + text
     at = content.find(mark) + len(mark)
@@ -201,14 +201,14 @@ def _flags(content: bytes, name: str) -> int | None:
 
 @dataclass(frozen=True, slots=True)
 class Synchronization:
-    """The mode of the Time panel's synchronization, and the display whose messages lead time."""
+    """The mode of the Time panel's synchronization, and the source display."""
 
     mode: SyncMode = "Off"
     source: str = ""
 
 
 def read_synchronization(document: Section) -> Synchronization:
-    """The Time panel's settings; RViz reads them only where ``Experimental`` is on, which RViz 1 at last left out."""
+    """Return the Time panel's settings; RViz reads them only with ``Experimental``, which later RViz 1 omits."""
     panel = _time_panel(document)
     if panel is None or not (_text(panel, "Experimental").lower() == "true" or _is_always_on(panel)):
         return Synchronization()
@@ -219,7 +219,7 @@ def read_synchronization(document: Section) -> Synchronization:
 
 
 def write_synchronization(document: Section, wanted: Synchronization) -> bool:
-    """Write the settings into the Time panel of a file that has one; returns whether that changed anything."""
+    """Write the settings into the Time panel of a file that has one; returns whether that changed the file."""
     panel = _time_panel(document)
     if panel is None or read_synchronization(document) == wanted:
         return False

@@ -13,25 +13,25 @@ from linkwright.viewer.config.yaml_tree import Made, Memory, Scalar, Section, ma
 from linkwright.viewer.protocol.displays import Property, PropertyChanged, PropertyValue, TopicOffer
 
 _MANY = 30
-"""Properties beside each other; so many are looked up by name."""
+"""From so many properties beside each other on, an index finds them by name."""
 
 
 def property_id(owner: str, path: Iterable[str]) -> str:
-    """The id of the property at a path of names below a display (or ``global``), as `protocol` describes it."""
+    """Return the id of the property at a path of names below a display (or ``global``), as in `protocol`."""
     return "/".join((owner, *(name.replace("%", "%25").replace("/", "%2F") for name in path)))
 
 
 class PropertyStore:
-    """Values by path of names, over the file's and over the defaults.
+    """Values by path of names: those that were set, else the file's, else the defaults.
 
     Args:
         owner: the display's id, or ``global``.
         section: the file, or the display's part of it; values set are written into it at once.
-        schema: gives the specs as they are now; a display whose rows come and go gives others later.
+        schema: returns the current specs, which change for displays whose rows come and go.
         report: called with a value in the file that cannot be used; the default is used then.
         base: keys from the section to the mapping with the values; made only when a value is set.
-        frames: gives the names offered for a ``frame``.
-        former: where RViz 1 kept values, for a section that it wrote.
+        frames: returns the names offered for a ``frame``.
+        former: the keys of RViz 1, for a section that it wrote.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class PropertyStore:
         self._values: dict[Path, PropertyValue] = {}
 
     def get(self, *path: str) -> PropertyValue:
-        """The value of the property at a path of names.
+        """Return the value of the property at a path of names.
 
         Raises:
             KeyError: when the schema has no such property.
@@ -65,21 +65,21 @@ class PropertyStore:
         return self._value(path, self._spec(path))
 
     def flag(self, *path: str) -> bool:
-        """The value of a ``bool``."""
+        """Return the value of a ``bool``."""
         return bool(self.get(*path))
 
     def number(self, *path: str) -> float:
-        """The value of an ``int`` or ``float``."""
+        """Return the value of an ``int`` or ``float``."""
         value = self.get(*path)
         assert isinstance(value, (int, float))
         return float(value)
 
     def text(self, *path: str) -> str:
-        """The value of a ``string``, ``enum``, ``frame`` or ``color``."""
+        """Return the value of a ``string``, ``enum``, ``frame`` or ``color``."""
         return str(self.get(*path))
 
     def check(self, path: Path, value: object) -> None:
-        """Raise what `set` would raise, and store nothing."""
+        """Raise the errors of `set`, without storing a value."""
         accept(self._spec(path), value)
 
     def set(self, path: Path, value: object) -> PropertyValue:
@@ -97,7 +97,7 @@ class PropertyStore:
         return taken
 
     def tell(self, path: Path, value: PropertyValue) -> bool:
-        """Set a value that is not written into the file, as of a read-only property; returns whether it is new.
+        """Set a value that the file does not store, as of a read-only property; returns whether it is new.
 
         Raises:
             KeyError: when the schema has no such property.
@@ -110,7 +110,7 @@ class PropertyStore:
 
     @contextmanager
     def recording(self) -> Iterator[list[Memory]]:
-        """Collects what the file had for the properties set inside the block, for `recall`."""
+        """Collect the file's entries for the properties set inside the block, for `recall`."""
         memories: list[Memory] = []
         self._recorded = memories
         try:
@@ -119,11 +119,11 @@ class PropertyStore:
             self._recorded = None
 
     def memories(self, of: Iterable[Memory]) -> list[Memory]:
-        """The present state of the keys that other memories are about."""
+        """Return the present state of the keys of other memories."""
         return [self._place().memory(memory.key) for memory in of]
 
     def recall(self, memories: Iterable[Memory]) -> list[Path]:
-        """Restore what the file had; returns the paths of the values that changed."""
+        """Restore entries of the file; returns the paths of the values that changed."""
         keys = {memory.key for memory in memories}
         place = self._place()
         for memory in memories:
@@ -135,7 +135,7 @@ class PropertyStore:
         return [path for path, value in old.items() if self.get(*path) != value]
 
     def find(self, identity: str) -> Path | None:
-        """The path of the property with an id, or None."""
+        """Return the path of the property with an id, or None."""
         specs = self._schema()
         owner, *names = identity.split("/")
         path = tuple(name.replace("%2F", "/").replace("%25", "%") for name in names)
@@ -149,19 +149,19 @@ class PropertyStore:
         return path
 
     def identity(self, path: Path) -> str:
-        """The id of the property at a path."""
+        """Return the id of the property at a path."""
         return property_id(self._owner, path)
 
     def rows(self) -> list[Property]:
-        """The rows for the page."""
+        """Return the rows for the page."""
         return [self._row(spec, ()) for spec in self._schema() if self._shown(spec)]
 
     def is_condition(self, path: Path) -> bool:
-        """Whether the value at a path decides which other rows are shown."""
+        """Return whether the value at a path decides which other rows are shown."""
         return any(_depends(spec, path) for spec in self._schema())
 
     def frame_changes(self) -> list[PropertyChanged]:
-        """The properties whose value is the name of a frame, with the frames offered now."""
+        """Return the properties whose value is the name of a frame, with the frames offered now."""
         return [
             PropertyChanged(self.identity((spec.name,)), self.get(spec.name), self._frames())
             for spec in self._schema()
@@ -169,7 +169,7 @@ class PropertyStore:
         ]
 
     def offer_frames(self, frames: Callable[[], list[str]]) -> None:
-        """Set the function that gives the frame names offered for properties of kind ``frame``."""
+        """Set the function that returns the frame names offered for properties of kind ``frame``."""
         self._frames = frames
 
     def _row(self, spec: PropertySpec, above: Path) -> Property:
@@ -240,11 +240,11 @@ class PropertyStore:
         self._place().put(path, text, string=string, nested=nested)
 
     def _former_key(self, path: Path) -> FormerKey | None:
-        """The key under which RViz 1 kept a value, unless the file has it under the present key."""
+        """Return the key under which RViz 1 kept a value, unless the file has the present key."""
         return self._former.get(path) if self._section.scalar(*self._base, *path) is None else None
 
     def _place(self) -> Section:
-        """The mapping with the values, made where it is missing."""
+        """Return the mapping with the values, created if it is missing."""
         place, made = make_section(self._section, *self._base)
         self._made += made
         return place
@@ -254,14 +254,14 @@ class PropertyStore:
         return former.key if former else path[0]
 
     def _is_kept(self, path: Path) -> bool:
-        """Whether there is such a property, and the file has it."""
+        """Return whether there is such a property, and the file has it."""
         try:
             return not self._spec(path).read_only
         except KeyError:
             return False
 
     def _named(self, specs: Schema, name: str) -> PropertySpec | None:
-        """The first property of that name; an index finds it among many, such as the links of a robot."""
+        """Return the first property of that name; an index finds it among many, such as the links of a robot."""
         if len(specs) < _MANY:
             return next((spec for spec in specs if spec.name == name), None)
         if self._many[0] is not specs:
@@ -287,12 +287,12 @@ def _depends(spec: PropertySpec, path: Path) -> bool:
 
 
 def qos_of(properties: PropertyStore, name: str = "Topic", *, lasting: bool | None = None) -> QoSProfile:
-    """The quality of service that a Topic property asks for.
+    """Return the quality of service that a Topic property requests.
 
     Args:
         properties: the display's properties.
         name: the name of the property.
-        lasting: whether messages published before count too, whatever the property says.
+        lasting: whether to receive messages that were published before, whatever the property says.
     """
     get = properties.text
     keep_all = get(name, "History Policy") == "Keep All"

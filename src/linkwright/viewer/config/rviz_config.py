@@ -1,4 +1,4 @@
-"""RViz's configuration files (``.rviz``): read, kept whole, changed in place, written back."""
+"""RViz's configuration files (``.rviz``): read, preserved, changed in place, written back."""
 
 from __future__ import annotations
 
@@ -30,16 +30,18 @@ GLOBAL_OPTIONS = (
         "Fixed Frame",
         "frame",
         "base_link",
-        "The frame that stands still: everything is drawn where it is in this frame.",
+        "The reference frame of the scene: everything is drawn at its pose in this frame.",
     ),
     PropertySpec(
         "Backdrop",
         "enum",
         "Color",
-        "What is behind the scene: one colour, as in RViz, or a sky and a ground in the colours of the page's theme.",
+        "The background: one colour, as in RViz, or a sky and a ground in the colours of the page's theme.",
         options=("Color", "Sky and Ground"),
     ),
-    PropertySpec("Background Color", "color", "#303030", "The colour behind the scene.", when=(("Backdrop",), "Color")),
+    PropertySpec(
+        "Background Color", "color", "#303030", "The background colour of the scene.", when=(("Backdrop",), "Color")
+    ),
     PropertySpec(
         "Frame Rate",
         "int",
@@ -52,16 +54,16 @@ GLOBAL_OPTIONS = (
         "Light",
         "enum",
         "Camera",
-        "What lights the scene: the camera, as in RViz, or a studio, with shadows on the ground. Automatic: the studio "
-        "where a graphics card draws and keeps up, else a soft light at the camera. A simulated world is lit as its "
-        "display says.",
+        "The lights of the scene: one at the camera, as in RViz, or a studio, with shadows on the ground. Automatic: "
+        "the studio if a graphics card draws fast enough, else a soft light at the camera. The display of a simulated "
+        "world has a setting of its own.",
         options=("Automatic", "Camera", "Studio"),
     ),
 )
 
 _MANAGER = "Visualization Manager"
 _OTHER_KEYS = ("Panels", "Toolbars", "Window Geometry")
-"""A file with one of these is a configuration, if one without displays."""
+"""A file with one of these is a configuration, even one without displays."""
 _OWN_PREFIX = "rviz_default_plugins/"
 
 _DEFAULT = """\
@@ -120,7 +122,7 @@ class DisplayConfig:
         report: called with entries below it that cannot be used.
 
     Attributes:
-        cls: RViz 2's name of its class, also where the file says it as RViz 1 did.
+        cls: RViz 2's name of its class, even if the file has RViz 1's.
         displays: the displays of a group.
         identity: its id in pages; empty until it has one.
     """
@@ -142,7 +144,7 @@ class DisplayConfig:
 
     @property
     def is_group(self) -> bool:
-        """Whether it holds displays instead of drawing something."""
+        """Whether it contains displays instead of drawing."""
         return self.cls == GROUP
 
     @property
@@ -157,7 +159,7 @@ class DisplayConfig:
 
     @property
     def checked(self) -> bool:
-        """The display's own enable box: ``Enabled``, else ``Value``; without both it is off, as in RViz."""
+        """The display's own check box: ``Enabled``, else ``Value``; without both it is off, as in RViz."""
         text = self.section.text("Enabled")
         if text is None:
             text = self.section.text("Value")
@@ -173,7 +175,7 @@ class DisplayConfig:
 
     @property
     def box(self) -> list[Memory]:
-        """The values of the keys of the enable box, for `recall`."""
+        """The values of the keys of the check box, for `recall`."""
         return [self.section.memory(key) for key in _BOX]
 
     @box.setter
@@ -183,11 +185,11 @@ class DisplayConfig:
 
     @property
     def enabled(self) -> bool:
-        """Whether it is drawn: its box and those of the groups around it are on."""
+        """Whether it is drawn: its check box and those of the groups around it are on."""
         return self.checked and (self.group is None or self.group.enabled)
 
     def walk(self) -> Iterator[DisplayConfig]:
-        """The display and all that it holds, each group before its content."""
+        """Yield the display and its descendants, each group before its content."""
         yield self
         for display in self.displays:
             yield from display.walk()
@@ -196,7 +198,7 @@ class DisplayConfig:
 def read_displays(
     parent: Section, group: DisplayConfig | None, report: Callable[[Diagnostic], None]
 ) -> list[DisplayConfig]:
-    """The entries of ``Displays`` in a section; those without a class are reported (RVIZ202) and left alone."""
+    """Return the entries of ``Displays`` in a section; those without a class are reported (RVIZ202) and ignored."""
     displays = []
     for section in parent.sections(_KEY):
         if section.scalar("Class") is None:
@@ -208,14 +210,14 @@ def read_displays(
 
 
 def place(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig], index: int) -> None:
-    """Put an entry among those of a parent, in the file too."""
+    """Insert an entry among those of a parent, in the file too."""
     before = siblings[index].section if index < len(siblings) else None
     yaml_tree.insert_section(parent, _KEY, display.section, before)
     siblings.insert(index, display)
 
 
 def displace(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig]) -> None:
-    """Take an entry out from among those of a parent, in the file too."""
+    """Remove an entry from those of a parent, in the file too."""
     yaml_tree.remove_section(parent, _KEY, display.section)
     siblings.remove(display)
 
@@ -225,7 +227,7 @@ _MODEL_DISPLAYS: tuple[tuple[str, dict[str, str]], ...] = (
     ("TF", {}),
 )
 _MODEL_GRID = {"Alpha": "0.6", "Color": "136; 142; 150", "Plane Cell Count": "20"}
-"""Lines that are seen on the grounds of both themes, and reach so far that nobody sees them end."""
+"""Lines that are visible on the grounds of both themes, and reach beyond the visible area."""
 _MODEL_DISTANCE = 3.0
 _MODEL_PITCH = 0.5
 """A view from a little above: a standing robot hides less of itself than from RViz's 45 degrees."""
@@ -242,9 +244,9 @@ class Arrangement:
 class RvizConfig:
     """A configuration file.
 
-    What this program does not know is kept and written back: keys, their order, Qt's window state, displays of other
-    classes. Missing keys have RViz's defaults and stay missing until they are set. A file in which nothing was
-    changed is written back to the letter; from one that was, comments go, as in RViz.
+    Keys, their order, Qt's window state and displays of classes that are unknown to this program are kept and written
+    back. Missing keys have RViz's defaults and stay missing until they are set. A file without changes is written back
+    to the letter; a changed file loses its comments, as in RViz.
 
     Attributes:
         path: the file it was read from or saved to, or None.
@@ -271,7 +273,7 @@ class RvizConfig:
             self.warnings.append,
             base=(_MANAGER, "Global Options"),
         )
-        self.options.rows()  # so that all warnings are there from the start
+        self.options.rows()  # before any access, so that all warnings are known from the start
         self.displays: list[DisplayConfig] = read_displays(
             document.section(_MANAGER) or yaml_tree.new_section(document.source), None, self.warnings.append
         )
@@ -286,7 +288,7 @@ class RvizConfig:
         """Read a file.
 
         Raises:
-            LinkwrightError: RVIZ101, it cannot be read; RVIZ102, it is not YAML; RVIZ103, it is no such configuration.
+            LinkwrightError: RVIZ101, it cannot be read; RVIZ102, it is not YAML; RVIZ103, it is not a configuration.
         """
         path = Path(path)
         text, form = configuration_file.read(path)
@@ -296,33 +298,35 @@ class RvizConfig:
     def parse(
         cls, text: str, name: str = "<rviz>", path: Path | None = None, form: FileForm | None = None
     ) -> RvizConfig:
-        """Read a text; `name` is what messages call it.
+        """Read a text; `name` is its name in messages.
 
         Raises:
-            LinkwrightError: RVIZ102, it is not YAML; RVIZ103, it is no such configuration.
+            LinkwrightError: RVIZ102, it is not YAML; RVIZ103, it is not a configuration.
         """
         document = yaml_tree.parse(text, name)
         if document.section(_MANAGER) is None and not set(_OTHER_KEYS) & set(document.keys()):
-            message = phrase("'{name}' is no RViz configuration: it has no '{manager}'", name=name, manager=_MANAGER)
+            message = phrase(
+                "'{name}' is not an RViz configuration: it has no '{manager}'", name=name, manager=_MANAGER
+            )
             raise LinkwrightError(Diagnostic("RVIZ103", message, document.span(), source=document.source))
         return cls(document, path, form)
 
     @classmethod
     def default(cls) -> RvizConfig:
-        """The configuration of RViz without a file: a Grid, Fixed Frame ``map``."""
+        """Return RViz's configuration without a file: a Grid, Fixed Frame ``map``."""
         return cls.parse(_DEFAULT, "<default>")
 
     @classmethod
     def for_model(
         cls, fixed_frame: str, *, size: ModelSize | None = None, frames: bool = True, name: str = "<model>"
     ) -> RvizConfig:
-        """Grid, RobotModel and TF about one robot.
+        """Return a configuration with Grid, RobotModel and TF for one robot.
 
         Args:
             fixed_frame: the Fixed Frame, usually the robot's root link.
-            size: the size of the robot, for grid and axes; None leaves them as RViz has them.
-            frames: whether TF is switched on; it covers a robot that has visuals.
-            name: the name of the model's file, under which unsaved edits are kept.
+            size: the size of the robot, for grid and axes; None for RViz's defaults.
+            frames: whether TF is enabled; it covers a robot that has visuals.
+            name: the name of the model's file, under which unsaved edits are stored.
         """
         config = cls.parse(_DEFAULT, name)
         for name, values in _MODEL_DISPLAYS:
@@ -347,14 +351,14 @@ class RvizConfig:
         return config
 
     def propose_view(self, values: Mapping[str, Any]) -> None:
-        """Set values of the view until a page has drawn what there is, and puts the camera where all of it is seen."""
+        """Set values of the view until a page has drawn the scene, and fits the camera to it."""
         view = self.views.current
         view.values |= values
         self.views.current = view
         self._unchosen_view = self.views.current
 
     def follow(self, frame: str, distance: float) -> None:
-        """Make the view follow a frame, with grid and axes of RViz's size: for a robot that drives about.
+        """Make the view follow a frame, with grid and axes of RViz's size: for a mobile robot.
 
         Args:
             frame: the robot's frame.
@@ -367,28 +371,28 @@ class RvizConfig:
 
     @property
     def shows_whole_robot(self) -> bool:
-        """Whether nobody has said yet where the camera is: pages put it where they see all of the robot."""
+        """Whether the user has not chosen a view yet: pages then fit the camera to the robot."""
         return self._unchosen_view == self.views.current
 
     @property
     def awaits_size(self) -> bool:
-        """Whether `sizes_for` still has something to say: no page has drawn the robot that grid and axes are for."""
+        """Whether `sizes_for` still has sizes to set: no page has measured the robot for grid and axes yet."""
         return self._proposed is not None
 
     @property
     def spacing(self) -> float | None:
-        """The usual distance of a link's frame from its parent's, m, while `awaits_size`; None where unknown."""
+        """The usual distance of a link's frame from its parent's, m, while `awaits_size`; None if unknown."""
         size = None if self._proposed is None else self._proposed.size
         return None if size is None else size.spacing
 
     def sizes_for(self, diagonal: float, ground: float = 0.0) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-        """New values for grid and axes that were made for a robot of unknown meshes: display, property, value.
+        """Return new values for the default grid and axes of a robot whose size was unknown: display, property, value.
 
-        Only once, and only what nobody has changed since.
+        Only once, and only for properties that the user has not changed since.
 
         Args:
             diagonal: the diagonal of the robot's bounding box, m.
-            ground: the height of the ground that it stands on, in the Fixed Frame, m.
+            ground: the height of the ground below the robot, in the Fixed Frame, m.
         """
         proposed, self._proposed = self._proposed, None
         if proposed is None or not isfinite(diagonal + ground) or diagonal <= 0:
@@ -396,7 +400,7 @@ class RvizConfig:
         return proposed.mended(diagonal, ground)
 
     def copy(self) -> RvizConfig:
-        """A copy that belongs to no file."""
+        """Return a copy that has no file."""
         copied = RvizConfig.parse(self.text(), self.document.source.name)
         copied._unchosen_view = self._unchosen_view
         if self._proposed is not None:
@@ -406,12 +410,12 @@ class RvizConfig:
     # --- displays ----------------------------------------------------------------------------------------------
 
     def walk(self) -> Iterator[DisplayConfig]:
-        """Every display, each group before its content."""
+        """Yield every display, each group before its content."""
         for display in self.displays:
             yield from display.walk()
 
     def make(self, cls: str, name: str) -> DisplayConfig:
-        """A display that is enabled and has the defaults of its class; `insert` puts it into the file."""
+        """Return an enabled display with the defaults of its class; `insert` puts it into the file."""
         section = yaml_tree.new_section(self.document.source)
         section.put(("Class",), cls, string=True)
         section.put(("Enabled",), "true")
@@ -421,14 +425,14 @@ class RvizConfig:
         return DisplayConfig(section, None)
 
     def duplicate(self, display: DisplayConfig) -> DisplayConfig:
-        """A copy of a display's entry; `insert` puts it into the file."""
+        """Return a copy of a display's entry; `insert` puts it into the file."""
         return DisplayConfig(yaml_tree.copy_section(display.section), None)
 
     def insert(self, display: DisplayConfig, group: DisplayConfig | None = None, index: int | None = None) -> None:
-        """Put a display into a group, or among the outermost: in front of the one with an index, or last.
+        """Insert a display into a group, or at the top level: before the display at an index, or last.
 
         Raises:
-            ValueError: when that place is no group, or inside of the display itself.
+            ValueError: the target is not a group, or is inside the display itself.
         """
         if group is not None and (not group.is_group or group in display.walk()):
             raise ValueError(f"'{display.name}' cannot be put into '{group.name}'")
@@ -437,15 +441,15 @@ class RvizConfig:
         display.group = group
 
     def remove(self, display: DisplayConfig) -> None:
-        """Take a display out of the file."""
+        """Remove a display from the file."""
         displace(display, self._parent(display.group), self.siblings(display.group))
 
     def make_group(self, name: str) -> DisplayConfig:
-        """A group that holds nothing; `insert` puts it into the file."""
+        """Return an empty group; `insert` puts it into the file."""
         return self.make(GROUP, name)
 
     def arrangement(self) -> Arrangement:
-        """The present arrangement, for `arrange`."""
+        """Return the present arrangement, for `arrange`."""
         groups = [None, *(display for display in self.walk() if display.is_group)]
         return Arrangement(
             {group: list(self.siblings(group)) for group in groups},
@@ -462,7 +466,7 @@ class RvizConfig:
         self._made = yaml_tree.unmake(self._made)
 
     def siblings(self, group: DisplayConfig | None) -> list[DisplayConfig]:
-        """The displays in a group; the outermost displays for None."""
+        """Return the displays in a group, or those at the top level for None."""
         return self.displays if group is None else group.displays
 
     def _remember(self, group: DisplayConfig | None) -> SequenceMemory:
@@ -470,7 +474,7 @@ class RvizConfig:
         return yaml_tree.remember_sequence(holder, "Displays") if holder is not None else SequenceMemory(None, None)
 
     def _parent(self, group: DisplayConfig | None) -> Section:
-        """The section that has ``Displays``; that of the outermost is made where it is missing."""
+        """Return the section that has ``Displays``; that of the top level is created if it is missing."""
         if group is not None:
             return group.section
         manager, made = yaml_tree.make_section(self.document, _MANAGER)
@@ -480,17 +484,17 @@ class RvizConfig:
     # --- file --------------------------------------------------------------------------------------------------
 
     def text(self) -> str:
-        """The file's text with the values set so far."""
+        """Return the file's text with the values set so far."""
         source = self.document.source
         if yaml_tree.same(self.document, yaml_tree.parse(source.text, source.name)):
             return source.text
         return yaml_tree.write(self.document).replace("\n", self._form.newline)
 
     def save(self, path: str | Path | None = None) -> None:
-        """Write to a file, by default the one it came from, which it is from then on.
+        """Write to a file, by default the present one, which is the configuration's file from then on.
 
         Raises:
-            ValueError: when it came from none and none is given.
+            ValueError: it has no file and `path` is None.
             LinkwrightError: RVIZ104, the file cannot be written.
         """
         target = Path(path) if path is not None else self.path
@@ -502,7 +506,7 @@ class RvizConfig:
 
     @property
     def changed_on_disk(self) -> bool:
-        """Whether another program has changed the file since it was read or saved."""
+        """Return whether another program has changed the file since it was read or saved."""
         return self.path is not None and configuration_file.state_of(self.path) not in (self._state, None)
 
 
@@ -516,13 +520,13 @@ class _Proposed:
         self._texts = {path: display.section.text(*path) for display, path, _ in found}
 
     def mended(self, diagonal: float, ground: float) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-        """The values that should be different, and were not changed since."""
+        """Return the values that should be different, and were not changed since."""
         spacing = diagonal if self.size is None else self.size.spacing
         found = _sizes(self._displays, ModelSize(diagonal, spacing), ground)
         return [each for each in found if each[0].section.text(*each[1]) == self._texts[each[1]]]
 
     def among(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _Proposed | None:
-        """The proposal for copies of the displays; None where one has gone."""
+        """Return the proposal for copies of the displays, or None if one is gone."""
         found = [copies[display] for display in self._displays if display in copies]
         return _Proposed(found, self.size) if len(found) == len(self._displays) else None
 
@@ -533,7 +537,7 @@ _ANY_SIZE = ModelSize(1.0, 1.0)
 def _sizes(
     displays: Sequence[DisplayConfig], size: ModelSize, ground: float = 0.0
 ) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-    """The values for displays of `RvizConfig.for_model` by a robot's size and ground: display, property, value."""
+    """Return values for displays of `RvizConfig.for_model` by a robot's size and ground: display, property, value."""
     grid, _, tf = displays
     offset = [(grid, ("Offset", "Z"), round(ground, 4))] if ground else []
     return [(grid, ("Cell Size",), size.cell), (tf, ("Marker Scale",), size.marker_scale), *offset]

@@ -1,7 +1,7 @@
-"""Properties declared once: names, kinds, defaults and bounds, and the validation of values.
+"""Property declarations: names, kinds, defaults and bounds, and the validation of values.
 
-From a `PropertySpec` come the row of the page, the reading and writing of the .rviz file, and the checks of what the
-page sends. Names and defaults are RViz's; so is clamping a number into its bounds.
+From a `PropertySpec` come the row of the page, the reading and writing of the .rviz file, and the checks of the
+page's values. Names and defaults are RViz's; so is clamping a number into its bounds.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from linkwright.viewer.protocol.displays import PropertyKind, PropertyValue, Row
 Path = tuple[str, ...]
 
 FIXED_FRAME = "<Fixed Frame>"
-"""Stands for whatever the Fixed Frame is, where RViz asks for a frame."""
+"""The value of a frame property that refers to the Fixed Frame, as in RViz."""
 
 MAXIMUM_TEXT = 4096
-"""Longest string taken from a page, characters."""
+"""Longest string accepted from a page, characters."""
 
 _HEX_COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
 _SHORT_COLOUR = re.compile(r"#[0-9a-fA-F]{3}")
@@ -43,13 +43,13 @@ class PropertySpec:
         options: the values of an ``enum``.
         minimum: of an ``int`` or ``float``, inclusive.
         maximum: of an ``int`` or ``float``, inclusive.
-        messages: of a ``topic``, the types of those offered; none for those of the display.
-        words: of a ``topic``, parts of the names of those offered, in lower case; none for any name.
+        messages: of a ``topic``, the types of the topics offered; by default those of the display.
+        words: of a ``topic``, parts of the names of the topics offered, in lower case; by default any name.
         children: the rows below it.
         when: path within the display and value of the property that must hold for this row to be shown; the conditions
             of that property must hold too.
-        expanded: whether its children show at the start.
-        nested: whether the file keeps its value under ``Value``, because it has parts there.
+        expanded: whether its children are shown at the start.
+        nested: whether the file stores its value under ``Value``, because it has children there.
         hidden: whether it has a value in the file but no row, as properties that RViz hides.
         read_only: whether only the program sets it; the file does not have it.
         details: the subject of read-only rows that pages add below it, see `Property`.
@@ -77,30 +77,30 @@ Schema = tuple[PropertySpec, ...]
 
 
 def vector(name: str, description: str) -> PropertySpec:
-    """Three floats X, Y, Z in metres, 0 by default, as RViz's VectorProperty stores them."""
+    """Return a property of three floats X, Y, Z in metres, 0 by default, in the form of RViz's VectorProperty."""
     return PropertySpec(
         name, "group", description=description, children=tuple(PropertySpec(axis, "float", 0.0) for axis in "XYZ")
     )
 
 
 BILLBOARDS = (("Line Style",), "Billboards")
-"""The condition of properties of lines that have a width."""
+"""The condition for the width of lines."""
 
 
 def alpha(
     description: str = "Opacity: 0 is invisible.", default: float = 1.0, when: tuple[Path, str] | None = None
 ) -> PropertySpec:
-    """The opacity of what a display draws."""
+    """Return the property for a display's opacity."""
     return PropertySpec("Alpha", "float", default, description, minimum=0.0, maximum=1.0, when=when)
 
 
 def length(name: str, default: float, description: str, when: tuple[Path, str] | None = None) -> PropertySpec:
-    """A length in metres."""
+    """Return a property for a length in metres."""
     return PropertySpec(name, "float", default, description, when=when)
 
 
 def line_style(*children: PropertySpec) -> PropertySpec:
-    """Whether lines are thin or have a width."""
+    """Return a property for the style of lines, thin or with a width."""
     return PropertySpec(
         "Line Style",
         "enum",
@@ -112,15 +112,15 @@ def line_style(*children: PropertySpec) -> PropertySpec:
 
 
 def line_width() -> PropertySpec:
-    """The width of lines that have one."""
+    """Return a property for the width of lines."""
     return PropertySpec("Line Width", "float", 0.03, "Width of the lines, in metres.", minimum=0.001, when=BILLBOARDS)
 
 
 def accept(spec: PropertySpec, value: object) -> PropertyValue:
-    """The value to store for one that a page sent: of the kind's type, clamped into the bounds.
+    """Return the value to store for one that a page sent: converted to the kind's type and clamped to the bounds.
 
     Raises:
-        ValueError: the property takes no such value; the text says what is expected.
+        ValueError: the property does not accept it; the text states the expected value.
     """
     if spec.read_only:
         raise ValueError("only the program sets it")
@@ -137,29 +137,29 @@ def accept(spec: PropertySpec, value: object) -> PropertyValue:
 
 
 def from_text(spec: PropertySpec, text: str) -> PropertyValue:
-    """The value that a scalar of a .rviz file stands for.
+    """Return the value that a scalar of a .rviz file represents.
 
     Raises:
-        ValueError: when it stands for none; the text says what is expected.
+        ValueError: it represents none; the text states the expected value.
     """
     return accept(spec, _converted(spec, text.strip()))
 
 
 def in_place_of(spec: PropertySpec) -> PropertyValue:
-    """The value to use where the text in a file cannot be read: true for a box, as in RViz, else the default.
+    """Return the value for an unreadable text in a file: true for a box, as in RViz, else the default.
 
-    To Qt, and so to RViz, every text is true but ``false``, ``0`` and none: ``no`` and ``off`` are.
+    To Qt, and so to RViz, every text is true except ``false``, ``0`` and an empty one: ``no`` is true.
     """
     return True if spec.kind == "bool" else spec.default
 
 
 def is_on(text: str) -> bool:
-    """Whether the text of a box in a file means true to RViz, see `in_place_of`."""
+    """Return whether the text of a box in a file means true to RViz, see `in_place_of`."""
     return _BOOLEANS.get(text.strip().lower(), True)
 
 
 def to_text(spec: PropertySpec, value: PropertyValue) -> str:
-    """The spelling of a value in a .rviz file."""
+    """Return the spelling of a value in a .rviz file."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):
@@ -174,7 +174,7 @@ def to_text(spec: PropertySpec, value: PropertyValue) -> str:
 _EXPECTED = {
     "group": phrase("no value is expected"),
     "bool": phrase("true or false is expected"),
-    "int": phrase("a whole number is expected"),
+    "int": phrase("an integer is expected"),
     "float": phrase("a finite number is expected"),
     "string": phrase("a text of at most {maximum_text} characters is expected", maximum_text=MAXIMUM_TEXT),
     "color": "a colour such as #a0a0a4 is expected",
@@ -220,7 +220,7 @@ def _number(spec: PropertySpec, value: object) -> int | float | None:
 
 
 def _converted(spec: PropertySpec, text: str) -> object:
-    """The value that Qt makes of a spelling for RViz, or the text itself for `accept` to refuse."""
+    """Return the value that Qt reads from a spelling for RViz, or the text itself for `accept` to refuse."""
     kind = spec.kind
     if kind == "bool":
         return _BOOLEANS.get(text.lower(), text)
@@ -233,19 +233,19 @@ def _converted(spec: PropertySpec, text: str) -> object:
 
 def _spelt_number(spec: PropertySpec, text: str) -> object:
     if "_" in text or not text.isascii():
-        return text  # numbers to Python, not to Qt
+        return text  # valid numbers in Python, but not in Qt
     try:
         number = float(text.replace(".", "", 1) if _YAML_NUMBER.fullmatch(text) else text)
     except ValueError:
         return text
     if math.isnan(number):
-        return spec.default  # RViz writes one when its camera was lost, and would draw nothing with it
+        return spec.default  # RViz writes one after its camera was lost, and would draw nothing with it
     return number if math.isfinite(number) else math.copysign(_INFINITE, number)
 
 
 def _spelt_colour(text: str) -> str:
     found = _RVIZ_COLOUR.fullmatch(text)
-    if found:  # a fourth part, as of an alpha, is passed over
+    if found:  # a fourth part, such as an alpha, is ignored
         return "#" + "".join(f"{min(max(int(part), 0), 255):02x}" for part in found.groups()[:3])
     if _SHORT_COLOUR.fullmatch(text):
         return "#" + "".join(2 * digit for digit in text[1:])
@@ -253,7 +253,7 @@ def _spelt_colour(text: str) -> str:
         import webcolors  # type: ignore[import-untyped]  # it ships no types; here, because names are rare
 
         with suppress(ValueError):
-            return str(webcolors.name_to_hex(text))  # knows the names that Qt knows: those of SVG
+            return str(webcolors.name_to_hex(text))  # has the names that Qt has: those of SVG
     return text
 
 
@@ -269,44 +269,44 @@ FILTER_SIZE = "Filter size"
 def topic_spec(
     name: str = "Topic",
     default: str = "",
-    description: str = "The topic to listen to.",
+    description: str = "The topic to subscribe to.",
     *,
     depth: int = 5,
     durability: str = "Volatile",
     reliability: str = "Reliable",
     filter_size: int | None = None,
-    durability_help: str = "Whether a message published before counts too.",
+    durability_help: str = "Whether to receive messages that were published before.",
     when: tuple[Path, str] | None = None,
     messages: tuple[str, ...] = (),
 ) -> PropertySpec:
-    """The property with its parts.
+    """Return the property of a topic with its quality of service.
 
     Args:
         name: the name of the property.
         default: topic.
         description: the tooltip.
-        depth: RViz's default for how many messages may wait.
+        depth: RViz's default for the queue size.
         durability: RViz's default.
         reliability: RViz's default.
-        filter_size: default of how many messages wait for their transforms; None where they need none.
+        filter_size: default number of messages that wait for transforms; None if they need none.
         durability_help: the tooltip of ``Durability Policy``.
         when: as `PropertySpec.when`.
         messages: as `PropertySpec.messages`.
     """
     children = [
-        PropertySpec("Depth", "int", depth, "How many messages may wait.", minimum=1, maximum=1000),
+        PropertySpec("Depth", "int", depth, "The size of the message queue.", minimum=1, maximum=1000),
         PropertySpec(
             "History Policy",
             "enum",
             "Keep Last",
-            "Whether only the last messages wait, or all.",
+            "Whether the queue keeps only the last messages, or all.",
             options=("Keep Last", "Keep All", SYSTEM_DEFAULT),
         ),
         PropertySpec(
             "Reliability Policy",
             "enum",
             reliability,
-            "Whether every message must arrive.",
+            "Whether every message must arrive, or may be lost.",
             options=("Reliable", "Best Effort", SYSTEM_DEFAULT),
         ),
         PropertySpec(
@@ -323,7 +323,7 @@ def topic_spec(
                 FILTER_SIZE,
                 "int",
                 filter_size,
-                "How many messages may wait for their transforms.",
+                "The number of messages that may wait for their transforms.",
                 minimum=1,
                 maximum=1000,
             )

@@ -1,4 +1,4 @@
-"""The display of a simulated world, and the topics on which a simulation tells what is in it."""
+"""The display of a simulated world, and the topics with which a simulation describes the world."""
 
 from __future__ import annotations
 
@@ -7,4 +7,4 @@ __all__ = ["DESCRIPTION_TOPIC", "POSES_TOPIC", "RAYS_TOPIC", "WORLD_DISPLAY"]
 WORLD_DISPLAY = "linkwright/World"
 """The class of the display."""
 DESCRIPTION_TOPIC, POSES_TOPIC, RAYS_TOPIC = "/world_description", "/world_poses", "/world_rays"
-"""The world as SDF, the poses of its links, and what its lidars measure."""
+"""The world as SDF, the poses of its links, and the measurements of its lidars."""

@@ -1,6 +1,6 @@
-"""RViz's tools: the properties of each class, declared once, and the tools of a .rviz file.
+"""RViz's tools: the properties of each class, and the tools of a .rviz file.
 
-What a tool does with the mouse is the page's: `frontend/src/scene/tools`. Names, topics and defaults are RViz's
+How a tool uses the mouse is the page's part: `frontend/src/scene/tools`. Names, topics and defaults are RViz's
 (rviz_default_plugins) and nav2's (nav2_rviz_plugins).
 """
 
@@ -23,10 +23,10 @@ class ToolKind:
     """A class of tools.
 
     Attributes:
-        name: on its button, as RViz names it.
+        name: the label of its button, as in RViz.
         schema: its properties.
-        publishes: the type of what it publishes on its ``Topic``; None for one that publishes nothing.
-        action: the name and the type of an action that it sends goals to; None for none.
+        publishes: the type of the messages that it publishes on its ``Topic``; None for a tool that publishes nothing.
+        action: the name and the type of the action that it sends goals to; None for no action.
     """
 
     name: str
@@ -36,7 +36,7 @@ class ToolKind:
 
 
 def _topic(default: str, description: str) -> PropertySpec:
-    """A Topic to publish to, with its quality of service; any name will do, not only one that is there."""
+    """Return a Topic to publish to, with its quality of service; it need not exist yet."""
     return replace(topic_spec(default=default, description=description), kind="string")
 
 
@@ -48,7 +48,7 @@ TOOL_KINDS: dict[str, ToolKind] = {
                 "Hide Inactive Objects",
                 "bool",
                 True,
-                "While an interactive marker is held, those beside it are not shown.",
+                "Hide the other interactive markers while one is dragged.",
             ),
         ),
     ),
@@ -61,7 +61,7 @@ TOOL_KINDS: dict[str, ToolKind] = {
     "rviz_default_plugins/SetInitialPose": ToolKind(
         "2D Pose Estimate",
         (
-            _topic("/initialpose", "Where pose estimates are published."),
+            _topic("/initialpose", "The topic to publish pose estimates to."),
             PropertySpec("Covariance x", "float", 0.25, "Covariance along x, in square metres.", minimum=0.0),
             PropertySpec("Covariance y", "float", 0.25, "Covariance along y, in square metres.", minimum=0.0),
             PropertySpec(
@@ -75,13 +75,13 @@ TOOL_KINDS: dict[str, ToolKind] = {
         "geometry_msgs/msg/PoseWithCovarianceStamped",
     ),
     "rviz_default_plugins/SetGoal": ToolKind(
-        "2D Goal Pose", (_topic("/goal_pose", "Where goals are published."),), "geometry_msgs/msg/PoseStamped"
+        "2D Goal Pose", (_topic("/goal_pose", "The topic to publish goals to."),), "geometry_msgs/msg/PoseStamped"
     ),
     "rviz_default_plugins/PublishPoint": ToolKind(
         "Publish Point",
         (
-            _topic("/clicked_point", "Where points are published."),
-            PropertySpec("Single click", "bool", True, "One click, and the default tool is in hand again."),
+            _topic("/clicked_point", "The topic to publish points to."),
+            PropertySpec("Single click", "bool", True, "Return to the default tool after one click."),
         ),
         "geometry_msgs/msg/PointStamped",
     ),
@@ -94,7 +94,7 @@ USUAL_TOOLS = tuple(cls for cls in TOOL_KINDS if cls.startswith("rviz_default_pl
 
 
 def tool_name(cls: str) -> str:
-    """The label of a tool's button: for an unknown class its name with spaces, as RViz does."""
+    """Return the label of a tool's button: for an unknown class its name with spaces, as in RViz."""
     kind = TOOL_KINDS.get(cls)
     return kind.name if kind else re.sub(r"(?<!^)(?=[A-Z])", " ", cls.rpartition("/")[2])
 
@@ -103,7 +103,7 @@ _MANAGER = "Visualization Manager"
 _TOOLS = "Tools"
 
 MAXIMUM_TOOLS = 100
-"""Most tools; each may have a publisher, and a page may add no more."""
+"""Most tools that pages may add; each may have a publisher."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,8 +112,8 @@ class ToolEntry:
 
     Attributes:
         id: stable while the file is open.
-        cls: RViz 2's name of its class, also where the file says it as RViz 1 did.
-        section: its part of the file; of a class that is not known it is kept as it is.
+        cls: RViz 2's name of its class, even if the file has RViz 1's.
+        section: its part of the file; that of an unknown class is kept unchanged.
         properties: its values.
     """
 
@@ -124,7 +124,7 @@ class ToolEntry:
 
 
 class ToolsConfig:
-    """``Tools`` of a file. Where it lists none there are RViz's usual ones, and the file lists none until one changes.
+    """``Tools`` of a file. If it lists none, RViz's default ones apply, which the file lists after the first change.
 
     Args:
         document: the file.
@@ -151,7 +151,7 @@ class ToolsConfig:
         return list(self._entries.values())
 
     def find(self, identity: str) -> ToolEntry | None:
-        """The tool with an id, or None."""
+        """Return the tool with an id, or None."""
         return self._entries.get(identity)
 
     def add(self, cls: str) -> ToolEntry:
@@ -170,7 +170,7 @@ class ToolsConfig:
         return self._remember(cls, section)
 
     def remove(self, identity: str) -> ToolEntry:
-        """Take a tool away, and return it.
+        """Remove a tool, and return it.
 
         Raises:
             KeyError: there is no such tool.
@@ -182,7 +182,7 @@ class ToolsConfig:
         return entry
 
     def list_all(self) -> None:
-        """Write the usual tools into a file that lists none, before one of them is changed."""
+        """Write the default tools into a file that lists none, before one of them is changed."""
         if not self._are_listed:
             for entry in self._entries.values():
                 insert_section(self._manager(), _TOOLS, entry.section)
@@ -197,7 +197,7 @@ class ToolsConfig:
         return section
 
     def _remember(self, written: str, section: Section) -> ToolEntry:
-        """List a tool whose class is written as RViz 2 or RViz 1 does."""
+        """List a tool whose class has a name of RViz 2 or RViz 1."""
         cls = modern_class(written)
         self._count += 1
         identity = f"tool-{self._count}"

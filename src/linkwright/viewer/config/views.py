@@ -1,7 +1,7 @@
-"""RViz's views: the properties of each class, declared once, and the views of a .rviz file, current and saved.
+"""RViz's views: the properties of each class, and the current and saved views of a .rviz file.
 
-From the properties come the rows of the Views panel, the reading and writing of ``Views`` and the checks of what pages
-send. How each class turns its values into a camera, and what the mouse does to them, is the page's:
+From the properties come the rows of the Views panel, the reading and writing of ``Views`` and the checks of pages'
+values. How each class turns its values into a camera, and what the mouse does to them, is the page's:
 `frontend/src/state/views`. Names and defaults are RViz's (rviz_common ``ViewController``, rviz_default_plugins).
 """
 
@@ -36,7 +36,7 @@ _NEAR_CLIP = PropertySpec(
     "Near Clip Distance",
     "float",
     0.01,
-    "What is closer to the camera than this is not drawn, in metres.",
+    "The near clipping distance of the camera, in metres.",
     minimum=0.001,
     maximum=10000.0,
 )
@@ -73,7 +73,7 @@ _ORBIT: Schema = (
     ),
     PropertySpec("Yaw", "float", _EIGHTH_TURN, _YAW_HELP),
     PropertySpec("Pitch", "float", _EIGHTH_TURN, _PITCH_HELP, minimum=-PITCH_LIMIT, maximum=PITCH_LIMIT),
-    vector("Focal Point", "The point that the camera turns about, in the target frame, in metres."),
+    vector("Focal Point", "The point that the camera orbits, in the target frame, in metres."),
 )
 _FPS: Schema = (
     _NEAR_CLIP,
@@ -84,7 +84,7 @@ _FPS: Schema = (
     PropertySpec(
         "Position",
         "group",
-        description="Where the camera is in the target frame, in metres.",
+        description="The position of the camera in the target frame, in metres.",
         children=(
             PropertySpec("X", "float", 5.0),
             PropertySpec("Y", "float", 5.0),
@@ -96,10 +96,10 @@ _TOP_DOWN_ORTHO: Schema = (
     _NEAR_CLIP,
     _STEREO,
     _TARGET,
-    PropertySpec("Scale", "float", 10.0, "Pixels to a metre; a negative scale turns the picture upside down."),
-    PropertySpec("Angle", "float", 0.0, "By how much the picture is turned about the z axis, in radians."),
-    PropertySpec("X", "float", 0.0, "Where the middle of the picture is in the target frame, in metres."),
-    PropertySpec("Y", "float", 0.0, "Where the middle of the picture is in the target frame, in metres."),
+    PropertySpec("Scale", "float", 10.0, "Pixels per metre; a negative scale turns the image upside down."),
+    PropertySpec("Angle", "float", 0.0, "The rotation of the image about the z axis, in radians."),
+    PropertySpec("X", "float", 0.0, "The centre of the image along x in the target frame, in metres."),
+    PropertySpec("Y", "float", 0.0, "The centre of the image along y in the target frame, in metres."),
 )
 
 VIEW_SCHEMAS: dict[str, Schema] = {
@@ -112,16 +112,16 @@ VIEW_SCHEMAS: dict[str, Schema] = {
 """The properties of each class, in the order in which RViz lists the classes."""
 
 STAND_INS = {"rviz_default_plugins/FrameAligned": FPS}
-"""Classes that are shown as another that looks alike: a FrameAligned is an FPS that can be aligned and locked."""
+"""Classes that are shown as a similar one: a FrameAligned is an FPS that can be aligned and locked."""
 
 
 def value_paths(schema: Schema) -> dict[str, Path]:
-    """The properties that have a value, by their names joined with ``/``, as `View.values` has them."""
+    """Return the properties that have a value, by their names joined with ``/``, as in `View.values`."""
     return {"/".join(path): path for path, spec in _walk(schema, ()) if spec.kind != "group"}
 
 
 def view_classes() -> list[ViewClass]:
-    """The classes as the page lists them."""
+    """Return the classes for the page."""
     return [
         ViewClass(cls, [_row(spec, ()) for spec in schema if not spec.hidden], _defaults(schema))
         for cls, schema in VIEW_SCHEMAS.items()
@@ -160,7 +160,7 @@ _VIEWS = "Views"
 _SAVED = "Saved"
 
 MAXIMUM_SAVED = 1000
-"""Most saved views; a page may add no more."""
+"""Most saved views; pages may not add more."""
 
 Report = Callable[[Diagnostic], None]
 
@@ -168,13 +168,13 @@ Report = Callable[[Diagnostic], None]
 class ViewEntry:
     """An entry of ``Views``; its unknown keys are kept.
 
-    A view of another class than those in `VIEW_SCHEMAS` is shown as an Orbit, or as what stands in for it, and stays as
-    it is in the file until a value is set.
+    A view of a class that `VIEW_SCHEMAS` lacks is shown as an Orbit, or as the class that replaces it, and stays
+    unchanged in the file until a value is set.
 
     Args:
         section: the file, or the view's part of it.
         base: keys from the section to the view.
-        report: told of another class (RVIZ203) and of values that cannot be used (RVIZ201).
+        report: called with findings about an unknown class (RVIZ203) and unusable values (RVIZ201).
     """
 
     def __init__(self, section: Section, base: Path, report: Report) -> None:
@@ -187,14 +187,14 @@ class ViewEntry:
 
     @property
     def view(self) -> View:
-        """The view as it is now; a copy."""
+        """Return the current view; a copy."""
         return View(self._view.cls, self._view.name, dict(self._view.values))
 
     def set(self, view: View) -> None:
-        """Write a view; values that are equal stay as they are spelt.
+        """Write a view; equal values keep their spelling.
 
         Raises:
-            ValueError: it is of an unknown class, or a value is none that its class has.
+            ValueError: its class is unknown, or does not have one of the values.
         """
         if view == self._view:
             return
@@ -217,7 +217,7 @@ class ViewEntry:
         self._view = self._read()
 
     def _write_class(self, cls: str) -> None:
-        """Another class: keys that only the one before has go."""
+        """Write another class, and remove the keys that only the former class has."""
         scalar = self._section.scalar(*self._base, "Class")
         written = modern_class(scalar.text) if scalar else ""
         if cls in (written, STAND_INS.get(written)):
@@ -264,7 +264,7 @@ class ViewsConfig:
 
     Args:
         document: the file.
-        report: called with what cannot be used.
+        report: called with findings about unusable parts.
     """
 
     def __init__(self, document: Section, report: Report) -> None:
@@ -273,7 +273,7 @@ class ViewsConfig:
         self._saved: dict[str, tuple[Section, ViewEntry]] = {}
         self._count = 0
         for section in document.sections(_MANAGER, _VIEWS, _SAVED):
-            if section.scalar("Class") is not None:  # RViz passes over what has none
+            if section.scalar("Class") is not None:  # RViz skips views without a class
                 self._remember(section, ViewEntry(section, (), report))
 
     @property
@@ -306,7 +306,7 @@ class ViewsConfig:
         return self._remember(section, entry)
 
     def change(self, identity: str, view: View) -> None:
-        """Give a saved view another name or other values.
+        """Change the name or the values of a saved view.
 
         Raises:
             KeyError: there is no such saved view.
@@ -315,7 +315,7 @@ class ViewsConfig:
         self._saved[identity][1].set(view)
 
     def remove(self, identity: str) -> None:
-        """Take a saved view away.
+        """Remove a saved view.
 
         Raises:
             KeyError: there is no such saved view.
@@ -331,4 +331,4 @@ class ViewsConfig:
 
 
 def _unheard(diagnostic: Diagnostic) -> None:
-    """A report that is ignored: what was just written is valid."""
+    """Ignore a finding: the values that were just written are valid."""

@@ -1,6 +1,6 @@
-"""YAML as a tree that is edited in place: whatever is not touched is written back as it was read.
+"""YAML as a tree that is edited in place: untouched parts are written back as they were read.
 
-RViz's files hold much that this program does not know. The tree keeps PyYAML's nodes: key order, quoting and the
+RViz's files contain much that this program does not know. The tree keeps PyYAML's nodes: key order, quoting and the
 spelling of every scalar survive, and every value knows its line.
 """
 
@@ -20,10 +20,10 @@ _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _Resolver: Any = yaml.resolver.Resolver
 
 MAXIMUM_DEPTH = 100
-"""Deepest nesting read. PyYAML builds nodes by recursion, without a bound of its own."""
+"""Deepest nesting that is read. PyYAML builds nodes by recursion, without a bound of its own."""
 
 MAXIMUM_NODES = 1_000_000
-"""Most keys and values of a document after its aliases were written out: a few lines of YAML can stand for billions."""
+"""Most keys and values of a document with its aliases expanded: a few lines of YAML can expand to billions."""
 
 _STRING = "tag:yaml.org,2002:str"
 _NULL = "tag:yaml.org,2002:null"
@@ -33,7 +33,7 @@ _SEQUENCE = "tag:yaml.org,2002:seq"
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
-    """A scalar as it is spelt in the file, and where."""
+    """A scalar with its spelling and its place in the file."""
 
     text: str
     span: Span
@@ -50,7 +50,7 @@ class Memory:
 class Section:
     """A mapping of the file.
 
-    A scalar is asked for by its path of keys. RViz stores a value that has parts of its own under ``Value`` among
+    A path of keys identifies a scalar. RViz stores a value that has parts of its own under ``Value`` among
     them; a path that ends at such a mapping means that value.
     """
 
@@ -69,22 +69,22 @@ class Section:
         return [key.value for key, _ in self.node.value if isinstance(key, yaml.ScalarNode)]
 
     def scalar(self, *path: str) -> Scalar | None:
-        """The scalar at a path; None where there is none or it is null."""
+        """Return the scalar at a path, or None if there is none or it is null."""
         node = self._scalar_node(path)
         return None if node is None else Scalar(node.value, self.span(node))
 
     def text(self, *path: str) -> str | None:
-        """The text of the scalar at a path; faster than `scalar`, which tells its place too."""
+        """Return the text of the scalar at a path; faster than `scalar`, which includes its place."""
         node = self._scalar_node(path)
         return None if node is None else str(node.value)
 
     def section(self, *path: str) -> Section | None:
-        """The mapping at a path, or None."""
+        """Return the mapping at a path, or None."""
         node = self._find(path)
         return Section(node, self.source) if isinstance(node, yaml.MappingNode) else None
 
     def sections(self, *path: str) -> Iterator[Section]:
-        """The mappings in the sequence at a path; other items are passed over."""
+        """Return the mappings in the sequence at a path; other items are skipped."""
         node = self._find(path)
         if isinstance(node, yaml.SequenceNode):
             for item in node.value:
@@ -92,20 +92,20 @@ class Section:
                     yield Section(item, self.source)
 
     def put(self, path: tuple[str, ...], text: str, *, string: bool = False, nested: bool = False) -> None:
-        """Set the scalar at a path, making the mappings on the way.
+        """Set the scalar at a path, and create the mappings on the way.
 
         Args:
             path: keys, at least one.
             text: the spelling of the value.
-            string: whether it is a string whatever it looks like (then it is quoted where it must be).
-            nested: whether the value has parts of its own, and so goes under ``Value``.
+            string: whether it is a string whatever it looks like (then it is quoted if necessary).
+            nested: whether the value has parts of its own, and so is stored under ``Value``.
         """
         tag = _STRING if string else _Resolver().resolve(yaml.ScalarNode, text, (True, False))
         parent = self.node
         for key in path[:-1]:
             parent = _child_mapping(parent, key)
         there = _child(parent, path[-1])
-        # A plain value stays one where its parts would fit beside it: so did RViz 1 write topics.
+        # A plain value stays plain even if it has parts: RViz 1 writes topics this way.
         plain = isinstance(there, yaml.ScalarNode) and there.tag != _NULL
         if isinstance(there, yaml.MappingNode) or (nested and not plain):
             parent, last = _child_mapping(parent, path[-1]), "Value"
@@ -114,7 +114,7 @@ class Section:
         _set(parent, last, yaml.ScalarNode(tag, text))
 
     def memory(self, key: str) -> Memory:
-        """The present value of a key, for `recall`."""
+        """Return the present value of a key, for `recall`."""
         there = _child(self.node, key)
         return Memory(key, None if there is None else _copy(there))
 
@@ -126,7 +126,7 @@ class Section:
         self.node.value[:] = [pair for pair in self.node.value if pair[0].value != memory.key]
 
     def span(self, node: yaml.Node | None = None) -> Span:
-        """The range of a node in its file; the mapping itself by default."""
+        """Return the range of a node in its file; by default of the mapping itself."""
         return _span(node or self.node, self.source)
 
     def _scalar_node(self, path: tuple[str, ...]) -> yaml.ScalarNode | None:
@@ -148,12 +148,12 @@ def parse(text: str, name: str) -> Section:
     """Read a document whose root is a mapping.
 
     Raises:
-        LinkwrightError: RVIZ102, not YAML; RVIZ103, its root is no mapping.
+        LinkwrightError: RVIZ102, not YAML; RVIZ103, its root is not a mapping.
     """
     source = SourceText(name, text)
     try:
         _check_depth(text, source)
-        # RViz reads the first document and no more.
+        # RViz reads only the first document.
         root = next(yaml.compose_all(text, Loader=_Loader), None)
     except yaml.YAMLError as error:
         raise LinkwrightError(_not_yaml(error, source)) from None
@@ -161,7 +161,7 @@ def parse(text: str, name: str) -> Section:
         message = (
             phrase("'{name}' is empty", name=name)
             if root is None
-            else phrase("'{name}' holds no keys and values", name=name)
+            else phrase("'{name}' is not a mapping of keys to values", name=name)
         )
         hint = phrase("an RViz configuration begins with 'Panels:' and 'Visualization Manager:'")
         raise LinkwrightError(Diagnostic("RVIZ103", message, source.span(0, 0), hint=hint, source=source))
@@ -171,35 +171,35 @@ def parse(text: str, name: str) -> Section:
 
 
 def write(section: Section) -> str:
-    """The document as text: keys in their order, scalars spelt as they were read, laid out as the source is."""
+    """Return the document as text: keys in their order, scalars as they were read, in the layout of the source."""
     return _laid_out(section.node, section.source.text)
 
 
 def same(one: Section, other: Section) -> bool:
-    """Whether two documents would be written alike."""
+    """Return whether two documents would be written alike."""
     return _plain(one.node) == _plain(other.node)
 
 
 def new_section(source: SourceText) -> Section:
-    """An empty mapping that is in no document yet."""
+    """Return an empty mapping without a document."""
     return Section(yaml.MappingNode(_MAPPING, [], flow_style=False), source)
 
 
 def copy_section(section: Section) -> Section:
-    """A copy that is in no document yet."""
+    """Return a copy without a document."""
     node = _copy(section.node)
     assert isinstance(node, yaml.MappingNode)
     return Section(node, section.source)
 
 
 def insert_section(parent: Section, key: str, section: Section, before: Section | None = None) -> None:
-    """Put a mapping into the sequence under a key, which is made where it is missing.
+    """Insert a mapping into the sequence under a key, which is created if it is missing.
 
     Args:
         parent: the mapping with the key.
         key: the key of the sequence.
         section: the mapping to insert.
-        before: the item it goes in front of; None or one that is not there for the end.
+        before: the item to insert before; None or an unknown one for the end.
     """
     sequence = _child(parent.node, key)
     if not isinstance(sequence, yaml.SequenceNode):
@@ -213,14 +213,14 @@ def insert_section(parent: Section, key: str, section: Section, before: Section 
 
 
 def remove_section(parent: Section, key: str, section: Section) -> None:
-    """Take a mapping out of the sequence under a key."""
+    """Remove a mapping from the sequence under a key."""
     sequence = _child(parent.node, key)
     if isinstance(sequence, yaml.SequenceNode):
         sequence.value[:] = [item for item in sequence.value if item is not section.node]
 
 
 def entries(parent: Section, key: str) -> list[yaml.Node] | None:
-    """The items of the sequence under a key, which are not copied; None where there is no sequence."""
+    """Return the items of the sequence under a key, not copied, or None if there is no sequence."""
     sequence = _child(parent.node, key)
     return list(sequence.value) if isinstance(sequence, yaml.SequenceNode) else None
 
@@ -234,7 +234,7 @@ class SequenceMemory:
 
 
 def remember_sequence(parent: Section, key: str) -> SequenceMemory:
-    """The present value of the key of a sequence, for `recall_sequence`."""
+    """Return the present value of the key of a sequence, for `recall_sequence`."""
     return SequenceMemory(_child(parent.node, key), entries(parent, key))
 
 
@@ -250,10 +250,10 @@ def recall_sequence(parent: Section, key: str, memory: SequenceMemory) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """A mapping that was made where there was none, for `unmake`.
+    """A mapping that was created on demand, for `unmake`.
 
     Attributes:
-        holder: the mapping that has it.
+        holder: the mapping that contains it.
         memory: the holder's value before.
         section: the mapping itself.
         keys: the keys that it had at first.
@@ -266,7 +266,7 @@ class Made:
 
 
 def make_section(section: Section, *path: str) -> tuple[Section, list[Made]]:
-    """The mapping at a path, made where it is missing, and all mappings made on the way, itself included."""
+    """Return the mapping at a path, created if it is missing, and all mappings created on the way, with itself."""
     made = []
     for key in path:
         there = section.section(key)
@@ -279,7 +279,7 @@ def make_section(section: Section, *path: str) -> tuple[Section, list[Made]]:
 
 
 def unmake(made: list[Made]) -> list[Made]:
-    """Take mappings away that hold no more than they did when they were made; returns those that do."""
+    """Remove mappings without content beyond their initial keys; returns the other ones."""
     left = list(made)
     while left and left[-1].section.keys() == left[-1].keys:
         gone = left.pop()
@@ -288,7 +288,7 @@ def unmake(made: list[Made]) -> list[Made]:
 
 
 def ensure_section(section: Section, *path: str) -> Section:
-    """The mapping at a path, made where it is missing."""
+    """Return the mapping at a path, created if it is missing."""
     node = section.node
     for key in path:
         node = _child_mapping(node, key)
@@ -296,7 +296,7 @@ def ensure_section(section: Section, *path: str) -> Section:
 
 
 def _copy(node: yaml.Node, *, deep: bool = True) -> yaml.Node:
-    """A deep copy of a node; `copy` cannot copy marks of libyaml."""
+    """Return a deep copy of a node; `copy` cannot copy marks of libyaml."""
     if isinstance(node, yaml.ScalarNode):
         return yaml.ScalarNode(node.tag, node.value, node.start_mark, node.end_mark, node.style)
     assert isinstance(node, yaml.CollectionNode)
@@ -319,7 +319,7 @@ def _child(node: yaml.MappingNode, key: str) -> yaml.Node | None:
     found: yaml.Node | None = None
     for name, value in node.value:
         if isinstance(name, yaml.ScalarNode) and name.value == key:
-            found = value  # as in RViz, the last of two wins
+            found = value  # as in RViz, the last one wins
     return found
 
 
@@ -344,7 +344,7 @@ def _set(node: yaml.MappingNode, key: str, value: yaml.Node) -> None:
             return
     names = [name.value for name, _ in node.value if isinstance(name, yaml.ScalarNode)]
     ordered = len(names) == len(node.value) and names == sorted(names)
-    at = bisect(names, key) if ordered else len(names)  # RViz writes most of its keys in the order of the alphabet
+    at = bisect(names, key) if ordered else len(names)  # RViz writes most of its keys in alphabetic order
     node.value.insert(at, (yaml.ScalarNode(_STRING, key), value))
 
 
@@ -363,7 +363,7 @@ def _check_depth(text: str, source: SourceText) -> None:
 
 
 def _write_out_aliases(root: yaml.Node, source: SourceText) -> None:
-    """Give each alias a copy of what it stands for, so that an edit of one place is no edit of another."""
+    """Replace each alias with a copy of its node, so that an edit of one place does not edit another."""
     seen: set[int] = set()
     count = 0
 
@@ -372,7 +372,7 @@ def _write_out_aliases(root: yaml.Node, source: SourceText) -> None:
         count += 1
         if id(node) in above or count > MAXIMUM_NODES:
             message = (
-                phrase("an alias stands for itself")
+                phrase("an alias refers to itself")
                 if id(node) in above
                 else phrase("more than {maximum_nodes} values", maximum_nodes=MAXIMUM_NODES)
             )
@@ -407,21 +407,21 @@ def _not_yaml(error: yaml.YAMLError, source: SourceText) -> Diagnostic:
 _PlainDumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 
 _ENDLESS = 2**30
-"""Width of a line that is never broken."""
+"""A width at which lines are never broken."""
 
 _EMPTY_BELOW = re.compile(r"^ +\{\}\r?$", re.MULTILINE)
 _INDENTED_ITEMS = re.compile(r"^( *)[^\s#-][^\n]*:[ \r]*\n\1 +- ", re.MULTILINE)
 
 
 def _laid_out(node: yaml.Node, source: str) -> str:
-    """A document as text, laid out like its source."""
+    """Return a document as text, in the layout of its source."""
     if not _INDENTED_ITEMS.search(source):
         return _plain(node)
     return _serialized(node, _RvizDumper if _EMPTY_BELOW.search(source) else _IndentingDumper)
 
 
 def _plain(node: yaml.Node) -> str:
-    """A document as text, in libyaml's default layout, which is fast."""
+    """Return a document as text, in libyaml's default layout, which is fast."""
     return _serialized(node, _PlainDumper)
 
 
@@ -438,7 +438,7 @@ class _IndentingDumper(yaml.SafeDumper):
 
 
 class _RvizDumper(_IndentingDumper):
-    """Lays out as RViz does: an empty mapping has a line of its own, too."""
+    """Uses RViz's layout: an empty mapping has a line of its own, too."""
 
     def expect_block_mapping_simple_value(self) -> None:
         if not (isinstance(self.event, yaml.MappingStartEvent) and self.check_empty_mapping()):

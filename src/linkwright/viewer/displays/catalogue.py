@@ -1,8 +1,8 @@
 """The classes of displays by the names that .rviz files have for them.
 
 Displays are found through the entry points ``linkwright.displays``, named as .rviz files name their class. A display is
-imported when the first one of its class is made: most configurations have a few of them, and the program is to be there
-at once.
+imported when the first one of its class is made: most configurations have a few of them, and the program must start
+quickly.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from linkwright.viewer.protocol.displays import StatusRow
 
 
 class GroupDisplay(ViewerDisplay):
-    """Holds other displays, and switches them off together."""
+    """Contains other displays, and switches them off together."""
 
     CLASS = GROUP_CLASS
 
 
 class UnsupportedDisplay(ViewerDisplay):
-    """A display of any other class."""
+    """A display of an unknown class."""
 
     CLASS = ""
     SUPPORTED = False
@@ -44,17 +44,17 @@ GROUP = "linkwright.displays"
 
 
 def has_display(cls: str) -> bool:
-    """Whether displays of a class are drawn, or are groups."""
+    """Return whether displays of a class are drawn, or are groups."""
     return cls in extensions(GROUP)
 
 
 def display_classes() -> list[type[ViewerDisplay]]:
-    """The classes of displays that are drawn, and groups; those of others that cannot be imported are left out."""
+    """Return the classes of displays that are drawn, and groups, without those that cannot be imported."""
     return [found for cls in extensions(GROUP) if isinstance(found := _display_class(cls), type)]
 
 
 def make_display(host: DisplayHost, identity: str, config: DisplayConfig) -> ViewerDisplay:
-    """The display for an entry of the file; an `UnsupportedDisplay` for a class that is not drawn."""
+    """Return the display for an entry of the file; an `UnsupportedDisplay` for a class that is not drawn."""
     if not has_display(config.cls):
         return UnsupportedDisplay(host, identity, config)
     found = _display_class(config.cls)
@@ -66,11 +66,11 @@ def make_display(host: DisplayHost, identity: str, config: DisplayConfig) -> Vie
 
 @cache
 def _display_class(cls: str) -> type[ViewerDisplay] | str:
-    """The class that draws what .rviz files name so, or why it cannot be had."""
+    """Return the class that draws a display of a name in .rviz files, or why it cannot be loaded."""
     try:
         found = extensions(GROUP)[cls].load()
     except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong
         return f"{type(error).__name__}: {error}"
     if not (isinstance(found, type) and issubclass(found, ViewerDisplay)):
-        return f"{found!r} is no class derived from ViewerDisplay"
+        return f"{found!r} is not a class derived from ViewerDisplay"
     return found

@@ -20,10 +20,10 @@ KNOWN: dict[str, Color] = {
     "cyclist": (255, 255, 0),
     "motorcycle": (230, 230, 250),
 }
-"""The classes to which vision_msgs_rviz_plugins gives colours of their own."""
+"""The classes to which vision_msgs_rviz_plugins gives fixed colours."""
 
 UNNAMED: Color = (255, 22, 80)
-"""The colour of detections without a class, as there."""
+"""The colour of detections without a class, as in vision_msgs_rviz_plugins."""
 
 _PALETTE: tuple[Color, ...] = (
     (230, 25, 75),
@@ -42,7 +42,7 @@ _PALETTE: tuple[Color, ...] = (
 
 
 def class_color(name: str, table: Mapping[str, Color]) -> Color:
-    """The colour of a class, by the table, vision_msgs_rviz_plugins, a colour in its name, or one of a palette."""
+    """Return the colour of a class, from the table, vision_msgs_rviz_plugins, a colour in its name, or a palette."""
     if not name:
         return UNNAMED
     lower = name.lower()
@@ -51,10 +51,10 @@ def class_color(name: str, table: Mapping[str, Color]) -> Color:
 
 
 def read_class_colors(path: str) -> dict[str, Color]:
-    """The table in a YAML file, ``NAME: {r: 255, g: 165, b: 0}``, with names in lower case.
+    """Read a table from a YAML file, ``NAME: {r: 255, g: 165, b: 0}``, with names in lower case.
 
     Raises:
-        ValueError: it cannot be read, or holds something else; the text says why.
+        ValueError: it cannot be read, or is not such a table; the text gives the reason.
     """
     try:
         document = yaml.safe_load(Path(path).expanduser().read_text(encoding="utf-8"))
@@ -64,7 +64,7 @@ def read_class_colors(path: str) -> dict[str, Color]:
         text = " ".join(str(error).split())
         raise ValueError(phrase("cannot read '{path}': {reason}", path=path, reason=foreign(text))) from None
     if not isinstance(document, dict) or not all(_is_color(each) for each in document.values()):
-        raise ValueError(phrase("'{path}' holds no colours, such as: 'ball: {{r: 255, g: 0, b: 0}}'", path=path))
+        raise ValueError(phrase("'{path}' contains no colours, such as: 'ball: {{r: 255, g: 0, b: 0}}'", path=path))
     return {str(name).lower(): (each["r"], each["g"], each["b"]) for name, each in document.items()}
 
 

@@ -24,7 +24,7 @@ STYLE_SPECS: Schema = (
         "Style",
         "enum",
         "Flat Squares",
-        "How a point is drawn, from the cheapest to the dearest.",
+        "The shape of a point, from the fastest to the slowest to draw.",
         options=("Points", "Squares", "Flat Squares", "Spheres", "Boxes", "Tiles"),
     ),
     PropertySpec("Size (m)", "float", 0.01, "Size of a point, in metres; not of the style Points.", minimum=0.0001),
@@ -38,9 +38,9 @@ _AXIS = ((COLOUR_TRANSFORMER,), "AxisColor")
 _PLAIN = (("Use rainbow",), False)
 
 TRANSFORMER_SPECS: Schema = (
-    PropertySpec(POSITION_TRANSFORMER, "enum", "XYZ", "How the points get their places.", options=("XYZ",)),
+    PropertySpec(POSITION_TRANSFORMER, "enum", "XYZ", "The source of the points' positions.", options=("XYZ",)),
     PropertySpec(
-        COLOUR_TRANSFORMER, "enum", "", "How the points get their colours.", options=tuple(sorted(TRANSFORMERS))
+        COLOUR_TRANSFORMER, "enum", "", "The source of the points' colours.", options=tuple(sorted(TRANSFORMERS))
     ),
     PropertySpec(
         CHANNEL,
@@ -51,15 +51,17 @@ TRANSFORMER_SPECS: Schema = (
         when=_INTENSITY,
     ),
     PropertySpec(
-        "Use rainbow", "bool", True, "Go through the rainbow, instead of from one colour to another.", when=_INTENSITY
+        "Use rainbow",
+        "bool",
+        True,
+        "Use the colours of the rainbow, instead of a gradient between two colours.",
+        when=_INTENSITY,
     ),
-    PropertySpec(
-        "Invert Rainbow", "bool", False, "Begin with the other end of the rainbow.", when=(("Use rainbow",), True)
-    ),
+    PropertySpec("Invert Rainbow", "bool", False, "Reverse the rainbow.", when=(("Use rainbow",), True)),
     PropertySpec("Min Color", "color", "#000000", "Colour of the least intensity.", when=_PLAIN),
     PropertySpec("Max Color", "color", "#ffffff", "Colour of the largest intensity.", when=_PLAIN),
     PropertySpec(
-        AUTO_INTENSITY, "bool", True, "Take the least and the largest intensity of each message.", when=_INTENSITY
+        AUTO_INTENSITY, "bool", True, "Use the least and the largest intensity of each message.", when=_INTENSITY
     ),
     PropertySpec(
         MIN_INTENSITY, "float", 0.0, "The intensity that gets the first colour.", when=((AUTO_INTENSITY,), False)
@@ -72,7 +74,7 @@ TRANSFORMER_SPECS: Schema = (
         AUTO_VALUES,
         "bool",
         True,
-        "Take the least and the largest coordinate of each message.",
+        "Use the least and the largest coordinate of each message.",
         when=_AXIS,
         expanded=True,
         children=(
@@ -93,23 +95,23 @@ TRANSFORMER_SPECS: Schema = (
         ),
     ),
     PropertySpec(
-        "Use Fixed Frame", "bool", True, "Take the coordinates in the Fixed Frame, not in the message's.", when=_AXIS
+        "Use Fixed Frame", "bool", True, "Use the coordinates in the Fixed Frame, not in the message's.", when=_AXIS
     ),
     PropertySpec("Color", "color", "#ffffff", "The colour of every point.", when=((COLOUR_TRANSFORMER,), "FlatColor")),
 )
 
 COLOUR_PROPERTIES = frozenset(spec.name for spec in TRANSFORMER_SPECS) - {"Color", POSITION_TRANSFORMER}
-"""The properties that the colours of points depend on; a single colour for all is applied by the page."""
+"""The properties that affect the colours of points; the page applies a single colour itself."""
 
 
 def scalar_specs(channel: str, least: float, largest: float, *, inverted: bool | None = None) -> Schema:
-    """The properties of a display that shows one number as a point: RViz hides those that have no choice.
+    """Return the properties of a display that shows one number as a point: RViz hides those without a choice.
 
     Args:
         channel: the channel with the number.
         least: default of ``Min Intensity``.
         largest: default of ``Max Intensity``.
-        inverted: value of ``Invert Rainbow``, which is hidden then; None where the user may choose.
+        inverted: value of ``Invert Rainbow``, which is hidden then; None if the user may choose.
     """
     changes: dict[str, dict[str, Any]] = {
         POSITION_TRANSFORMER: {"hidden": True},
@@ -125,7 +127,7 @@ def scalar_specs(channel: str, least: float, largest: float, *, inverted: bool |
 
 
 def colour_settings(properties: PropertyStore) -> ColourSettings:
-    """The values of the properties about colours."""
+    """Return the values of the properties about colours."""
     flag, number, text = properties.flag, properties.number, properties.text
 
     def bounds(auto: str, *paths: Path) -> tuple[float, float] | None:

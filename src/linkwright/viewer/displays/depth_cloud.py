@@ -31,17 +31,17 @@ TOPIC_FILTER = "Topic Filter"
 _IMAGE = "sensor_msgs/msg/Image"
 
 SOURCES = frozenset((RELIABILITY, DEPTH_TOPIC, DEPTH_TRANSPORT, INFO_TOPIC, COLOUR_TOPIC, COLOUR_TRANSPORT, QUEUE_SIZE))
-"""The properties that say where messages come from."""
+"""The properties that select the sources of messages."""
 
 DEPTH_SCHEMA: Schema = (
     PropertySpec(
         RELIABILITY,
         "enum",
         "Best effort",
-        "Whether every message must arrive.",
+        "Whether every message must arrive, or may be lost.",
         options=("System Default", "Reliable", "Best effort"),
     ),
-    PropertySpec(TOPIC_FILTER, "bool", True, "Offer only topics whose names sound like depth and colour images."),
+    PropertySpec(TOPIC_FILTER, "bool", True, "Offer only topics whose names suggest depth and colour images."),
     PropertySpec(
         DEPTH_TOPIC,
         "topic",
@@ -50,7 +50,9 @@ DEPTH_SCHEMA: Schema = (
         messages=(_IMAGE,),
         words=("depth",),
     ),
-    PropertySpec(DEPTH_TRANSPORT, "enum", RAW, "How the depths come: raw, or compressedDepth.", options=TRANSPORTS),
+    PropertySpec(
+        DEPTH_TRANSPORT, "enum", RAW, "The image transport of the depths: raw, or compressedDepth.", options=TRANSPORTS
+    ),
     PropertySpec(
         INFO_TOPIC,
         "topic",
@@ -66,8 +68,10 @@ DEPTH_SCHEMA: Schema = (
         messages=(_IMAGE,),
         words=("color", "rgb", "bgr", "gray", "mono"),
     ),
-    PropertySpec(COLOUR_TRANSPORT, "enum", RAW, "How the colours come: raw, or compressed.", options=TRANSPORTS),
-    PropertySpec(QUEUE_SIZE, "int", 5, "How many messages may wait.", minimum=1, maximum=1000),
+    PropertySpec(
+        COLOUR_TRANSPORT, "enum", RAW, "The image transport of the colours: raw, or compressed.", options=TRANSPORTS
+    ),
+    PropertySpec(QUEUE_SIZE, "int", 5, "The size of the message queue.", minimum=1, maximum=1000),
     PropertySpec(
         AUTO_SIZE,
         "bool",
@@ -89,14 +93,14 @@ DEPTH_SCHEMA: Schema = (
         OCCLUSION,
         "bool",
         False,
-        "Keep points that something nearer covers, until the camera moves.",
+        "Keep points that nearer ones cover, until the camera moves.",
         expanded=True,
         children=(
             PropertySpec(
                 OCCLUSION_TIMEOUT,
                 "float",
                 30.0,
-                "Seconds until covered points are taken away.",
+                "Seconds until covered points are removed.",
                 when=((OCCLUSION,), True),
             ),
         ),
@@ -106,18 +110,18 @@ DEPTH_SCHEMA: Schema = (
 )
 
 DEPTH_SCHEMA_UNFILTERED: Schema = tuple(replace(spec, words=()) for spec in DEPTH_SCHEMA)
-"""The schema for ``Topic Filter`` off: the names of topics do not matter."""
+"""The schema for ``Topic Filter`` off: topics of any name are offered."""
 
 _SYNC_NS = 500_000_000
-"""A colour image farther from the depths in time does not belong to them."""
+"""The largest time between a colour image and its depths, nanoseconds."""
 
-# The camera counts as moved beyond these, metres and radians.
+# The camera has moved if its pose changes by more than these, metres and radians.
 _MOVED = 0.01
 _TURNED = np.radians(0.5)
 
 
 class DepthCloudDisplay(CloudDisplay):
-    """The points of a depth image, coloured by a colour image where there is one."""
+    """The points of a depth image, coloured by a colour image if there is one."""
 
     CLASS = "rviz_default_plugins/DepthCloud"
     MESSAGE = "sensor_msgs/msg/Image"
@@ -141,20 +145,20 @@ class DepthCloudDisplay(CloudDisplay):
         self._camera_pose: Pose | None = None
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """The depth map, as its transport has it."""
+        """Return the subscription to the depth map, by its transport."""
         source = self._depth_source()
         return source.message_type, source.topic, self._qos()
 
     def most_waiting(self) -> int:
-        """The number of depth maps that may wait for their transforms."""
+        """Return the number of depth maps that may wait for their transforms."""
         return int(self.properties.number(QUEUE_SIZE))
 
     def pixel_size(self) -> float:
-        """The width of a pixel a metre away, if points are to be as large as pixels."""
+        """Return the width of a pixel at a distance of one metre, if points are to be as large as pixels."""
         return self._pixel * self.properties.number(AUTO_SIZE, SIZE_FACTOR) if self.properties.flag(AUTO_SIZE) else 0.0
 
     def take(self, message: Any, pose: Pose | None) -> None:
-        """Show a depth map as soon as its colours are there."""
+        """Show a depth map as soon as its colours have arrived."""
         assert pose is not None
         colour = self._colour_of(message) if self._wants_colour() else None
         if self._info is None or (colour is None and self._wants_colour()):
@@ -164,11 +168,11 @@ class DepthCloudDisplay(CloudDisplay):
         self._show_depths(message, pose, colour)
 
     def schema(self) -> Schema:
-        """The properties; ``Topic Filter`` says whether topics are offered by their names."""
+        """Return the properties; with ``Topic Filter`` topics are offered by their names."""
         return DEPTH_SCHEMA if self._filters else DEPTH_SCHEMA_UNFILTERED
 
     def changed(self, path: Path) -> None:
-        """Listen to other topics, or show the last depths differently."""
+        """Subscribe to other topics, or show the last depths differently."""
         if path[0] in SOURCES:
             self._restart()
             return
@@ -180,14 +184,14 @@ class DepthCloudDisplay(CloudDisplay):
             self.show_again()
 
     def time_changed(self) -> None:
-        """Show what came while time stood still."""
+        """Show the messages that were received while time was paused."""
         self._infos.go_on()
         if self._colours is not None:
             self._colours.go_on()
         super().time_changed()
 
     def reset(self) -> None:
-        """Forget everything that was covered."""
+        """Forget all covered points."""
         self._builder.reset()
         self._camera_pose = None
         self._pending = None
@@ -221,7 +225,7 @@ class DepthCloudDisplay(CloudDisplay):
                     name,
                     "error",
                     phrase(
-                        "Images of transport '{transport}' are not read: {choice}",
+                        "Images of transport '{transport}' are not supported: {choice}",
                         transport=source.transport,
                         choice=choice,
                     ),
@@ -270,7 +274,7 @@ class DepthCloudDisplay(CloudDisplay):
         return bool(self.properties.text(COLOUR_TOPIC).strip())
 
     def _colour_of(self, depth: Any) -> Any:
-        """The colour image nearest in time; None when there is none near."""
+        """Return the colour image nearest in time, or None if there is none near."""
         at = self.frame_of(depth)[1]
         nearest = min(self._recent, key=lambda each: abs(self.frame_of(each)[1] - at), default=None)
         if nearest is None or abs(self.frame_of(nearest)[1] - at) > _SYNC_NS:

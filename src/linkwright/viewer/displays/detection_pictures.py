@@ -26,17 +26,17 @@ THRESHOLD = "Threshold"
 _TYPE = "vision_msgs/msg/Detection2DArray"
 _BOXES = "boxes"
 _MOST_IMAGES = 10
-"""Images that wait for what is found in them."""
+"""Images that wait for their detections."""
 
 _PATIENCE = 1.0
-"""Seconds without detections after which images are shown as they come."""
+"""Seconds without detections after which images are shown at once."""
 
 
 class DetectionPictureDisplay(ImageDisplay):
-    """Images with boxes around what was found in them, in a panel of their own.
+    """Images with boxes around the detected objects, in a panel of their own.
 
-    While detections come, an image is shown together with those of its stamp, as late as the detector is. Detections of
-    an image that is not there any more are drawn over the one that is shown.
+    While detections arrive, an image is shown together with those of its stamp, as late as the detector is. Detections
+    of an image that is no longer stored are drawn over the current image.
     """
 
     CLASS = "linkwright/Detections"
@@ -62,11 +62,11 @@ class DetectionPictureDisplay(ImageDisplay):
         self._detected_at = float("-inf")
 
     def schema(self) -> Schema:
-        """The properties of an image, and those of boxes."""
+        """Return the properties of an image, and those of boxes."""
         return (*super().schema(), *self.SCHEMA[len(ImageDisplay.SCHEMA) :])
 
     def changed(self, path: Path) -> None:
-        """Listen to other detections, or apply another threshold."""
+        """Subscribe to other detections, or apply another threshold."""
         super().changed(path)
         if path[0] == DETECTIONS:
             self._threshold.close()
@@ -77,7 +77,7 @@ class DetectionPictureDisplay(ImageDisplay):
             self._threshold.set(self.properties.text(DETECTIONS).strip(), self.properties.number(THRESHOLD))
 
     def take_image(self, message: Any, pose: Pose | None) -> None:
-        """Show an image, or keep it until its detections are received."""
+        """Show an image, or store it until its detections are received."""
         if asyncio.get_running_loop().time() - self._detected_at < _PATIENCE:
             self._images.append(message)
             return
@@ -86,7 +86,7 @@ class DetectionPictureDisplay(ImageDisplay):
         super().take_image(message, pose)
 
     def time_changed(self) -> None:
-        """Show what came while time stood still."""
+        """Show the messages that were received while time was paused."""
         self._side.go_on()
         super().time_changed()
 
@@ -130,7 +130,7 @@ class DetectionPictureDisplay(ImageDisplay):
 
 
 def _boxes(message: Any, *, of_image: bool) -> PictureBoxes | None:
-    """The boxes; None when a number is not finite."""
+    """Return the boxes, or None if a number is not finite."""
     detections = list(message.detections)
     results = [best_result(detection) for detection in detections]
     middles = [detection.bbox.center for detection in detections]

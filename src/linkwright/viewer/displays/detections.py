@@ -39,9 +39,7 @@ CLASS_COLOURS = PropertySpec(
 _CLASSES: Schema = (
     PropertySpec("Show Score", "bool", False, "Write class and score above each box."),
     CLASS_COLOURS,
-    PropertySpec(
-        LIFETIME, "int", 0, "Seconds after which a message is shown no more; 0 shows it until the next.", minimum=0
-    ),
+    PropertySpec(LIFETIME, "int", 0, "Seconds that a message is shown; 0 shows it until the next.", minimum=0),
 )
 
 
@@ -60,7 +58,7 @@ class _BoxDisplay(RecentDisplay):
 
 
 def _numbers(pose: Any) -> tuple[float, ...]:
-    """X y z qx qy qz qw; a quaternion of zeros, as of messages that leave it out, is no turn."""
+    """Return x y z qx qy qz qw; a quaternion of zeros, the default of messages, means no rotation."""
     position, turn = pose.position, pose.orientation
     w = turn.w if any((turn.x, turn.y, turn.z, turn.w)) else 1.0
     return (position.x, position.y, position.z, turn.x, turn.y, turn.z, w)
@@ -79,7 +77,7 @@ class BoundingBox3DArrayDisplay(_BoxDisplay):
         return self._content(boxes, [(255, 255, 255)] * len(boxes), [-1.0] * len(boxes), [""] * len(boxes))
 
     def boxes_of(self, message: Any) -> Sequence[Any]:
-        """The BoundingBox3D of a message."""
+        """Return the BoundingBox3D of a message."""
         return list(message.boxes)
 
 
@@ -91,16 +89,16 @@ class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, _COLOUR)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """The Fixed Frame, now."""
+        """Return the Fixed Frame, at the latest time."""
         return self.host.frames.fixed_frame, 0
 
     def boxes_of(self, message: Any) -> Sequence[Any]:
-        """The one box."""
+        """Return the one box."""
         return [message]
 
 
 def best_result(detection: Any) -> tuple[str, float]:
-    """Class and score of the likeliest hypothesis of a Detection2D or Detection3D; no class and -1 without any."""
+    """Return class and score of the likeliest hypothesis of a Detection2D or Detection3D, or no class and -1."""
     best = max((result.hypothesis for result in detection.results), key=lambda each: each.score, default=None)
     return ("", -1.0) if best is None else (best.class_id, best.score)
 
@@ -118,17 +116,17 @@ class Detection3DArrayDisplay(_BoxDisplay):
         self._end: asyncio.TimerHandle | None = None
 
     def start(self) -> None:
-        """Read the colours, and listen."""
+        """Read the colours, and subscribe."""
         self._read_colors()
         super().start()
 
     def stop(self) -> None:
-        """Stop listening."""
+        """Unsubscribe."""
         self._cancel_end()
         super().stop()
 
     def changed(self, path: Path) -> None:
-        """Take other colours, another end."""
+        """Apply other colours or another lifetime."""
         super().changed(path)
         if path == (CONFIG_PATH,):
             self._read_colors()
@@ -136,7 +134,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
             self.show_again()
 
     def take(self, message: Any, pose: Pose | None) -> None:
-        """Show the boxes, for as long as is asked for."""
+        """Show the boxes for the time that the property sets."""
         super().take(message, pose)
         self._cancel_end()
         seconds = int(self.properties.number(LIFETIME))
@@ -157,7 +155,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
         return self._content(boxes, colors, [score for _, score in results], [name for name, _ in results])
 
     def detections_of(self, message: Any) -> Sequence[Any]:
-        """The Detection3D of a message."""
+        """Return the Detection3D of a message."""
         return list(message.detections)
 
     def _read_colors(self) -> None:
@@ -184,5 +182,5 @@ class Detection3DDisplay(Detection3DArrayDisplay):
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, *_CLASSES)
 
     def detections_of(self, message: Any) -> Sequence[Any]:
-        """The one detection."""
+        """Return the one detection."""
         return [message]

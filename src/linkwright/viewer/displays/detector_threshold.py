@@ -1,4 +1,4 @@
-"""The parameter by which the node that publishes detections leaves out the uncertain ones."""
+"""The parameter with which the node that publishes detections drops the uncertain ones."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _NAMES = ["threshold", "confidence_threshold", "detection.threshold"]
 """The names of the parameter in our detector and yolo_ros, yolov5_ros, and openrobotics_darknet_ros."""
 
 Told = Callable[[StatusLevel, str], None]
-"""Called with a status of the display: who leaves them out, and a warning where the node would not."""
+"""Called with a status of the display: the node that drops weaker detections, or a warning if it refuses."""
 
 
 class DetectorThreshold:
-    """Sets the least score of detections at the node that publishes them, the latest wish only.
+    """Sets the least score of detections at the node that publishes them; only the latest request counts.
 
     Args:
-        node: asks.
+        node: the node that sends requests.
         told: called with the outcome of a request.
     """
 
@@ -39,7 +39,7 @@ class DetectorThreshold:
             self._task = asyncio.get_running_loop().create_task(self._fulfil())
 
     def close(self) -> None:
-        """Stop asking."""
+        """Cancel requests."""
         self._wish = None
         if self._task is not None:
             self._task.cancel()

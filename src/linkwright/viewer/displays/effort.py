@@ -42,15 +42,20 @@ class EffortDisplay(RecentDisplay):
         topic_spec(description=MESSAGE, filter_size=10),
         alpha(),
         PropertySpec("Width", "float", 0.02, "Width of the rings' lines, in metres."),
-        PropertySpec("Scale", "float", 1.0, "Metres that a ring at its limit is wide."),
-        PropertySpec("History Length", "int", 1, "How many messages are shown.", minimum=1, maximum=100000),
+        PropertySpec("Scale", "float", 1.0, "Width in metres of the ring of a joint at its effort limit."),
+        PropertySpec("History Length", "int", 1, "The number of messages that are shown.", minimum=1, maximum=100000),
         PropertySpec(
             _DESCRIPTION,
             "string",
             "/robot_description",
-            "The topic that carries the description of the robot, as std_msgs/msg/String.",
+            "The topic of the robot's description, std_msgs/msg/String.",
         ),
-        PropertySpec(_PREFIX, "string", "", "What stands before a slash and a link's name in the name of its frame."),
+        PropertySpec(
+            _PREFIX,
+            "string",
+            "",
+            "The prefix of frame names: a link's frame is the prefix, a slash and the link's name.",
+        ),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
@@ -60,26 +65,29 @@ class EffortDisplay(RecentDisplay):
         super().__init__(host, identity, config)
 
     def schema(self) -> Schema:
-        """The fixed properties, and a box for each joint that has a limit."""
+        """Return the fixed properties, and a check box for each joint that has a limit."""
         names = sorted(self._joints or ())
         boxes = tuple(
             PropertySpec(name, "bool", True, "Draw the ring of this joint.", nested=True, details="effort")
             for name in names
         )
-        return (*self.SCHEMA, PropertySpec(_JOINTS, "group", description="The turning joints.", children=boxes))
+        return (
+            *self.SCHEMA,
+            PropertySpec(_JOINTS, "group", description="The revolute and continuous joints.", children=boxes),
+        )
 
     def start(self) -> None:
-        """Listen to the robot's description too."""
+        """Subscribe to the robot's description too."""
         super().start()
         self._follow()
 
     def stop(self) -> None:
-        """Stop listening."""
+        """Unsubscribe."""
         self._leave()
         super().stop()
 
     def changed(self, path: Path) -> None:
-        """Follow another description; forget rings at the places of another prefix."""
+        """Follow another description; drop the rings of another prefix."""
         super().changed(path)
         if path == (_DESCRIPTION,):
             self._follow()
@@ -88,19 +96,19 @@ class EffortDisplay(RecentDisplay):
             self.frames_changed()
 
     def enabled_changed(self) -> None:
-        """Listen to the description only while the display is enabled."""
+        """Subscribe to the description only while the display is enabled."""
         super().enabled_changed()
         self._follow()
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """The frame of the first joint that is drawn: joint states are in no frame of their own."""
+        """Return the frame of the first joint that is drawn: joint states have no frame."""
         stamp = message.header.stamp
         joint = next((self._joints[name] for name in message.name if self._joints and name in self._joints), None)
         frame = self.host.frames.fixed_frame if joint is None else self._frame(joint)
         return frame, stamp.sec * 1_000_000_000 + stamp.nanosec
 
     def content(self, message: Any) -> DataContent | None:
-        """A ring for each joint whose frame has a place."""
+        """Return a ring for each joint whose frame can be placed."""
         if self._joints is None:
             self.refuse(phrase("Robot model might not be loaded yet"))
             return None

@@ -1,4 +1,4 @@
-"""Axes and Grid, which stand in a frame; GridCells, PointStamped, Polygon and Range, which draw messages."""
+"""Axes and Grid, which are placed in a frame; GridCells, PointStamped, Polygon and Range, which draw messages."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class GridDisplay(ViewerDisplay):
 
     CLASS = "rviz_default_plugins/Grid"
     SCHEMA = (
-        PropertySpec("Reference Frame", "frame", FIXED_FRAME, "The frame whose origin is the middle of the grid."),
+        PropertySpec("Reference Frame", "frame", FIXED_FRAME, "The frame whose origin is the centre of the grid."),
         PropertySpec("Plane Cell Count", "int", 10, "Cells along each side of the grid.", minimum=1, maximum=1000),
         PropertySpec(
             "Normal Cell Count",
@@ -72,8 +72,8 @@ class GridDisplay(ViewerDisplay):
         line_style(line_width()),
         PropertySpec("Color", "color", "#a0a0a4", "Colour of the lines."),
         alpha("Opacity of the lines: 0 is invisible.", 0.5),
-        PropertySpec("Plane", "enum", "XY", "The plane the grid lies in.", options=("XY", "XZ", "YZ")),
-        vector("Offset", "Where the grid's middle is in the reference frame, in metres."),
+        PropertySpec("Plane", "enum", "XY", "The plane of the grid.", options=("XY", "XZ", "YZ")),
+        vector("Offset", "The centre of the grid in the reference frame, in metres."),
     )
 
     def start(self) -> None:
@@ -117,7 +117,7 @@ class GridCellsDisplay(TopicDisplay):
             self.send(content, pose=pose, stamp_ns=self.frame_of(message)[1])
 
     def _refuse(self, level: StatusLevel, text: Phrase) -> None:
-        """Remove the cells before, too, and say so in the row of the topic, as RViz does."""
+        """Remove the earlier cells, too, and show the reason in the row of the topic, as RViz does."""
         self.forget()
         self.say(TOPIC, level, text)
 
@@ -133,7 +133,7 @@ class PointStampedDisplay(RecentDisplay):
         PropertySpec("Color", "color", "#cc29cc", "The colour of the points."),
         PropertySpec("Alpha", "float", 1.0, "Opacity: 0 is invisible.", minimum=0.0, maximum=1.0),
         PropertySpec("Radius", "float", 0.2, "Radius of a point, in metres."),
-        PropertySpec("History Length", "int", 1, "How many points are shown.", minimum=1, maximum=100000),
+        PropertySpec("History Length", "int", 1, "The number of points that are shown.", minimum=1, maximum=100000),
     )
 
     def content(self, message: Any) -> DataContent | None:
@@ -161,7 +161,7 @@ class PolygonDisplay(RecentDisplay):
 
 
 class RangeDisplay(RecentDisplay):
-    """The last measurements of a range sensor, each as the cone that it saw."""
+    """The last measurements of a range sensor, each as a cone of its field of view."""
 
     CLASS = "rviz_default_plugins/Range"
     MESSAGE = "sensor_msgs/msg/Range"
@@ -170,17 +170,17 @@ class RangeDisplay(RecentDisplay):
         topic_spec(description=MESSAGE, filter_size=10),
         PropertySpec("Color", "color", "#ffffff", "Colour of the cones."),
         alpha("Opacity of the cones.", 0.5),
-        PropertySpec("Buffer Length", "int", 1, "How many measurements are shown.", minimum=1),
+        PropertySpec("Buffer Length", "int", 1, "The number of measurements that are shown.", minimum=1),
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """A cone; one of no length where the measurement is none."""
+        """Return a cone, of length zero if the measurement is not valid."""
         angle = float(message.field_of_view)
         return RangeCone(_cone_length(message), angle if math.isfinite(angle) else 0.0)
 
 
 def _cone_length(message: Any) -> float:
-    """The length of the cone by RViz's rule, which is that of REP 117 for sensors with a fixed distance."""
+    """Return the length of the cone by RViz's rule, which is that of REP 117 for sensors with a fixed distance."""
     measured, least, most = float(message.range), float(message.min_range), float(message.max_range)
     if least <= measured <= most and math.isfinite(measured):
         return measured

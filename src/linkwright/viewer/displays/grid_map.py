@@ -18,16 +18,16 @@ from linkwright.viewer.protocol.message import DataContent
 _LAYER = "GridMapLayer"
 _HEIGHTS = (_LAYER, "Layer", "Flat")
 _COLORS = (_LAYER, "IntensityLayer", "ColorLayer", "FlatColor", "None")
-"""The first is what RViz begins with and writes until it is changed, and does not offer; it means the second."""
+"""RViz starts with the first one and writes it until it is changed, but does not offer it; it means the second."""
 
 _MOST_CELLS = 400_000
-"""The largest number of cells drawn; of larger maps rows and columns are left out."""
+"""The largest number of cells drawn; rows and columns of larger maps are skipped."""
 
 _SIZE = "Size"
 
 
 class BadGridError(ValueError):
-    """A grid map cannot be drawn; the text says why."""
+    """A grid map cannot be drawn; the text gives the reason."""
 
 
 class GridMapDisplay(RecentDisplay):
@@ -38,36 +38,38 @@ class GridMapDisplay(RecentDisplay):
     LENGTH = ("History Length",)
 
     def schema(self) -> Schema:
-        """The properties; newer versions of the plugin say *ColorMap* where others say *Rainbow*."""
+        """Return the properties; newer versions of the plugin write *ColorMap* instead of *Rainbow*."""
         word = "ColorMap" if self.config.section.scalar("Use ColorMap") else "Rainbow"
         return (
             topic_spec(description=self.MESSAGE, filter_size=10),
             alpha("Opacity of the surface."),
-            PropertySpec("History Length", "int", 1, "How many maps are shown.", minimum=1, maximum=100),
-            PropertySpec("Show Grid Lines", "bool", True, "Draw lines between the middles of cells."),
+            PropertySpec("History Length", "int", 1, "The number of maps that are shown.", minimum=1, maximum=100),
+            PropertySpec("Show Grid Lines", "bool", True, "Draw lines between the centres of cells."),
             PropertySpec(
-                "Height Transformer", "enum", _LAYER, "Where heights come from: a layer, or none.", options=_HEIGHTS
+                "Height Transformer", "enum", _LAYER, "The source of the heights: a layer, or none.", options=_HEIGHTS
             ),
             PropertySpec("Height Layer", "string", "elevation", "The layer that gives the heights."),
             PropertySpec(
                 "Color Transformer",
                 "enum",
                 _LAYER,
-                "Where colours come from: numbers of a layer, colours in a layer, one for all; or no surface.",
+                "The source of the colours: the values of a layer, the colours of a layer, one colour; or no surface.",
                 options=_COLORS,
             ),
             PropertySpec("Color Layer", "string", "elevation", "The layer that gives the colours."),
-            PropertySpec("Color", "color", "#c8c8c8", "The colour of all.", when=(("Color Transformer",), "FlatColor")),
-            PropertySpec(f"Use {word}", "bool", True, "Numbers have the colours of the rainbow."),
             PropertySpec(
-                f"Invert {word}", "bool", False, "The rainbow goes the other way.", when=((f"Use {word}",), True)
+                "Color", "color", "#c8c8c8", "The colour of the surface.", when=(("Color Transformer",), "FlatColor")
             ),
-            PropertySpec("Min Color", "color", "#000000", "That of the least number.", when=((f"Use {word}",), False)),
+            PropertySpec(f"Use {word}", "bool", True, "Use the colours of the rainbow for values."),
+            PropertySpec(f"Invert {word}", "bool", False, "Reverse the rainbow.", when=((f"Use {word}",), True)),
             PropertySpec(
-                "Max Color", "color", "#ffffff", "That of the largest number.", when=((f"Use {word}",), False)
+                "Min Color", "color", "#000000", "The colour of the least value.", when=((f"Use {word}",), False)
             ),
             PropertySpec(
-                "Autocompute Intensity Bounds", "bool", True, "Take the least and largest number of the layer."
+                "Max Color", "color", "#ffffff", "The colour of the largest value.", when=((f"Use {word}",), False)
+            ),
+            PropertySpec(
+                "Autocompute Intensity Bounds", "bool", True, "Use the least and the largest value of the layer."
             ),
             PropertySpec(
                 "Min Intensity", "float", 0.0, "The least number.", when=(("Autocompute Intensity Bounds",), False)
@@ -88,7 +90,7 @@ class GridMapDisplay(RecentDisplay):
         return made
 
     def changed(self, path: Path) -> None:
-        """Draw the last map anew, where the page does not apply the property itself."""
+        """Draw the last map again if the page does not apply the property itself."""
         super().changed(path)
         if path[0] not in ("Topic", "Alpha", "Show Grid Lines", "History Length"):
             self.reset()
@@ -122,7 +124,7 @@ class GridMapDisplay(RecentDisplay):
         )
 
     def _colors(self, grid: _Grid) -> NDArray[np.uint8]:
-        """Red, green and blue of each cell, shape (rows, columns, 3) or (3,)."""
+        """Return red, green and blue of each cell, shape (rows, columns, 3) or (3,)."""
         properties = self.properties
         transformer = properties.text("Color Transformer")
         if transformer in ("FlatColor", "None"):
@@ -162,7 +164,7 @@ class _Grid:
     """The cells of a grid_map_msgs/msg/GridMap: row 0 has the largest x, column 0 the largest y.
 
     Raises:
-        BadGridError: numbers that are no size, or lists of different lengths.
+        BadGridError: a size that is not finite and positive, or lists of different lengths.
     """
 
     def __init__(self, message: Any) -> None:
@@ -175,7 +177,7 @@ class _Grid:
         self._resolution = float(info.resolution)
         numbers = (info.resolution, info.length_x, info.length_y, *self._middle, *self._turn)
         if not np.isfinite(numbers).all() or info.resolution <= 0.0:
-            raise BadGridError(phrase("The resolution, lengths or pose of the map are no numbers that can be"))
+            raise BadGridError(phrase("The resolution, lengths or pose of the map are not valid"))
         self.shape = (round(info.length_x / info.resolution), round(info.length_y / info.resolution))
         if min(self.shape) < 1:
             raise BadGridError(
@@ -184,15 +186,17 @@ class _Grid:
         if len(message.layers) != len(message.data):
             raise BadGridError(
                 phrase(
-                    "The map has {layers} layers and data of {data}", layers=len(message.layers), data=len(message.data)
+                    "The map has {layers} layers, but data for {data}",
+                    layers=len(message.layers),
+                    data=len(message.data),
                 )
             )
 
     def layer(self, name: str) -> NDArray[np.float32]:
-        """The numbers of a layer, shape (rows, columns); not finite where a cell has none.
+        """Return the values of a layer, shape (rows, columns); not finite for cells without a value.
 
         Raises:
-            BadGridError: there is no such layer, or it has not as many numbers as there are cells.
+            BadGridError: there is no such layer, or it does not have one number for each cell.
         """
         names = list(self._message.layers)
         if name not in names:
@@ -217,7 +221,7 @@ class _Grid:
         return np.ascontiguousarray(np.roll(cells, begin, axis=(0, 1)))
 
     def points(self, heights: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-        """The middles of the cells with these heights, metres, in the frame of the map; shape (rows, columns, 3)."""
+        """Return the centres of the cells with these heights, m, in the frame of the map; shape (rows, columns, 3)."""
         rows, columns = self.shape
         along = (rows / 2.0 - 0.5 - np.arange(rows)) * self._resolution
         across = (columns / 2.0 - 0.5 - np.arange(columns)) * self._resolution

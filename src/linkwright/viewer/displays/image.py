@@ -1,4 +1,4 @@
-"""Image and Camera: what is on a topic of images, raw or compressed."""
+"""Image and Camera: the images of a topic, raw or compressed."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ from linkwright.viewer.protocol.images import CameraModel, ImageFrame, PictureSi
 
 _ENCODINGS: dict[int, Literal["grey", "rgb", "rgba"]] = {1: "grey", 3: "rgb", 4: "rgba"}
 MOST_PIXELS = 2_100_000
-"""Pages are sent no more pixels of an image than Full HD has: panels are smaller, and pixels are not compressed."""
+"""Pages receive no more pixels of an image than Full HD has: panels are smaller, and pixels are not compressed."""
 
 
 class ImageTopicDisplay(TopicDisplay):
-    """Shows the images of a topic, whose transport is the one that its name ends with, as in RViz.
+    """Shows the images of a topic. As in RViz, the end of its name selects the transport.
 
     Those of ``/compressed`` are files that browsers read, and go to the page as they are, unless their values have more
     than 8 bits.
@@ -55,16 +55,16 @@ class ImageTopicDisplay(TopicDisplay):
 
     @classmethod
     def messages_shown(cls) -> tuple[str, ...]:
-        """Raw and compressed images."""
+        """Return the types of raw and compressed images."""
         return (cls.MESSAGE, "sensor_msgs/msg/CompressedImage")
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Type, topic and quality of service, by the transport of the topic."""
+        """Return type, topic and quality of service, by the transport of the topic."""
         source = self._named_source()
         return source.message_type, source.topic, super().subscription()[2]
 
     def take(self, message: Any, pose: Pose | None) -> None:
-        """Show an image, or say why it cannot be unpacked."""
+        """Show an image, or the reason why it cannot be unpacked."""
         try:
             image = self._image_of(message)
         except BadImageError as error:
@@ -74,7 +74,7 @@ class ImageTopicDisplay(TopicDisplay):
 
     @abstractmethod
     def take_image(self, message: Any, pose: Pose | None) -> None:
-        """An image to show.
+        """Show an image.
 
         Args:
             message: with the fields of a sensor_msgs/msg/Image, or a sensor_msgs/msg/CompressedImage for browsers.
@@ -87,14 +87,14 @@ class ImageTopicDisplay(TopicDisplay):
         super().reset()
 
     def show_image(self, message: Any, camera: CameraModel | None = None, pose: Pose | None = None) -> None:
-        """Send an image, or say why it cannot be shown."""
+        """Send an image, or show the reason why it cannot be drawn."""
         try:
             content = self._frame(message, camera)
         except BadImageError as error:
             self.say("Image", "error", foreign(error))
             return
         if content.encoding == "file" and is_cut_off(content.data):
-            self.say("Image", "error", phrase("The file of the image is cut off: its end is missing"))
+            self.say("Image", "error", phrase("The image's file is truncated"))
         else:
             self.unsay("Image")
         frame, stamp_ns = TopicDisplay.frame_of(self, message)
@@ -102,17 +102,17 @@ class ImageTopicDisplay(TopicDisplay):
         self.send(content, frame=frame.removeprefix("/"), pose=pose, stamp_ns=stamp_ns, shrink=shrink)
 
     def reduction(self, width: int, height: int) -> int:
-        """The number of pixels along a side whose mean is sent as one pixel."""
+        """Return the number of pixels along a side whose mean is sent as one pixel."""
         return 1
 
     def _named_source(self) -> ImageSource:
-        """The topic and transport that the property names, and the type that the graph knows by now."""
+        """Return the topic and transport that the property names, and the type that the graph knows by now."""
         source = ImageSource.of(self.properties.text(TOPIC))
         if not source.topic:
             return source
         try:
             return source.carrying({carried for _, carried in self.context.published.publishers(source.topic)})
-        except InvalidTopicNameError:  # it is no name of a topic, which is told where it is subscribed to
+        except InvalidTopicNameError:  # subscribing reports the invalid name
             return source
 
     def _tell_count(self) -> None:
@@ -131,7 +131,7 @@ class ImageTopicDisplay(TopicDisplay):
                 TOPIC,
                 "error",
                 phrase(
-                    "Images of transport '{transport}' are not read: {choice}",
+                    "Images of transport '{transport}' are not supported: {choice}",
                     transport=source.transport,
                     choice=choice,
                 ),
@@ -148,7 +148,7 @@ class ImageTopicDisplay(TopicDisplay):
             data = np.frombuffer(message.data, np.uint8)
             if not _is_readable(data[:16].tobytes()):
                 raise BadImageError(
-                    phrase("The image is in no format that browsers read: '{format}'", format=message.format)
+                    phrase("Browsers do not support the image's format: '{format}'", format=message.format)
                 )
             return ImageFrame(0, 0, 0, 0, "file", data, camera)
         picture = picture_of(message, self.ranges)
@@ -165,35 +165,35 @@ class ImageTopicDisplay(TopicDisplay):
 
 
 def _is_readable(start: bytes) -> bool:
-    """Whether a file begins as JPEG, PNG, GIF, BMP or WebP do."""
+    """Return whether a file starts as JPEG, PNG, GIF, BMP or WebP do."""
     return start.startswith((b"\xff\xd8\xff", b"\x89PNG", b"GIF8", b"BM")) or start[8:12] == b"WEBP"
 
 
 _NORMALIZE = "Normalize Range"
 
 _RANGE_SPECS: Schema = (
-    PropertySpec(_NORMALIZE, "bool", True, "Find black and white in the values of the images."),
+    PropertySpec(_NORMALIZE, "bool", True, "Derive black and white from the values of the images."),
     PropertySpec("Min Value", "float", 0.0, "The value that is black.", when=((_NORMALIZE,), False)),
     PropertySpec("Max Value", "float", 1.0, "The value that is white.", when=((_NORMALIZE,), False)),
     PropertySpec(
         "Median window",
         "int",
         5,
-        "Over so many images the median of black and of white is taken.",
+        "The number of images over which black and white are the median.",
         minimum=1,
         maximum=1000,
         when=((_NORMALIZE,), True),
     ),
 )
 _TOPIC_SPEC = topic_spec(
-    description="sensor_msgs/msg/Image, or one below it with /compressed or /compressedDepth at its end."
+    description="sensor_msgs/msg/Image, or a topic below it that ends in /compressed or /compressedDepth."
 )
 
 
 class ImageDisplay(ImageTopicDisplay):
     """Images in a panel of their own.
 
-    As in RViz the properties of the range are there once an image has values of more than 8 bits.
+    As in RViz the properties of the range appear once an image has values of more than 8 bits.
     """
 
     CLASS = "rviz_default_plugins/Image"
@@ -202,17 +202,17 @@ class ImageDisplay(ImageTopicDisplay):
 
     _ranged = False
     _panel: PictureSize | None = None
-    """The largest panel of pages; None while no page has told its own."""
+    """The largest panel of pages; None before a page has reported its panel."""
 
     @property
     def _is_hidden(self) -> bool:
-        """Whether pages have told how large their panels are, and nobody sees one."""
+        """Whether pages have reported the sizes of their panels, and no panel is visible."""
         return self._panel is not None and (self._panel.width <= 0 or self._panel.height <= 0)
 
     def receive(self, message: Any) -> None:
-        """Send no more pixels than panels show; while none is seen, listen no longer than to the next image.
+        """Send no more pixels than panels show; while none is visible, unsubscribe after the next image.
 
-        So cameras that make pictures only for who listens make none for a panel behind another one.
+        Cameras that publish only for subscribers then publish no images for a hidden panel.
         """
         before, self._panel = self._panel, message
         if self._is_hidden:
@@ -221,21 +221,21 @@ class ImageDisplay(ImageTopicDisplay):
             return
         if self.enabled and self._subscription is None:
             self._subscribe()
-            if self.last is not None:  # what came before is still shown
+            if self.last is not None:  # the earlier image is still shown
                 self._count = 1
                 self._tell_count()
         if before is not None and (message.width > before.width or message.height > before.height):
             self.show_again()
 
     def reduction(self, width: int, height: int) -> int:
-        """The largest number at which panels still show every pixel that is sent."""
+        """Return the largest number at which panels still show every pixel that is sent."""
         panel = self._panel
         if panel is None or panel.width <= 0 or panel.height <= 0:
             return 1
         return max(1, int(max(width / panel.width, height / panel.height)))
 
     def schema(self) -> Schema:
-        """The properties; those of the range only for images that have one."""
+        """Return the properties; those of the range only for images that have one."""
         if self._ranged:
             return self.SCHEMA
         return (_TOPIC_SPEC, *(replace(spec, hidden=True) for spec in _RANGE_SPECS))
@@ -266,7 +266,7 @@ _INFO = "Camera Info"
 _MOST_WAITING = 10
 
 _SPECS: Schema = (
-    topic_spec(description="sensor_msgs/msg/Image; its camera_info is looked for beside it."),
+    topic_spec(description="sensor_msgs/msg/Image; the topic camera_info beside it gives the camera."),
     PropertySpec(
         "Image Rendering",
         "enum",
@@ -279,7 +279,7 @@ _SPECS: Schema = (
         "Zoom Factor",
         "float",
         1.0,
-        "Less than 1 shows more of the world than the image does, more than 1 less.",
+        "The zoom: below 1 shows more of the scene than the image, above 1 less.",
         minimum=0.00001,
         maximum=100000.0,
     ),
@@ -287,7 +287,7 @@ _SPECS: Schema = (
         "Far Plane Distance",
         "float",
         100.0,
-        "What is farther away is not drawn, in metres.",
+        "The far clipping distance, in metres.",
         minimum=0.00001,
         maximum=100000.0,
     ),
@@ -307,26 +307,26 @@ class CameraDisplay(ImageTopicDisplay):
         self._info: Any = None
 
     def schema(self) -> Schema:
-        """The properties, with a box for each other display."""
+        """Return the properties, with a check box for each other display."""
         whole = PropertySpec(
             "Visibility",
             "bool",
             True,
-            "Which displays are seen through the camera.",
+            "The displays that the camera shows.",
             children=self._boxes,
             nested=True,
         )
         return (*_SPECS, whole)
 
     def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
-        """Offer a box for each of the other displays."""
+        """Offer a check box for each of the other displays."""
         boxes = self._boxes_of(displays, None)
         if boxes != self._boxes:
             self._boxes = boxes
             self.publish_properties()
 
     def _boxes_of(self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None) -> Schema:
-        """A box for each display of a group, by its name; those in groups below the group's box."""
+        """Return a check box for each display of a group, by its name, with those of subgroups below."""
         found: dict[str, PropertySpec] = {}
         for display in displays:
             config = display.config
@@ -338,16 +338,16 @@ class CameraDisplay(ImageTopicDisplay):
         return tuple(found.values())
 
     def most_waiting(self) -> int:
-        """RViz's number; the display has no property for it."""
+        """Return RViz's number, for which the display has no property."""
         return _MOST_WAITING
 
     def take_image(self, message: Any, pose: Pose | None) -> None:
-        """Show an image, once the camera's parameters are known."""
+        """Show an image as soon as the camera's parameters are known."""
         camera = self._model(message)
         self.show_image(message, camera, pose)
 
     def time_changed(self) -> None:
-        """Show what came while time stood still."""
+        """Show the messages that were received while time was paused."""
         self._infos.go_on()
         super().time_changed()
 
@@ -378,7 +378,7 @@ class CameraDisplay(ImageTopicDisplay):
             self.show_again()
 
     def _model(self, image: Any) -> CameraModel | None:
-        """The camera of an image; None, and the status says why, without one."""
+        """Return the camera of an image; without one, show the reason in the status and return None."""
         info = self._info
         if info is None:
             return None

@@ -37,8 +37,8 @@ class InteractiveMarkersDisplay(DataDisplay):
         PropertySpec(_NAMESPACE, "string", "", "The namespace of the interactive marker server."),
         PropertySpec("Show Descriptions", "bool", True, "Show the description above each marker."),
         PropertySpec("Show Axes", "bool", False, "Show the axes of each marker."),
-        PropertySpec("Show Visual Aids", "bool", False, "Show the line that a marker is moved along or turned about."),
-        PropertySpec(_TRANSPARENCY, "bool", True, "Whether arrows and rings that a server left out are seen through."),
+        PropertySpec("Show Visual Aids", "bool", False, "Show the axis along or about which a marker moves."),
+        PropertySpec(_TRANSPARENCY, "bool", True, "Whether the default arrows and rings are transparent."),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
@@ -53,7 +53,7 @@ class InteractiveMarkersDisplay(DataDisplay):
 
     @classmethod
     def topic_value(cls, topic: str) -> str:
-        """The namespace of the server whose updates a topic carries."""
+        """Return the namespace of the server whose updates a topic carries."""
         return topic.rpartition("/")[0]
 
     # --- life --------------------------------------------------------------------------------------------------
@@ -64,7 +64,7 @@ class InteractiveMarkersDisplay(DataDisplay):
             self._connect()
 
     def stop(self) -> None:
-        """Leave the server, and withdraw the files that its markers named from pages."""
+        """Disconnect, and withdraw the files that its markers named from pages."""
         self._disconnect()
         self.context.meshes.replace(self.id, {})
 
@@ -74,7 +74,7 @@ class InteractiveMarkersDisplay(DataDisplay):
             self.reset()
 
     def enabled_changed(self) -> None:
-        """Connect, or leave."""
+        """Connect or disconnect."""
         self.reset()
 
     def reset(self) -> None:
@@ -89,7 +89,7 @@ class InteractiveMarkersDisplay(DataDisplay):
             self._show(name)
 
     def time_changed(self) -> None:
-        """Show what the server said while time stood still."""
+        """Show the server's messages that were received while time was paused."""
         if not self.host.time.paused:
             held, self._held = self._held, []
             for take in held:
@@ -150,7 +150,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.say(_CLIENT, level, text)
 
     def _soon(self, take: Callable[[], None]) -> None:
-        """Pass on an update of the server, or hold it back while time is paused."""
+        """Handle an update of the server, or hold it back while time is paused."""
         if self.host.time.paused:
             self._held.append(take)
         else:
@@ -195,7 +195,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         if moved.header.frame_id:
             marker.header = moved.header
         if not same_frame or not _is_latest(marker):
-            self._show(moved.name)  # its frame is elsewhere now
+            self._show(moved.name)  # its frame has moved
         elif moved.name not in self._unplaced:
             content = InteractiveMarkerMoved(moved.name, pose)
             self.send(content, key=f"pose {moved.name}", frame=marker.header.frame_id.removeprefix("/"))
@@ -234,7 +234,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.send(shape, key=f"marker {name}", frame=frame, pose=at)
 
     def _frame_pose(self, marker: Any, frame: str) -> Pose | None:
-        """The pose of the marker's frame at its time; None for one without a time, which follows its frame."""
+        """Return the pose of the marker's frame at its time; None for a marker without a time."""
         fixed_frame = self.host.frames.fixed_frame
         stamp = marker.header.stamp
         pose = self.context.transforms.pose(fixed_frame, frame, stamp.sec * 1_000_000_000 + stamp.nanosec)

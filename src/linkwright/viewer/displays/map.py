@@ -20,7 +20,7 @@ from linkwright.viewer.protocol.displays import PropertyChanged
 from linkwright.viewer.protocol.images import OccupancyMap
 
 _UPDATE_PERIOD = 0.1
-"""Seconds between two maps that updates have pages sent."""
+"""Seconds between two maps that pages receive because of updates."""
 
 _UPDATE_TOPIC = "Update Topic"
 _USE_TIMESTAMP = "Use Timestamp"
@@ -42,18 +42,18 @@ _SCHEMA: Schema = (
     ),
     alpha("Opacity of the map: 0 is invisible.", 0.7),
     PropertySpec(
-        "Color Scheme", "enum", "map", "What colours the values of the cells have.", options=("map", "costmap", "raw")
+        "Color Scheme", "enum", "map", "The colours for the values of the cells.", options=("map", "costmap", "raw")
     ),
     PropertySpec("Draw Behind", "bool", False, "Draw the map behind everything else, wherever it is."),
     PropertySpec("Resolution", "float", 0.0, "Side of a cell, in metres.", read_only=True),
     PropertySpec("Width", "int", 0, "Cells along x.", read_only=True),
     PropertySpec("Height", "int", 0, "Cells along y.", read_only=True),
-    _told("Position", "XYZ", "Where the lower left corner is in the map's frame, in metres."),
-    _told("Orientation", "XYZW", "How the map is turned in its frame."),
+    _told("Position", "XYZ", "The position of the lower left corner in the map's frame, in metres."),
+    _told("Orientation", "XYZW", "The rotation of the map in its frame."),
     PropertySpec(
-        _USE_TIMESTAMP, "bool", False, "Place the map where its frame was at the map's time, not where it is now."
+        _USE_TIMESTAMP, "bool", False, "Place the map at its frame's pose at the map's time, not at the current one."
     ),
-    PropertySpec(_BINARY, "bool", False, "Show free and occupied only."),
+    PropertySpec(_BINARY, "bool", False, "Show only free and occupied cells."),
     PropertySpec(
         "Binary threshold",
         "int",
@@ -68,7 +68,7 @@ _SCHEMA: Schema = (
 class MapDisplay(TopicDisplay):
     """An occupancy grid, with updates of parts of it.
 
-    It goes where its frame goes, or stays where that was at the map's time when the timestamp is used.
+    It follows its frame, or with the timestamp stays at its frame's pose at the map's time.
     """
 
     CLASS = "rviz_default_plugins/Map"
@@ -80,19 +80,19 @@ class MapDisplay(TopicDisplay):
         self._updates = SideTopic(host, "map_msgs/msg/OccupancyGridUpdate", self._updated)
         self._map: Any = None
         self._cells: NDArray[np.uint8] = np.empty((0, 0), np.uint8)
-        self._is_own = False  # else the cells are the message's, which others have too
+        self._is_own = False  # otherwise the cells are the message's, which other displays share
         self._pose: Pose | None = None
         self._sent_at = 0.0
         self._sending: asyncio.TimerHandle | None = None
         self._follow_topic(file_too=False)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """The map's frame, ``map`` where it names none; the latest time unless the timestamp is to be used."""
+        """Return the map's frame, by default ``map``, and its time, the latest one unless the timestamp is used."""
         frame, stamp_ns = super().frame_of(message)
         return frame or "map", stamp_ns if self.properties.flag(_USE_TIMESTAMP) else 0
 
     def take(self, message: Any, pose: Pose | None) -> None:
-        """Show a map; one that was updated meanwhile stays as it is."""
+        """Show a map; one that was updated meanwhile stays."""
         self._pose = pose
         if message is not self._map and not self._load(message):
             return
@@ -110,7 +110,7 @@ class MapDisplay(TopicDisplay):
             self.show_again()
 
     def recalled(self) -> None:
-        """Updates that the file does not name again come from the topic beside the map's."""
+        """Take updates from the topic beside the map's if the file does not name another."""
         super().recalled()
         self._follow_topic(file_too=False)
 
@@ -124,12 +124,12 @@ class MapDisplay(TopicDisplay):
         self.say(TRANSFORM, "error" if problem else "ok", problem or phrase("Transform OK"))
 
     def time_changed(self) -> None:
-        """Show the map and the updates that came while time stood still."""
+        """Show the map and the updates that were received while time was paused."""
         super().time_changed()
         self._updates.go_on()
 
     def reset(self) -> None:
-        """Draw nothing; a map whose topic was left is forgotten."""
+        """Draw nothing; forget the map of a former topic."""
         if self._sending is not None:
             self._sending.cancel()
             self._sending = None
@@ -145,7 +145,7 @@ class MapDisplay(TopicDisplay):
             self._sending = None
 
     def _follow_topic(self, *, file_too: bool) -> None:
-        """Take updates from the topic beside the map's, as RViz does; a file without a topic for them gets none."""
+        """Take updates from the topic beside the map's, as RViz does; a file without an update topic gets none."""
         topic = self.properties.text(TOPIC).strip()
         updates = f"{topic}_updates" if topic else ""
         if self.config.section.text(_UPDATE_TOPIC) is None:
@@ -214,7 +214,7 @@ class MapDisplay(TopicDisplay):
         self._send_soon()
 
     def _send_soon(self) -> None:
-        """Send the map after a short wait, so that many updates at once make one map."""
+        """Send the map after a short wait, so that many updates give one map."""
         if self._sending is None:
             wait = max(0.0, self._sent_at + _UPDATE_PERIOD - time.monotonic())
             self._sending = asyncio.get_running_loop().call_later(wait, self._send_updated)
@@ -239,7 +239,7 @@ class MapDisplay(TopicDisplay):
 
 
 def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
-    """The text about a size, in a MapMetaData or an update, that does not fit the number of cells."""
+    """Return the text for a size, in a MapMetaData or an update, that does not match the number of cells."""
     return phrase(
         "Data size doesn't match width*height: width = {width}, height = {height}, data size = {size}",
         width=grid.width,
@@ -249,14 +249,14 @@ def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
 
 
 def _pose_of(origin: Any) -> list[float]:
-    """The pose as x y z qx qy qz qw; a quaternion of zeros stands for no rotation."""
+    """Return the pose as x y z qx qy qz qw; a quaternion of zeros means no rotation."""
     p, q = origin.position, origin.orientation
     turn = [q.x, q.y, q.z, q.w]
     return [p.x, p.y, p.z, *(turn if any(turn) else [0.0, 0.0, 0.0, 1.0])]
 
 
 def _readings(info: Any) -> Iterator[tuple[Path, float | int]]:
-    """The values of the read-only properties, from a nav_msgs/msg/MapMetaData."""
+    """Return the values of the read-only properties, from a nav_msgs/msg/MapMetaData."""
     yield ("Resolution",), float(info.resolution)
     yield ("Width",), info.width
     yield ("Height",), info.height

@@ -1,4 +1,4 @@
-"""rviz_default_plugins/Marker and rviz_default_plugins/MarkerArray, and displays that are made of markers."""
+"""rviz_default_plugins/Marker and rviz_default_plugins/MarkerArray, and displays that consist of markers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from linkwright.viewer.web.files import MeshIndex
 
 _NAMESPACES = "Namespaces"
 _SHORTEST_LIFE_NS = 100_000
-"""A lifetime up to this counts as none, as in RViz."""
+"""A lifetime up to this means no lifetime, as in RViz."""
 
 _EXPIRY_PERIOD = 0.1
 """Seconds between checks for expired markers, while any have a lifetime."""
@@ -30,7 +30,7 @@ _DUPLICATES = "Duplicate Marker Check"
 
 
 class _Marker:
-    """A marker as it was received, and until when it is shown (nanoseconds of the node's clock)."""
+    """A marker as it was received, and its expiry (nanoseconds of the node's clock)."""
 
     def __init__(self, reading: MarkerReading, message: Any, expires_ns: int | None) -> None:
         self.reading = reading
@@ -43,8 +43,8 @@ class _Marker:
 class MarkerDisplay(StoredMarkersDisplay):
     """Markers of one topic.
 
-    A marker whose frame cannot be placed yet appears as soon as it can; of those that wait since they came, the last
-    stay, as many as ``Filter size`` says.
+    A marker whose frame cannot be placed yet appears as soon as it can; of the waiting ones, the last
+    ``Filter size`` are kept.
     """
 
     CLASS = "rviz_default_plugins/Marker"
@@ -63,7 +63,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         self._clock = host.context.node.get_clock()
 
     def schema(self) -> Schema:
-        """The topic, and a box for each namespace seen."""
+        """Return the topic, and a check box for each namespace seen."""
         boxes = tuple(
             PropertySpec(name, "bool", True, "Show the markers of this namespace.") for name in self._namespaces
         )
@@ -80,7 +80,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         self._show()
 
     def changed(self, path: Path) -> None:
-        """Follow the box over all namespaces."""
+        """Follow the check box over all namespaces."""
         super().changed(path)
         if path == (_NAMESPACES,):
             value = self.properties.flag(_NAMESPACES)
@@ -112,7 +112,7 @@ class MarkerDisplay(StoredMarkersDisplay):
             self._show()
 
     def transforms_came(self) -> None:
-        """Place the markers that could not be placed before."""
+        """Place the markers that had no transform before."""
         if self._unplaced:
             for identity in list(self._unplaced):
                 self._place_marker(identity, self._markers[identity])
@@ -199,7 +199,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         return known
 
     def _show(self) -> None:
-        """Send what has changed: all of a message at once."""
+        """Send the changes: all of a message at once."""
         self._frame_poses.clear()
         self.show_markers()
 
@@ -223,7 +223,7 @@ class MarkerDisplay(StoredMarkersDisplay):
 
 
 class MarkerArrayDisplay(MarkerDisplay):
-    """Markers that come many at a time; any number of them may wait for their frames, which RViz drops."""
+    """Markers in arrays; any number of them may wait for their frames, while RViz drops them."""
 
     CLASS = "rviz_default_plugins/MarkerArray"
     MESSAGE = "visualization_msgs/msg/MarkerArray"
@@ -253,9 +253,9 @@ class MarkerArrayDisplay(MarkerDisplay):
 
 
 class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
-    """Messages of any type, drawn as the markers that `markers` makes of them: for displays that packages bring.
+    """Messages of any type, drawn as the markers that `markers` returns for them: for displays of other packages.
 
-    A subclass says `CLASS`, `MESSAGE` and `SCHEMA`, among it a `topic_spec`.
+    A subclass sets `CLASS`, `MESSAGE` and `SCHEMA`, with a `topic_spec`.
     """
 
     DRAWN_AS = MarkerArrayDisplay.CLASS
@@ -263,7 +263,7 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
 
     @abstractmethod
     def markers(self, message: Any) -> Iterable[Any]:
-        """The markers of a message; they replace those of the message before.
+        """Return the markers of a message; they replace those of the message before.
 
         Args:
             message: a message of the type `MESSAGE`; it must not be changed.
@@ -288,7 +288,7 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
         self._show()
 
     def changed(self, path: Path) -> None:
-        """Draw the last message anew."""
+        """Draw the last message again."""
         super().changed(path)
         if path[0] not in (TOPIC, _NAMESPACES):
             self.show_again()

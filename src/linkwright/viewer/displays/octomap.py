@@ -27,14 +27,14 @@ from linkwright.viewer.displays.moveit.voxels import (
 
 _TOPIC = "Octomap Topic"
 _MOST = 3.4028234663852886e38
-"""Stands for infinity in properties."""
+"""The value of a property that means infinity."""
 
 _DEPTH = 16
 _MAP = "Octomap"
 
 
 class OctomapDisplay(StoredMarkersDisplay):
-    """The octomap of a topic, as boxes where the frame of its header is now."""
+    """The octomap of a topic, as boxes at the current pose of its header's frame."""
 
     CLASS = "octomap_rviz_plugins/OccupancyGrid"
     MESSAGE = "octomap_msgs/msg/Octomap"
@@ -49,12 +49,12 @@ class OctomapDisplay(StoredMarkersDisplay):
             "Max. Octree Depth",
             "int",
             _DEPTH,
-            "Levels below the root; each less makes cells twice as large.",
+            "Levels below the root; one level less doubles the size of cells.",
             minimum=1,
             maximum=_DEPTH,
         ),
-        PropertySpec("Max. Height Display", "float", _MOST, "Cells above are left out, metres."),
-        PropertySpec("Min. Height Display", "float", -_MOST, "Cells below are left out, metres."),
+        PropertySpec("Max. Height Display", "float", _MOST, "Cells above this height are not drawn, in metres."),
+        PropertySpec("Min. Height Display", "float", -_MOST, "Cells below this height are not drawn, in metres."),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
@@ -63,11 +63,11 @@ class OctomapDisplay(StoredMarkersDisplay):
         self._frame = ""
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Type, topic and quality of service."""
+        """Return type, topic and quality of service."""
         return self.MESSAGE, self.properties.text(_TOPIC).strip(), qos_of(self.properties, _TOPIC)
 
     def changed(self, path: Path) -> None:
-        """Listen to another topic, or draw the last map anew."""
+        """Subscribe to another topic, or draw the last map again."""
         if path[0] == _TOPIC:
             self._restart()
         else:
@@ -116,7 +116,7 @@ class OctomapDisplay(StoredMarkersDisplay):
         self.frames_changed()
 
     def _chosen(self, cells: Cells, resolution: float) -> Cells:
-        """The cells that properties select, merged into larger ones above the maximum depth."""
+        """Return the selected cells, merged into larger ones above the maximum depth."""
         cells = rendered(cells, self.properties.text("Voxel Rendering"))
         height = cells.centers[:, 2]
         lowest, highest = (self.properties.number(f"{which}. Height Display") for which in ("Min", "Max"))

@@ -48,7 +48,7 @@ from linkwright.viewer.protocol.displays import PropertyChanged
 from linkwright.viewer.protocol.points import CloudPoints
 
 _COUNT_PERIOD = 0.25
-"""Seconds between two changes of the row that counts points."""
+"""Seconds between two updates of the row that counts points."""
 
 
 @dataclass(slots=True)
@@ -63,8 +63,8 @@ class _Shown:
 class CloudDisplay(TopicDisplay):
     """Shows points.
 
-    The colours are worked out here and sent with the places; style, size and opacity are the page's business. With a
-    Decay Time every message is content of its own, which is taken away when its time is over.
+    The colours are computed here and sent with the positions; style, size and opacity are the page's part. With a
+    Decay Time every message is content of its own, which is removed when its time is over.
     """
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
@@ -78,16 +78,16 @@ class CloudDisplay(TopicDisplay):
         self._computed: dict[str, tuple[float, float]] = {}
 
     def pixel_size(self) -> float:
-        """Size of points by their depth, for a camera's pixels; 0 for the size that the properties say."""
+        """Return the size of points by their depth, for a camera's pixels; 0 for the size that the properties set."""
         return 0.0
 
     def choose_transformer(self, transformer: str) -> None:
-        """Choose a transformer that the messages offer; the one in the file stays there."""
+        """Choose a transformer that the messages support; the one in the file stays there."""
         if self.properties.tell((COLOUR_TRANSFORMER,), transformer):
             self.publish_properties()
 
     def schema(self) -> Schema:
-        """The properties, with the transformers and channels that the last message offers."""
+        """Return the properties, with the transformers and channels that the last message supports."""
         offered: dict[str, tuple[str, ...]] = {}
         if self._transformers:
             offered[COLOUR_TRANSFORMER] = tuple(sorted(self._transformers))
@@ -100,7 +100,7 @@ class CloudDisplay(TopicDisplay):
         )
 
     def show(self, points: Points, pose: Pose, stamp_ns: int) -> None:
-        """Show points whose frame is at a pose, and those before them as long as the Decay Time says."""
+        """Show points whose frame is at a pose, and earlier ones for the Decay Time."""
         self._offer_transformers(points)
         now = time.monotonic()
         decay = self.properties.number(DECAY_TIME)
@@ -142,7 +142,7 @@ class CloudDisplay(TopicDisplay):
         super().stop()
 
     def fields_of(self, key: str, index: int) -> dict[str, float | str] | None:
-        """The values of a point that is shown, besides its coordinates; None when it is not shown any more."""
+        """Return the values of a point that is shown, besides its coordinates; None if it is not shown any more."""
         shown = next((shown for shown in self._shown if shown.key == key), None)
         if shown is None or not 0 <= index < len(shown.points):
             return None
@@ -183,7 +183,7 @@ class CloudDisplay(TopicDisplay):
             self.choose_transformer(transformers[0])
 
     def _keep_bounds(self, auto: str, *paths: Path) -> None:
-        """Set the bounds to the last computed ones, when they are not computed any more."""
+        """Keep the last computed bounds when the bounds are not computed any more."""
         computed = self._computed.get(auto)
         if computed is None or self.properties.flag(auto):
             return
@@ -251,18 +251,18 @@ class PointsDisplay(CloudDisplay):
 
     @abstractmethod
     def points_of(self, message: Any) -> Points:
-        """The points of a message, in the frame of its header.
+        """Return the points of a message, in the frame of its header.
 
         Raises:
-            BadCloudError: there are none to be had.
+            BadCloudError: the message has none.
         """
 
     def lack_of_points(self, message: Any) -> Phrase | None:
-        """Why a message without points has none, where that is nothing usual."""
+        """Return the reason why a message has no points, if that is unusual."""
         return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
-        """The points of a message and the pose of the frame that they are in; a scanner may move while it scans."""
+        """Return the points of a message and the pose of their frame; a scanner may move while it scans."""
         return points, pose
 
     def take(self, message: Any, pose: Pose | None) -> None:
@@ -280,9 +280,9 @@ class PointsDisplay(CloudDisplay):
 
 
 class LaserScanDisplay(PointsDisplay):
-    """The echoes of a planar scanner.
+    """The points of a planar scanner.
 
-    Each ray is placed where the scanner was when it was sent, as laser_geometry does; a scan whose end has no
+    Each ray starts at the scanner's pose at the ray's time, as in laser_geometry; a scan whose end has no
     transforms yet is placed by its beginning, where RViz would drop it.
     """
 
@@ -299,17 +299,17 @@ class LaserScanDisplay(PointsDisplay):
         self._projector = ScanProjector()
 
     def points_of(self, message: Any) -> Points:
-        """The end points of the rays that hit something."""
+        """Return the end points of the rays that hit an object."""
         return self._projector.points(message)
 
     def lack_of_points(self, message: Any) -> Phrase | None:
-        """Rays that the sensor could not measure, or that its own limits rule out; infinity means far (REP 117)."""
+        """Return the reason why no ray is valid; infinity means far (REP 117)."""
         ranges = np.frombuffer(message.ranges, np.float32)
         finite = ranges[np.isfinite(ranges)]
         if len(finite):
             return phrase(
-                "The ranges are {low:.2f} to {high:.2f} m, and the message's range_min and range_max {least:.2f} and "
-                "{most:.2f} m: none counts",
+                "All ranges, {low:.2f} to {high:.2f} m, are outside of the message's range_min and range_max, "
+                "{least:.2f} and {most:.2f} m",
                 low=float(finite.min()),
                 high=float(finite.max()),
                 least=message.range_min,
@@ -320,7 +320,7 @@ class LaserScanDisplay(PointsDisplay):
         return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
-        """The points in the Fixed Frame if the scanner moved, else in its own frame."""
+        """Return the points in the Fixed Frame if the scanner moved, else in its own frame."""
         steps = len(message.ranges) - 1
         frame, stamp_ns = self.frame_of(message)
         seconds = steps * float(message.time_increment)
@@ -337,7 +337,7 @@ class LaserScanDisplay(PointsDisplay):
 
 
 class PointCloudDisplay(PointsDisplay):
-    """A cloud of points as the old sensor_msgs/msg/PointCloud has it."""
+    """A cloud of points in the old form of sensor_msgs/msg/PointCloud."""
 
     CLASS = "rviz_default_plugins/PointCloud"
     MESSAGE = "sensor_msgs/msg/PointCloud"
@@ -368,7 +368,7 @@ class PointCloud2Display(PointsDisplay):
         return points_of_cloud(message)
 
     def lack_of_points(self, message: Any) -> Phrase | None:
-        """Points of which none has finite coordinates."""
+        """Return the status text for a message without a point with finite coordinates."""
         count = message.width * message.height
         return phrase("All {count} points are NaN or infinite", count=count) if count else None
 

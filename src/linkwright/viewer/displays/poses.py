@@ -31,7 +31,7 @@ _AXES = (("Shape",), "Axes")
 
 
 def pose_shape(*, nested: bool = False) -> Schema:
-    """Whether a pose is an arrow or axes, and how large; ``nested`` as Odometry has it: the sizes below ``Shape``."""
+    """Return the properties for the shape of a pose; ``nested`` as in Odometry: the sizes are below ``Shape``."""
     description = "Whether a pose is drawn as an arrow along its x or as axes."
     sizes = (
         PropertySpec("Color", "color", "#ff1900", "Colour of the arrow.", when=_ARROW),
@@ -50,11 +50,11 @@ def pose_shape(*, nested: bool = False) -> Schema:
 
 
 def covariance() -> PropertySpec:
-    """The properties of RViz's CovarianceProperty."""
+    """Return the properties of RViz's CovarianceProperty."""
     position = (
         PropertySpec("Color", "color", "#cc33cc", "Colour of the ellipsoid."),
         alpha("Opacity of the ellipsoid.", 0.3),
-        PropertySpec("Scale", "float", 1.0, "How many standard deviations the ellipsoid is large.", minimum=0.0),
+        PropertySpec("Scale", "float", 1.0, "Size of the ellipsoid, in standard deviations.", minimum=0.0),
     )
     orientation = (
         PropertySpec(
@@ -83,19 +83,19 @@ def covariance() -> PropertySpec:
             "Offset",
             "float",
             1.0,
-            "How far from the pose they are, in metres; in a plane: how long the triangle is.",
+            "Distance from the pose, in metres; in a plane: length of the triangle.",
             minimum=0.0,
         ),
-        PropertySpec("Scale", "float", 1.0, "How many standard deviations they are large.", minimum=0.0),
+        PropertySpec("Scale", "float", 1.0, "Size of the three, in standard deviations.", minimum=0.0),
     )
     return PropertySpec(
         "Covariance",
         "bool",
         True,
-        "Draw how uncertain each pose is.",
+        "Draw the uncertainty of each pose.",
         children=(
-            PropertySpec("Position", "bool", True, "Draw how uncertain the position is.", children=position),
-            PropertySpec("Orientation", "bool", True, "Draw how uncertain the orientation is.", children=orientation),
+            PropertySpec("Position", "bool", True, "Draw the uncertainty of the position.", children=position),
+            PropertySpec("Orientation", "bool", True, "Draw the uncertainty of the orientation.", children=orientation),
         ),
     )
 
@@ -107,13 +107,13 @@ _SOLID = (("Shape",), "Arrow (3D)")
 
 
 def pose_row(pose: Any) -> tuple[float, ...]:
-    """x, y, z, qx, qy, qz, qw of a geometry_msgs/msg/Pose."""
+    """Return x, y, z, qx, qy, qz, qw of a geometry_msgs/msg/Pose."""
     at, turn = pose.position, pose.orientation
     return (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w)
 
 
 def pose_rows(poses: Iterable[Any]) -> Floats:
-    """The poses as rows x y z qx qy qz qw; shape (N, 7)."""
+    """Return the poses as rows x y z qx qy qz qw; shape (N, 7)."""
     return np.array([pose_row(pose) for pose in poses], dtype=np.float32).reshape(-1, 7)
 
 
@@ -132,7 +132,7 @@ class PoseDisplay(RecentDisplay):
 
 
 class PoseWithCovarianceDisplay(RecentDisplay):
-    """The last pose of a topic, and how uncertain it is."""
+    """The last pose of a topic, and its uncertainty."""
 
     CLASS = "rviz_default_plugins/PoseWithCovariance"
     MESSAGE = "geometry_msgs/msg/PoseWithCovarianceStamped"
@@ -184,16 +184,18 @@ class PoseArrayDisplay(RecentDisplay):
 
 
 class ParticleCloudDisplay(RecentDisplay):
-    """The particles of nav2's amcl: the likelier, the larger (nav2_rviz_plugins)."""
+    """The particles of nav2's amcl: likelier ones are larger (nav2_rviz_plugins)."""
 
     CLASS = "nav2_rviz_plugins/ParticleCloud"
     MESSAGE = "nav2_msgs/msg/ParticleCloud"
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
         *_LOOK_OF_POSES,
-        length("Min Arrow Length", 0.02, "How long the arrow of a pose that is not likely is, in metres."),
-        length("Max Arrow Length", 0.3, "How long that of one that is certain is, in metres."),
-        PropertySpec("Arrow Height Scale", "float", 5.0, "Metres that what is certain is drawn higher.", minimum=0.0),
+        length("Min Arrow Length", 0.02, "Length of the arrow of an unlikely pose, in metres."),
+        length("Max Arrow Length", 0.3, "Length of the arrow of a certain pose, in metres."),
+        PropertySpec(
+            "Arrow Height Scale", "float", 5.0, "Height in metres at which a certain pose is drawn.", minimum=0.0
+        ),
     )
 
     def content(self, message: Any) -> DataContent | None:
@@ -207,7 +209,7 @@ _NORM_TOLERANCE = 10e-3
 
 
 class OdometryDisplay(RecentDisplay):
-    """The path of a robot: a mark wherever it moved or turned so far since the mark before."""
+    """The path of a robot: a mark after each distance or rotation."""
 
     CLASS = "rviz_default_plugins/Odometry"
     MESSAGE = "nav_msgs/msg/Odometry"
@@ -215,12 +217,20 @@ class OdometryDisplay(RecentDisplay):
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
         PropertySpec(
-            "Position Tolerance", "float", 0.1, "Metres from the last mark that make for a new one.", minimum=0.0
+            "Position Tolerance",
+            "float",
+            0.1,
+            "Distance from the last mark at which a new one is drawn, in metres.",
+            minimum=0.0,
         ),
         PropertySpec(
-            "Angle Tolerance", "float", 0.1, "Radians from the last mark that make for a new one.", minimum=0.0
+            "Angle Tolerance",
+            "float",
+            0.1,
+            "Angle from the last mark at which a new one is drawn, in radians.",
+            minimum=0.0,
         ),
-        PropertySpec("Keep", "int", 100, "How many marks are kept; 0 for all of them.", minimum=0),
+        PropertySpec("Keep", "int", 100, "The number of marks that are kept; 0 for all.", minimum=0),
         *pose_shape(nested=True),
         covariance(),
     )
@@ -230,7 +240,7 @@ class OdometryDisplay(RecentDisplay):
         self._marked: tuple[float, ...] | None = None
 
     def content(self, message: Any) -> DataContent | None:
-        """The pose with its covariance, unless it is too near to the last."""
+        """Return the pose with its covariance, unless it is too near to the last."""
         row = pose_row(message.pose.pose)
         spread = np.asarray(message.pose.covariance, dtype=np.float64)
         if not self.is_finite(row, spread):
@@ -263,7 +273,7 @@ _ARROWS_SHOWN = (("Pose Style",), "Arrows")
 
 
 class PathDisplay(RecentDisplay):
-    """The last paths of a topic, as lines through their poses, with the poses if asked for."""
+    """The last paths of a topic, as lines through their poses, optionally with the poses."""
 
     CLASS = "rviz_default_plugins/Path"
     MESSAGE = "nav_msgs/msg/Path"
@@ -275,9 +285,9 @@ class PathDisplay(RecentDisplay):
         line_width(),
         PropertySpec("Color", "color", "#19ff00", "Colour of the lines."),
         alpha("Opacity of the lines."),
-        PropertySpec("Buffer Length", "int", 1, "How many paths are shown.", minimum=1),
-        vector("Offset", "How far from their place paths are drawn, in metres of the Fixed Frame."),
-        PropertySpec("Pose Style", "enum", "None", "How the poses are drawn.", options=("None", "Axes", "Arrows")),
+        PropertySpec("Buffer Length", "int", 1, "The number of paths that are shown.", minimum=1),
+        vector("Offset", "Offset of the paths in the Fixed Frame, in metres."),
+        PropertySpec("Pose Style", "enum", "None", "The shape of the poses.", options=("None", "Axes", "Arrows")),
         length("Length", 0.3, "Length of each axis, in metres.", _AXES_SHOWN),
         length("Radius", 0.03, "Thickness of each axis, in metres.", _AXES_SHOWN),
         PropertySpec("Pose Color", "color", "#ff55ff", "Colour of the arrows.", when=_ARROWS_SHOWN),

@@ -27,23 +27,23 @@ _OPTIONS = (
         STYLE[1],
         "enum",
         "Links in Alphabetic Order",
-        "How the rows of links and joints are arranged.",
+        "The arrangement of the rows of links and joints.",
         options=("Links in Alphabetic Order", "Joints in Alphabetic Order", *_TREES),
     ),
     PropertySpec("Expand Tree", "bool", False, "Open or close the rows of all links and joints of the tree."),
-    PropertySpec("Expand Link Details", "bool", False, "Open or close what is known of each link."),
-    PropertySpec("Expand Joint Details", "bool", False, "Open or close what is known of each joint."),
+    PropertySpec("Expand Link Details", "bool", False, "Open or close the details of each link."),
+    PropertySpec("Expand Joint Details", "bool", False, "Open or close the details of each joint."),
     PropertySpec(ALL[1], "bool", True, "Set the boxes of all links."),
 )
 _OPTION_NAMES = frozenset(spec.name for spec in _OPTIONS)
 
 _LINK_ALPHA = alpha("Opacity of this link.")
 _LINK_EXTRAS = (
-    PropertySpec("Show Trail", "bool", False, "Draw the way that the link went."),
+    PropertySpec("Show Trail", "bool", False, "Draw the trail of the link."),
     PropertySpec("Show Axes", "bool", False, "Draw the axes of the link's frame."),
 )
 _JOINT_AXES = PropertySpec("Show Axes", "bool", False, "Draw the axes of the joint's frame.")
-_JOINT_AXIS = PropertySpec("Show Joint Axis", "bool", False, "Draw the axis that the joint moves about or along.")
+_JOINT_AXIS = PropertySpec("Show Joint Axis", "bool", False, "Draw the joint's axis of motion.")
 _WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
 
 NO_ROWS = (PropertySpec(LINKS, "group", children=_OPTIONS),)
@@ -65,7 +65,7 @@ class RobotRows:
         self._found: dict[tuple[str, bool], list[str]] = {}
 
     def specs(self, style: str) -> tuple[PropertySpec, ...]:
-        """The groups of links and of joints, each in alphabetic order."""
+        """Return the groups of links and of joints, each in alphabetic order."""
         links = tuple(
             self._link(self._robot.links[name]) for name in sorted(self._robot.links) if name not in _OPTION_NAMES
         )
@@ -77,15 +77,15 @@ class RobotRows:
 
     @property
     def boxes(self) -> list[Path]:
-        """The boxes of links."""
+        """Return the check boxes of links."""
         return [(LINKS, name) for name in sorted(self._shaped - _OPTION_NAMES)]
 
     def boxes_of(self, joint: str, style: str) -> list[Path]:
-        """The boxes of the links that a joint's box sets."""
+        """Return the check boxes of the links that a joint's check box sets."""
         return [(LINKS, name) for name in self._links_of(self._robot.joints[joint], style)]
 
     def derived(self, style: str, is_on: Callable[[Path], bool]) -> dict[Path, bool]:
-        """The boxes that follow from those of links: a joint's is on when those of all its links are."""
+        """Return the check boxes that follow from those of links: a joint's is on when those of all its links are."""
         on = {name: is_on((LINKS, name)) for name in self._shaped - _OPTION_NAMES}
         found: dict[Path, bool] = {
             (JOINTS, joint.name): all(on.get(name, True) for name in links)
@@ -125,12 +125,12 @@ class RobotRows:
 
 
 _STATIC = (
-    PropertySpec("Visual Enabled", "bool", True, "Draw what the robot looks like."),
-    PropertySpec("Collision Enabled", "bool", False, "Draw the shapes that contacts are worked out with."),
+    PropertySpec("Visual Enabled", "bool", True, "Draw the visual geometry."),
+    PropertySpec("Collision Enabled", "bool", False, "Draw the collision geometry."),
     PropertySpec(
         "Mass Properties",
         "group",
-        description="What masses look like.",
+        description="How masses are drawn.",
         children=(
             PropertySpec("Mass", "bool", False, "Draw each link's mass as a ball of lead at its centre of mass."),
             PropertySpec("Inertia", "bool", False, "Draw each link's inertia as a box of the same inertia."),
@@ -139,19 +139,24 @@ _STATIC = (
     PropertySpec("Update Interval", "float", 0.0, "Seconds between updates; 0 for every frame.", minimum=0.0),
     alpha("Opacity of all links: 0 is invisible."),
     *DESCRIPTION_SPECS,
-    PropertySpec("TF Prefix", "string", "", "What stands before a slash and the link's name in the name of its frame."),
+    PropertySpec(
+        "TF Prefix",
+        "string",
+        "",
+        "The prefix of frame names: a link's frame is the prefix, a slash and the link's name.",
+    ),
 )
 _SOURCE_NAMES = frozenset(spec.name for spec in DESCRIPTION_SPECS)
 _MOST_FINDINGS = 5
 _MANY_BOXES = 20
-"""When more boxes than these change, all rows are sent anew."""
+"""If more check boxes than these change, all rows are sent again."""
 
 
 class RobotModelDisplay(ViewerDisplay):
     """A robot, from a description on a topic or in a file.
 
-    A description that cannot be read leaves the last good robot standing, where RViz would show none. Frames of links
-    that a new description lacks are taken out of tf; RViz would show them for as long as it runs.
+    With a description that cannot be read the last good robot stays, while RViz would show none. Frames of links
+    that a new description lacks are removed from tf; RViz would show them for as long as it runs.
     """
 
     CLASS = "rviz_default_plugins/RobotModel"
@@ -189,7 +194,7 @@ class RobotModelDisplay(ViewerDisplay):
         return self._file_problems
 
     def schema(self) -> Schema:
-        """The fixed properties, and rows for each link and joint."""
+        """Return the fixed properties, and rows for each link and joint."""
         return (*_STATIC, *self._robot_specs)
 
     def start(self) -> None:
@@ -211,7 +216,7 @@ class RobotModelDisplay(ViewerDisplay):
         self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
-        """Follow another source or prefix, or the box over all links."""
+        """Follow another source or prefix, or the check box over all links."""
         if path[0] in _SOURCE_NAMES:
             self.start()
         elif path == ("TF Prefix",) and self.robot is not None:
@@ -224,7 +229,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_status()
 
     def time_changed(self) -> None:
-        """Read the description that came while time stood still."""
+        """Read the description that was received while time was paused."""
         if self._held is not None and not self.host.time.paused:
             self._described(self._held)
 
@@ -233,7 +238,7 @@ class RobotModelDisplay(ViewerDisplay):
         return [self.scene]
 
     def receive(self, status: MeshStatus) -> None:
-        """Show a page's report on a mesh of this robot in the status; one on an earlier robot is ignored."""
+        """Show a page's report on a mesh of this robot in the status; reports on earlier robots are ignored."""
         link = next((link for link in self.scene.links if link.name == status.link), None)
         if link is None or not any(shape.url == status.url for shape in (*link.visuals, *link.collisions)):
             return
@@ -251,7 +256,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_status()
 
     def provenance(self, link: str) -> LinkProvenance | None:
-        """The place where a link was written; None for an unknown link. Takes as long as an expansion does."""
+        """Return the place where a link was written, or None for an unknown link. Takes as long as an expansion."""
         from linkwright.xacro.tracing.provenance_text import provenance_lines
 
         element = self.robot.links[link].element if self.robot and link in self.robot.links else None
@@ -284,7 +289,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_robot(reading.robot)
 
     def _topic_row(self, *, is_other: bool) -> StatusRow:
-        """The row that names the publisher, where several publish a description; a warning once these differed."""
+        """Return the row that names the publisher if there are several; logs a warning once if they differ."""
         before = None if self._publisher is None else self._source.current(self._publisher)
         self._publisher = self._source.publisher
         publishers = self._source.publishers()
@@ -295,7 +300,7 @@ class RobotModelDisplay(ViewerDisplay):
         if is_other and before is not None and before in publishers:
             self._is_contested = True
             self.context.node.get_logger().warning(
-                f"The description of {owner} takes the place of that of {publishers[before]}: both publish on "
+                f"The description of {owner} replaces that of {publishers[before]}: both publish on "
                 f"'{self.properties.text('Description Topic')}'"
             )
         others = ", ".join(sorted(set(publishers.values())))
@@ -336,7 +341,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_status()
 
     def recalled(self) -> None:
-        """Restore the order of the rows, and derive the boxes of joints again."""
+        """Restore the order of the rows, and derive the check boxes of joints again."""
         if self._rows is not None:
             self._robot_specs = self._rows.specs(self.properties.text(*STYLE))
             self._derive_boxes(self._rows)
@@ -352,7 +357,7 @@ class RobotModelDisplay(ViewerDisplay):
             self.publish_properties()
 
     def _box_changed(self, rows: RobotRows, path: Path) -> None:
-        """Set the boxes that follow from one, as RViz does, and then those that follow from these."""
+        """Set the check boxes that follow from one, as RViz does, and then those that follow from these."""
         style = self.properties.text(*STYLE)
         followers: list[Path] = []
         if path == STYLE:

@@ -1,4 +1,4 @@
-"""rviz_default_plugins/TwistStamped, AccelStamped and Wrench: two vectors, one to move along and one to turn about."""
+"""rviz_default_plugins/TwistStamped, AccelStamped and Wrench: a linear and an angular vector each."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def _screw_specs(linear: str, angular: str) -> Schema:
         PropertySpec(f"{linear} Arrow Scale", "float", 2.0, f"Metres for each unit of the {linear.lower()} vector."),
         PropertySpec(f"{angular} Arrow Scale", "float", 2.0, f"Metres for each unit of the {angular.lower()} vector."),
         PropertySpec("Arrow Width", "float", 0.5, "Width of the arrows, in metres."),
-        PropertySpec("History Length", "int", 1, "How many messages are shown.", minimum=1, maximum=100000),
+        PropertySpec("History Length", "int", 1, "The number of messages that are shown.", minimum=1, maximum=100000),
     )
 
 
@@ -36,10 +36,10 @@ class ScrewDisplay(RecentDisplay):
 
     @abstractmethod
     def vectors(self, message: Any) -> tuple[Any, Any]:
-        """The linear and the angular vector of a message."""
+        """Return the linear and the angular vector of a message."""
 
     def number_list(self, vector: Any) -> list[float]:
-        """x, y and z of a vector."""
+        """Return x, y and z of a vector."""
         return [float(vector.x), float(vector.y), float(vector.z)]
 
 
@@ -78,7 +78,7 @@ class WrenchDisplay(ScrewDisplay):
     MESSAGE = "geometry_msgs/msg/WrenchStamped"
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
-        PropertySpec("Accept NaN Values", "bool", False, "Take numbers that are none for 0."),
+        PropertySpec("Accept NaN Values", "bool", False, "Use 0 for invalid numbers."),
         *_screw_specs("Force", "Torque"),
     )
 
@@ -87,7 +87,7 @@ class WrenchDisplay(ScrewDisplay):
         return message.wrench.force, message.wrench.torque
 
     def number_list(self, vector: Any) -> list[float]:
-        """x, y and z, with NaN taken for 0 if that is asked for."""
+        """Return x, y and z, with NaN replaced with 0 if the property is set."""
         numbers = super().number_list(vector)
         if not self.properties.flag("Accept NaN Values"):
             return numbers

@@ -23,13 +23,13 @@ class FrameFilter:
 
     Attributes:
         text: the same.
-        problem: why there is no expression, for the status; None when nothing is wrong.
+        problem: why the expression is not valid, for the status; None if it is.
     """
 
     def __init__(self, text: str = "") -> None:
         self.text = text
         self.problem: Phrase | None = None
-        self._expression: Expression | None = None  # what reads one is imported for the few who write one
+        self._expression: Expression | None = None  # here, because few users write an expression
         self._known: set[str] = set()
         self._found: set[str] = set()
         if text:
@@ -42,11 +42,11 @@ class FrameFilter:
 
     @property
     def is_used(self) -> bool:
-        """Whether there is an expression to look for."""
+        """Whether there is an expression to match."""
         return self._expression is not None
 
     def found_in(self, names: Collection[str]) -> set[str]:
-        """The names that match the expression; none from now on with an expression that takes too long."""
+        """Return the names that match the expression, or none if the match takes too long."""
         if self._expression is not None:
             from linkwright.graph.names.expressions import TooCostlyError
 
@@ -56,9 +56,7 @@ class FrameFilter:
                 self._known = set(names)
             except TooCostlyError:
                 self._expression, self._found = None, set()
-                self.problem = phrase(
-                    "This expression is not used: it takes too long to look for it in the names of the frames"
-                )
+                self.problem = phrase("This expression is not used: it takes too long to match the names of the frames")
         return self._found
 
 
@@ -73,7 +71,7 @@ _STATIC = (
         "Frame Timeout",
         "float",
         15.0,
-        "Seconds until a frame that is heard of no more is gone: grey from the first third on, away from the second.",
+        "Seconds until a frame without new transforms is removed: grey after the first third, hidden after the second.",
         minimum=1.0,
     ),
     PropertySpec(_WHITELIST, "string", "", "A regular expression: only frames in whose name it is found are shown."),
@@ -82,7 +80,7 @@ _STATIC = (
 _FILTERS = ((_WHITELIST,), (_BLACKLIST,))
 _ALL = ("Frames", "All Enabled")
 _DEEPEST = 60
-"""Rows of the Tree nest no deeper, so that no chain of frames is too long for the page's JSON."""
+"""Maximum nesting of the rows of the Tree, so that no chain of frames is too long for the page's JSON."""
 
 
 class TfDisplay(ViewerDisplay):
@@ -102,17 +100,17 @@ class TfDisplay(ViewerDisplay):
         super().__init__(host, identity, config)
 
     def schema(self) -> Schema:
-        """The fixed properties, a box for each frame, and the tree of frames."""
+        """Return the fixed properties, a check box for each frame, and the tree of frames."""
         if self._schema is None:
             self._schema = (*_STATIC, self._frames_spec(), self._tree_spec())
         return self._schema
 
     def start(self) -> None:
-        """List the frames there are."""
+        """List the present frames."""
         self.frames_changed()
 
     def changed(self, path: Path) -> None:
-        """Follow a filter, or the box over all frames."""
+        """Follow a filter, or the check box over all frames."""
         if path in _FILTERS:
             self.frames_changed()
         elif path == _ALL:
@@ -125,7 +123,7 @@ class TfDisplay(ViewerDisplay):
             self.pages.publish(PropertyChanged(self.property_id(_ALL), False))
 
     def frames_changed(self) -> None:
-        """List the frames again, and say which of them can be placed."""
+        """List the frames again, and show the status of each."""
         frames = self.host.frames
         shown = tuple(sorted(self._filtered(set(frames.names))))
         above = {
@@ -145,7 +143,7 @@ class TfDisplay(ViewerDisplay):
         return StatusRow(name, "warn", problem) if problem else StatusRow(name, "ok", phrase("Transform OK"))
 
     def _filtered(self, names: set[str]) -> set[str]:
-        """The names that the filters leave; one that is not used leaves all."""
+        """Return the names that pass the filters; an unused filter passes all."""
         only, without = (self.properties.text(*path) for path in _FILTERS)
         if only != self._only.text:
             self._only = FrameFilter(only)
@@ -172,12 +170,12 @@ class TfDisplay(ViewerDisplay):
         for name, parent in self._parents:
             below.setdefault(parent if parent in shown else None, []).append(name)
         roots = tuple(_tree(name, below, 1) for name in below.get(None, ()))
-        return PropertySpec("Tree", "group", description="How the frames hang together.", children=roots)
+        return PropertySpec("Tree", "group", description="The tree of frames.", children=roots)
 
 
 def _tree(name: str, below: dict[str | None, list[str]], depth: int) -> PropertySpec:
     names = below.get(name, [])
     if names and depth == _DEEPEST:
-        rest = PropertySpec("...", "group", description="The chain goes on; it is too long to be shown here.")
+        rest = PropertySpec("...", "group", description="The chain continues; it is too long to be shown here.")
         return PropertySpec(name, "group", children=(rest,))
     return PropertySpec(name, "group", children=tuple(_tree(child, below, depth + 1) for child in names))

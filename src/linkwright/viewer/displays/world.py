@@ -44,15 +44,15 @@ _WORLD = "World"
 _SCENE_KEY, _POSES_KEY = "scene", "poses"
 _MOST_FINDINGS = 5
 _UNMOVED = 1e-6
-"""In m, and of quaternions: by less tf's frames are not moved in the world."""
+"""In m, and of quaternions: smaller changes do not move tf's frames in the world."""
 
 
 class WorldDisplay(TopicDisplay):
     """All models of a world, drawn by their visuals, each link at its pose in the simulation.
 
-    The poses are in the frame ``world``. Where neither tf nor the Fixed Frame has that name, the world is placed so
-    that a link of it stands where tf has the frame of the same name: a robot, as a rule. Where the Fixed Frame has it
-    and tf does not, it is the other way round: tf's frames are placed so that the world stands still.
+    The poses are in the frame ``world``. If neither tf nor the Fixed Frame has that name, the world is placed so that
+    one of its links, usually a robot's, is at tf's pose for the frame of the same name. If the Fixed Frame has it and
+    tf does not, it is the other way round: tf's frames are placed so that the world does not move.
     """
 
     CLASS = WORLD_DISPLAY
@@ -62,23 +62,21 @@ class WorldDisplay(TopicDisplay):
     SCHEMA = (
         topic_spec(
             default=DESCRIPTION_TOPIC,
-            description="The topic that carries the world as SDF, as std_msgs/msg/String.",
+            description="The topic of the world's SDF, std_msgs/msg/String.",
             depth=1,
             durability="Transient Local",
         ),
-        PropertySpec(
-            _POSES, "string", POSES_TOPIC, "The topic that carries where links are, as tf2_msgs/msg/TFMessage."
-        ),
-        PropertySpec("Visual Enabled", "bool", True, "Draw what the models look like."),
-        PropertySpec("Collision Enabled", "bool", False, "Draw the shapes that contacts are worked out with."),
+        PropertySpec(_POSES, "string", POSES_TOPIC, "The topic of the links' poses, tf2_msgs/msg/TFMessage."),
+        PropertySpec("Visual Enabled", "bool", True, "Draw the visual geometry."),
+        PropertySpec("Collision Enabled", "bool", False, "Draw the collision geometry."),
         alpha("Opacity of all models: 0 is invisible."),
         PropertySpec(
             "Light",
             "enum",
             "Automatic",
-            "What lights the scene: the camera, as in RViz, a studio, or the lights of the world with its background, "
+            "The lights of the scene: one at the camera, as in RViz, a studio, or the world's, with its background, "
             "sky and fog. "
-            "Automatic: the studio where a graphics card draws and keeps up, else a soft light at the camera.",
+            "Automatic: the studio if a graphics card draws fast enough, else a soft light at the camera.",
             options=("Automatic", "Camera", "Studio", "World"),
         ),
         PropertySpec("Shadows", "bool", True, "Let the lights of the studio and of the world cast shadows."),
@@ -90,15 +88,13 @@ class WorldDisplay(TopicDisplay):
             "Of a lidar with very many rays some are drawn.",
             options=CHOICES,
         ),
-        PropertySpec(
-            _RAYS_TOPIC, "string", RAYS_TOPIC, "The topic that carries the rays, as sensor_msgs/msg/LaserScan."
-        ),
+        PropertySpec(_RAYS_TOPIC, "string", RAYS_TOPIC, "The topic of the rays, sensor_msgs/msg/LaserScan."),
         PropertySpec(
             _FRUSTUMS,
             "enum",
             CHOICES[0],
-            "Draw what cameras see, from the near to the far plane: of those with <visualize>true</visualize>, of all, "
-            "or of none.",
+            "Draw the view of cameras, from the near to the far plane: of those with <visualize>true</visualize>, of "
+            "all, or of none.",
             options=CHOICES,
         ),
     )
@@ -113,7 +109,7 @@ class WorldDisplay(TopicDisplay):
         self._rows_of: dict[str, int] = {}
         self._poses: NDArray[np.float64] = np.empty((0, 7))
         self._posed: Sequence[str] = ()
-        """The links of the last poses: all that something moves."""
+        """The links of the last poses: all links that move."""
         self._stamp_ns = 0
         self._anchors: tuple[int, ...] = ()
         self._leads = False
@@ -124,12 +120,12 @@ class WorldDisplay(TopicDisplay):
     # --- life --------------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Listen to the poses, too."""
+        """Subscribe to the poses, too."""
         super().start()
         self._follow()
 
     def stop(self) -> None:
-        """Leave both topics, and withdraw the world's files from pages."""
+        """Unsubscribe, and withdraw the world's files from pages."""
         super().stop()
         self._side.close()
         self._rays.close()
@@ -145,19 +141,19 @@ class WorldDisplay(TopicDisplay):
             self._follow_rays()
 
     def enabled_changed(self) -> None:
-        """Listen only while the display is enabled."""
+        """Subscribe only while the display is enabled."""
         super().enabled_changed()
         self._follow()
         self._follow_rays()
 
     def time_changed(self) -> None:
-        """Take what came while time stood still."""
+        """Take the messages that were received while time was paused."""
         super().time_changed()
         self._side.go_on()
         self._rays.go_on()
 
     def time_reset(self) -> None:
-        """Keep the world, which nobody would publish again; rays are measured anew."""
+        """Keep the world, which is not published again; rays are measured again."""
         self._rays.forget()
 
     def reset(self) -> None:
@@ -170,7 +166,7 @@ class WorldDisplay(TopicDisplay):
         self.forget()
 
     def frames_changed(self) -> None:
-        """Place the world anew."""
+        """Place the world again."""
         self._show_poses()
 
     def transforms_came(self) -> None:
@@ -219,7 +215,7 @@ class WorldDisplay(TopicDisplay):
     # --- descriptions ------------------------------------------------------------------------------------------
 
     def take(self, message: Any, pose: Pose | None) -> None:
-        """Read a description; the one before is shown until that is done."""
+        """Read a description; the former one is shown until that is done."""
         self._cancel()
         self._reading = asyncio.get_running_loop().create_task(self._read(message.data))
 
@@ -243,7 +239,7 @@ class WorldDisplay(TopicDisplay):
         poses = np.array(content.poses, dtype=np.float64).reshape(-1, 7)
         moving = frozenset(self._posed)
         static = tuple(f"{model.name}{SEPARATOR}" for model in world.models if model.static)
-        for row, link in enumerate(content.links):  # what moves stays where it is until the simulation says more
+        for row, link in enumerate(content.links):  # moving links stay until the simulation publishes poses
             if link.name in moving and link.name in before and not link.name.startswith(static):
                 poses[row] = self._poses[before[link.name]]
         self._revision += 1
@@ -290,7 +286,7 @@ class WorldDisplay(TopicDisplay):
             return
         self.unsay(_POSES)
         self._posed = batch.children
-        # Transforms of this very moment may still be on their way, those of the last poses are there.
+        # Transforms of this very moment may not have arrived yet; those of the last poses have.
         self._locate()
         known = [place for place, row in enumerate(rows) if row >= 0]
         self._poses[[rows[place] for place in known]] = poses[known]
@@ -337,7 +333,11 @@ class WorldDisplay(TopicDisplay):
             self.say(
                 _FRAME,
                 "ok",
-                phrase("tf has no '{world}': the world is where '{frame}' is in both", world=WORLD, frame=frame),
+                phrase(
+                    "tf has no '{world}': the world is placed so that '{frame}' coincides in both",
+                    world=WORLD,
+                    frame=frame,
+                ),
             )
         elif self._placed[1] is None:
             self._placed = ("", None)
@@ -357,11 +357,15 @@ class WorldDisplay(TopicDisplay):
         self.say(
             _FRAME,
             "ok",
-            phrase("tf has no '{world}': its frames are where '{frame}' is in both", world=WORLD, frame=frame),
+            phrase(
+                "tf has no '{world}': its frames are placed so that '{frame}' coincides in both",
+                world=WORLD,
+                frame=frame,
+            ),
         )
 
     def _anchor(self, frames: frozenset[str]) -> tuple[int, str, Transform] | None:
-        """A link that is a frame of tf, and its pose in the Fixed Frame, or in tf's root where the world leads."""
+        """Return a link that is a frame of tf, and its pose in the Fixed Frame, or in tf's root if the world leads."""
         for row in self._anchors:
             frame = _unscoped(self._content.links[row].name)
             if frame not in frames:
@@ -373,7 +377,7 @@ class WorldDisplay(TopicDisplay):
         return None
 
     def _root(self, frame: str) -> str:
-        """The root of the tree that a frame is in."""
+        """Return the root of a frame's tree."""
         names, parents = self.host.frames.names, self.host.frames.parents
         if frame not in names:
             return frame
@@ -407,11 +411,11 @@ def _scene(
 
 
 def _content(text: str, index: MeshIndex) -> tuple[World, WorldContent]:
-    """The world of a text, and the content drawn for it.
+    """Return the world of a text, and the content drawn for it.
 
     Raises:
-        LinkwrightError: it is no SDF, or has neither a world nor a model in it.
-        FrameError: something in it cannot be placed.
+        LinkwrightError: it is not SDF, or has neither a world nor a model in it.
+        FrameError: an element in it cannot be placed.
     """
     document, _ = parse_as_gazebo(text, "<world>")
     reading = read(document)
@@ -431,6 +435,6 @@ def _unscoped(name: str) -> str:
 
 
 def _anchors(content: WorldContent) -> tuple[int, ...]:
-    """The links by which the world may be placed: those whose frames no other link shares, in the order of the file."""
+    """Return the links that can place the world: those with a unique frame, in the order of the file."""
     counts = Counter(_unscoped(link.name) for link in content.links)
     return tuple(row for row, link in enumerate(content.links) if counts[_unscoped(link.name)] == 1)

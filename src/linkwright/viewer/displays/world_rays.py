@@ -17,18 +17,18 @@ from linkwright.viewer.sensors import ShownLidar
 CHOICES = ("Visualized", "All", "None")
 """The choices of sensors to draw: those with ``<visualize>``, all, or none."""
 _OTHERS = "/others"
-"""Ends the topic of the lidars that do not say so."""
+"""Ends the topic of the lidars without ``<visualize>``."""
 _MOST_KEPT = 64
-"""Lidars whose last rays are kept until the world is known."""
+"""Lidars whose last rays are stored until the world is known."""
 
 
 class LidarRays:
-    """Listens to measured rays, and only while some of them are drawn.
+    """Subscribes to measured rays while they are drawn.
 
     Args:
         host: the display's host.
         show: called with the rays of a lidar that are drawn.
-        hide: called with the name of a lidar whose rays are drawn no more.
+        hide: called with the name of a lidar whose rays are not drawn any more.
     """
 
     def __init__(self, host: DisplayHost, show: Callable[[WorldRays], None], hide: Callable[[str], None]) -> None:
@@ -40,7 +40,7 @@ class LidarRays:
         self._host = host
 
     def describe(self, lidars: Iterable[ShownLidar]) -> None:
-        """Take the lidars of a world."""
+        """Set the lidars of a world."""
         self._lidars = {lidar.scene.name: lidar for lidar in lidars}
         self._let_go(set())
         self._last = {name: message for name, message in self._last.items() if name in self._lidars}
@@ -48,7 +48,7 @@ class LidarRays:
             self._measured(message)
 
     def forget(self) -> None:
-        """Draw no rays until others are measured."""
+        """Draw no rays until new ones are measured."""
         self._last.clear()
         self._let_go(set())
 
@@ -60,7 +60,7 @@ class LidarRays:
             choice: the lidars to draw, see `CHOICES`.
 
         Returns:
-            RViz's words for what is wrong with the topic, or None.
+            RViz's text for a problem with the topic, or None.
         """
         wanted: dict[str, list[str]] = {}
         for name, lidar in self._lidars.items():
@@ -76,12 +76,12 @@ class LidarRays:
         return problem
 
     def go_on(self) -> None:
-        """Take what came while time stood still."""
+        """Take the messages that were received while time was paused."""
         for topic in self._topics.values():
             topic.go_on()
 
     def close(self) -> None:
-        """Stop listening."""
+        """Unsubscribe."""
         self.follow("", "")
 
     def _let_go(self, kept: set[str]) -> None:
@@ -95,7 +95,7 @@ class LidarRays:
         ranges = np.asarray(message.ranges, dtype=np.float32)
         if lidar is not None and ranges.size != lidar.measured[0] * lidar.measured[1]:
             return
-        if name in self._last or len(self._last) < _MOST_KEPT:  # its lidar may be told of only now, as in a recording
+        if name in self._last or len(self._last) < _MOST_KEPT:  # its world may arrive later, as in a recording
             self._last[name] = message
         if lidar is None:
             return

@@ -1,1 +1,1 @@
-"""The features of pages besides displays, a module or a package each."""
+"""The features of pages besides displays, each a module or a package."""

@@ -1,4 +1,4 @@
-"""Asks pages for the arguments that a description needs and nobody gave."""
+"""Asks pages for the arguments that a description needs and that have no value."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from linkwright.viewer.protocol.message import ServerMessage
 from linkwright.viewer.web.audience import Page
 
 Give = Callable[[dict[str, str]], object]
-"""Takes the values that a user gives."""
+"""Receives the values that a user gives."""
 
 
 class ArgumentsFeature(PageFeature):
-    """Shows every page the same form, and passes on the first answer."""
+    """Shows every page the same form, and forwards the first answer."""
 
     RECEIVES: ClassVar[tuple[type, ...]] = (GiveArguments,)
 
@@ -29,12 +29,12 @@ class ArgumentsFeature(PageFeature):
         return [self._form]
 
     def ask(self, form: ArgumentForm, give: Give | None) -> None:
-        """Show a form; `give` is called with the values of the page that answers first."""
+        """Show a form; `give` is called with the values of the first answer."""
         self._form, self._give = form, give
         self.context.pages.publish(form)
 
     def receive(self, page: Page, message: GiveArguments) -> None:
-        """Take the values of the arguments that were asked for."""
+        """Handle the values for the requested arguments."""
         give, names = self._give, set(self._form.names)
         if give is not None:
             self.ask(NOTHING_ASKED, None)

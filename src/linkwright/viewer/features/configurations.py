@@ -64,9 +64,9 @@ class Request(Generic[Message]):
 
 
 class ConfigurationFeature(PageFeature):
-    """Carries out pages' requests about the configuration.
+    """Handles pages' requests about the configuration.
 
-    Nothing unsaved is lost unless the page says that it may be.
+    Unsaved edits are never lost unless the page confirms it.
 
     Args:
         viewer: the viewer that it belongs to.
@@ -79,12 +79,12 @@ class ConfigurationFeature(PageFeature):
         self._told: dict[VisualizationManager, Configuration] = {}
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """The current state."""
+        """Return the current state."""
         self._told[manager] = self._state(manager)
         return [self._told[manager]]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Forget what was sent to its pages."""
+        """Forget the state that its pages received."""
         self._told.pop(manager, None)
 
     def edited(self, manager: VisualizationManager) -> None:
@@ -95,7 +95,7 @@ class ConfigurationFeature(PageFeature):
             manager.publish(state)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Carry out a request, or send the reason why not."""
+        """Handle a request, or send the reason why it is refused."""
         manager = self.managers.of(page)
         try:
             _DEEDS[type(message)](self, Request(page, manager, message))
@@ -254,19 +254,19 @@ ConfigurationFeature.RECEIVES = tuple(_DEEDS)
 
 
 def _found(manager: VisualizationManager, identities: list[str]) -> list[ViewerDisplay]:
-    """The displays with these ids in the order of the tree; those that went since are passed over."""
+    """Return the displays with these ids in the order of the tree, without those that are gone."""
     wanted = set(identities)
     return [display for display in manager.displays if display.id in wanted]
 
 
 def _folder(manager: VisualizationManager) -> Path:
-    """The folder to which paths are relative: that of the open file, or the working directory."""
+    """Return the folder to which paths are relative: that of the open file, or the working directory."""
     path = manager.config.path
     return path.absolute().parent if path is not None else Path.cwd()
 
 
 def _name(text: str) -> str:
-    """A name that a page gave.
+    """Return a valid name from a page.
 
     Raises:
         ValueError: it is empty or too long.
@@ -278,7 +278,7 @@ def _name(text: str) -> str:
 
 
 class PanelsFeature(PageFeature):
-    """Each page has panels of its own and begins with the file's; the file gets those of whoever changed theirs last.
+    """Each page has panels of its own and starts with the file's; the file gets those of the page that changed last.
 
     Other open pages are not notified: a page's panels are its own. Where there is no file there
     is nothing to save either: the browser remembers the panels.
@@ -287,7 +287,7 @@ class PanelsFeature(PageFeature):
     RECEIVES: ClassVar[tuple[type, ...]] = (ShowPanels,)
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """The panels that the file shows."""
+        """Return the panels that the file shows."""
         config = manager.config
         return [Panels(manager.opened, config.document.source.name, config.panels.shown)]
 

@@ -1,4 +1,4 @@
-"""Answers pages' questions about the descriptions of RobotModel displays, and shows what is wrong with them."""
+"""Answers pages' questions about the descriptions of RobotModel displays, and shows findings on them."""
 
 from __future__ import annotations
 
@@ -61,14 +61,14 @@ class KnownDescription:
 
     @cached_property
     def texts(self) -> SourceTexts:
-        """The files it was made from."""
+        """The files of the description."""
         from linkwright.viewer.features.description_details import SourceTexts
 
         return SourceTexts(self.robot.element, self._files)
 
     @cached_property
     def account(self) -> Description:
-        """The details of its links and joints."""
+        """Return the details of its links and joints."""
         from linkwright.viewer.features.description_details import account
 
         return account(
@@ -81,26 +81,26 @@ class KnownDescription:
         )
 
     def changed_from(self, before: KnownDescription | None) -> DescriptionChanged:
-        """The links and joints that differ from the description before; of a first one none."""
+        """Return the links and joints that differ from the description before; none for a first one."""
         links = _changed(before.robot.links, self.robot.links) if before else []
         joints = _changed(before.robot.joints, self.robot.joints) if before else []
         return DescriptionChanged(self.display, self.revision, links, joints)
 
     def named_text(self, file: str) -> DescriptionText:
-        """One of its files, or the expanded text for an empty name; other files are refused."""
+        """Return one of its files, or the expanded text for an empty name; other files are refused."""
         text = self.text if file == "" else self.texts.text(file)
         return DescriptionText(self.display, self.revision, file, text)
 
     def findings(self, finder: PackageFinder) -> InertiaFindings:
-        """The implausible masses; computed anew, because meshes may have changed."""
+        """Return the implausible masses; computed each time, because meshes may have changed."""
         from linkwright.viewer.features.description_details import implausible
 
         return InertiaFindings(self.display, self.revision, implausible(self.robot, finder))
 
 
 def _changed(before: Mapping[str, Part], after: Mapping[str, Part]) -> list[str]:
-    """The links or joints that are new or different in another robot; their places in the text do not count."""
-    # Elements, which know the places, take no part in comparisons of the model.
+    """Return the links or joints that are new or different in another robot; their places in the text do not count."""
+    # Elements, which have the places, take no part in comparisons of the model.
     return [name for name, part in after.items() if before.get(name) != part]
 
 
@@ -110,7 +110,7 @@ _Question = AskDescription | AskDescriptionText | AskInertia | AskProvenance
 class DescriptionFeature(PageFeature):
     """Answers questions about descriptions in order, in a thread.
 
-    When a page asks the same question again before it is answered, only the newest is.
+    If a page repeats a question before it is answered, only the newest one is.
 
     """
 
@@ -124,7 +124,7 @@ class DescriptionFeature(PageFeature):
         self._thinking = asyncio.Lock()
 
     def robot_changed(self) -> None:
-        """Tell pages which of their robots have changed."""
+        """Notify pages of their robots that have changed."""
         shown: set[str] = set()
         for manager in self.managers.all():
             for display in manager.robot_models():
@@ -137,7 +137,7 @@ class DescriptionFeature(PageFeature):
             del self._known[gone]
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Remember the files with findings; their text is the one the findings refer to."""
+        """Store the files with findings; their text is the one the findings refer to."""
         self._faulty = {
             diagnostic.source.name: diagnostic.source.text
             for diagnostic in diagnostics
@@ -145,7 +145,7 @@ class DescriptionFeature(PageFeature):
         }
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """The descriptions that can be asked for; no link counts as changed."""
+        """Return the descriptions that pages can ask for; no link counts as changed."""
         known = [self._look_at(display) for display in manager.robot_models()]
         return [
             DescriptionChanged(known_description.display, known_description.revision, [], [])
@@ -197,7 +197,7 @@ class DescriptionFeature(PageFeature):
             page.send(told)
 
     def _look_at(self, display: RobotModelDisplay) -> KnownDescription | None:
-        """The known description that a display shows now."""
+        """Return the known description that a display shows now."""
         robot, prefix = display.robot, display.properties.text("TF Prefix")
         known = self._known.get(display.id)
         if robot is None:
@@ -211,7 +211,7 @@ class DescriptionFeature(PageFeature):
 
 
 def _text(known: KnownDescription | None, faulty: dict[str, str], question: AskDescriptionText) -> DescriptionText:
-    """The text of a file; for one with findings the text they refer to, and not that of the robot shown."""
+    """Return the text of a file; for one with findings the text they refer to, not that of the current robot."""
     file = question.file
     if file in faulty:
         return DescriptionText(question.display, known.revision if known else 0, file, faulty[file])
@@ -229,17 +229,17 @@ class DiagnosticsFeature(PageFeature):
         self._shown = Diagnostics([])
 
     def opening(self) -> list[ServerMessage]:
-        """The present findings."""
+        """Return the present findings."""
         return [self._shown]
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Show other findings; none clears the list."""
+        """Show other findings; an empty list clears them."""
         self._found = diagnostics
         self._shown = self._all()
         self.context.pages.publish(self._shown)
 
     def robot_changed(self) -> None:
-        """Show a finding while nothing of the robot can be seen."""
+        """Show a finding while no part of the robot is visible."""
         shown = self._all()
         if shown != self._shown:
             self._shown = shown
@@ -252,20 +252,20 @@ class DiagnosticsFeature(PageFeature):
 
 
 def _unseen(model: RobotModelDisplay) -> Diagnostic | None:
-    """The finding that none of the visuals of a robot can be drawn (VIEW207)."""
+    """Return the finding that none of the visuals of a robot can be drawn (VIEW207)."""
     robot, problems = model.robot, model.file_problems
     if robot is None or not problems or not model.enabled or any(link.visuals for link in model.scene.links):
         return None
     named = [text for link in robot.links.values() if link.visuals for text in problems.get(link.name, ())]
     if not named:
         return None
-    message = phrase("nothing of robot '{name}' is seen: none of its meshes can be read", name=robot.name)
+    message = phrase("robot '{name}' is not visible: none of its meshes can be read", name=robot.name)
     hint = phrase("are they in another repository, fetched by the build, or in a package that is not installed?")
     return Diagnostic("VIEW207", message, severity=Severity.WARNING, notes=(Note(named[0]),), hint=hint)
 
 
 def item_of(diagnostic: Diagnostic) -> DiagnosticItem:
-    """A diagnostic as the page shows it, with the line of source it points to."""
+    """Return a diagnostic for the page, with the line of source that it points to."""
     span, source = diagnostic.span, diagnostic.source
     excerpt = source.line(span.line) if span and source and source.name == span.file else ""
     return DiagnosticItem(

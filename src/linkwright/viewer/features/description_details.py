@@ -60,7 +60,7 @@ class Places:
             self._expanded.setdefault(key, element)
 
     def of(self, tag: str, name: str, element: Element | None) -> Written:
-        """The place of a link or joint; `element` is the one that the robot was read from."""
+        """Return the place of a link or joint; `element` is the one that the robot was read from."""
         twin = self._expanded.get((tag, name))
         expanded = None if twin is None else _range(twin)
         if element is None or element.source is None or element.source.name.startswith("<"):
@@ -69,7 +69,7 @@ class Places:
 
 
 def _calls(element: Element) -> Iterator[CallSite]:
-    """The calls and includes on the way to an element, innermost first; of calls from one place the innermost."""
+    """Return the calls and includes on the way to an element, innermost first, one for each place."""
     innermost = element.origin
     if not isinstance(innermost, Frame):
         return
@@ -80,7 +80,7 @@ def _calls(element: Element) -> Iterator[CallSite]:
 
 
 def _range(element: Element) -> SourceRange | None:
-    """The whole element; only its start tag's name where its end cannot be told."""
+    """Return the range of the element, or only of its start tag's name if its end is unknown."""
     found = element_range(element)
     span = element.span() if found is None or element.source is None else element.source.span(*found)
     if span is None:
@@ -89,7 +89,7 @@ def _range(element: Element) -> SourceRange | None:
 
 
 def account(robot: Robot, text: str, files: list[str], *, display: str, revision: int, prefix: str) -> Description:
-    """Everything about a robot but its shapes, which pages have already.
+    """Return all details of a robot except its shapes, which pages have already.
 
     Takes as long as reading the text once more does.
 
@@ -163,7 +163,7 @@ def _finite(number: float) -> float | None:
 
 
 def _unit(axis: tuple[float, float, float]) -> list[float]:
-    """The axis in length one; zeros for one that is none."""
+    """Return the axis with length one, or zeros for one that is not valid."""
     length = float(np.linalg.norm(axis))
     if not (isfinite(length) and length > 0):
         return [0.0, 0.0, 0.0]
@@ -173,8 +173,8 @@ def _unit(axis: tuple[float, float, float]) -> list[float]:
 class SourceTexts:
     """The files of one description, and no others.
 
-    What elements were written in is in memory, as it was when the description was made. A file that gave only values,
-    such as one of YAML, is read when somebody asks for it.
+    The texts of its elements are in memory, as they were when the description was made. A file that gave only values,
+    such as one of YAML, is read on request.
 
     Args:
         root: the root element of the description.
@@ -191,7 +191,7 @@ class SourceTexts:
         return list(dict.fromkeys([*self._files, *self._read]))
 
     def text(self, name: str) -> str | None:
-        """The text of a file; None for what the description was not made from, or is not there any more."""
+        """Return the text of a file, or None if it is not one of the description's, or is gone."""
         source = self._read.get(name)
         if source is not None:
             return source.text
@@ -205,7 +205,7 @@ class SourceTexts:
 
 
 def _sources(root: Element | None) -> dict[str, SourceText]:
-    """The texts in which the elements, and the calls that brought them, are written."""
+    """Return the texts with the elements, and with the calls that produced them."""
     found: dict[str, SourceText] = {}
     known: set[int] = set()
     for element in root.walk() if root is not None else ():
@@ -229,7 +229,7 @@ _RULES = "LW3"
 
 
 def implausible(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
-    """The findings of the rules about masses and inertias, by link.
+    """Return the findings of the rules about masses and inertias, by link.
 
     The links of a macro that is called four times are four links here, where `linkwright check` reports one place. May
     take long, for meshes are read to see how large links are.
@@ -253,7 +253,7 @@ def implausible(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
 
 
 def _owners(robot: Robot) -> dict[int, str]:
-    """Identity of every element inside of a link -> the link."""
+    """Return the link of every element inside of a link, by the element's identity."""
     owners: dict[int, str] = {}
     for link in robot.links.values():
         if link.element is not None:

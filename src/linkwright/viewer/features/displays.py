@@ -1,4 +1,4 @@
-"""Displays, for pages: values set, what was selected, and what the Add dialog offers."""
+"""Displays, for pages: setting properties, selections, and the content of the Add dialog."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from linkwright.viewer.web.audience import Page
 
 
 class DisplaysFeature(PageFeature):
-    """Passes messages of pages on to displays."""
+    """Forwards messages of pages to displays."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._sizes: WeakKeyDictionary[ViewerDisplay, dict[Page, PictureSize]] = WeakKeyDictionary()
 
     def receive(self, page: Page, message: SetProperty | MeshStatus | MarkerFeedback | PictureSize) -> None:
-        """Set a property, or hand the message to its display, unless that was removed meanwhile."""
+        """Set a property, or forward the message to its display, unless that was removed meanwhile."""
         manager = self.managers.of(page)
         if isinstance(message, SetProperty):
             manager.set_property(page, message.id, message.value)
@@ -39,13 +39,13 @@ class DisplaysFeature(PageFeature):
                 display.receive(message)
 
     def page_gone(self, page: Page) -> None:
-        """Forget the panels of a page; images are made for those of the others."""
+        """Forget the panels of a page; images fit those of the others."""
         for display, sizes in list(self._sizes.items()):
             if sizes.pop(page, None) is not None:
                 self._tell_size(display)
 
     def _tell_size(self, display: ViewerDisplay) -> None:
-        """Tell a display the size of the largest panel that shows it, nothing where none does."""
+        """Send a display the size of the largest panel that shows it, or zero."""
         sizes = self._sizes[display].values()
         width = max((size.width for size in sizes), default=0)
         height = max((size.height for size in sizes), default=0)
@@ -53,7 +53,7 @@ class DisplaysFeature(PageFeature):
 
 
 class PointsFeature(PageFeature):
-    """Answers questions about points: pages have only places and colours."""
+    """Answers questions about points: pages have only their positions and colours."""
 
     def receive(self, page: Page, message: AskPoint) -> None:
         """Answer, if the point is still shown."""
@@ -68,9 +68,9 @@ class PointsFeature(PageFeature):
 
 
 def choices(node: Node) -> DisplayChoices:
-    """All classes of displays that can be added, groups last; the topics that another node publishes to, by name.
+    """Return all classes of displays that can be added, groups last, and the topics of other nodes, by name.
 
-    It imports every display; so pages ask for it when somebody is about to choose.
+    It imports every display; so pages ask for it when the user opens the dialog.
     """
     displays = sorted(display_classes(), key=lambda display: (display.CLASS == GROUP, display.CLASS))
     by_message: dict[str, list[str]] = {}
@@ -91,7 +91,7 @@ def choices(node: Node) -> DisplayChoices:
 def show_topic(display: ViewerDisplay, topic: str) -> None:
     """Set the topic of a new display, with the quality of service that its publishers offer.
 
-    RViz takes its defaults, with which nothing comes of a sensor's Best Effort.
+    RViz uses its defaults, which do not receive a sensor's Best Effort messages.
     """
     path = display.TOPIC
     spec = next((spec for spec in display.schema() if (spec.name,) == path[:1]), None)

@@ -11,7 +11,7 @@ from linkwright.messages import get_action
 
 
 class GoalSender:
-    """Sends poses to an action whose goals have one, as ``navigate_to_pose`` of nav2.
+    """Sends poses to an action whose goals are poses, such as nav2's ``navigate_to_pose``.
 
     Args:
         node: to send with.
@@ -26,7 +26,7 @@ class GoalSender:
         self._client = ActionClient(node, kind, name)
 
     def send(self, pose: Any, refused: Callable[[str], None]) -> None:
-        """Send a pose; the log has an error when no server accepts it.
+        """Send a pose; logs an error if no server accepts it.
 
         Args:
             pose: a geometry_msgs/msg/PoseStamped.
@@ -48,5 +48,5 @@ class GoalSender:
             refuse(f"{self._name} action server is not available. Is the initial pose set?")
 
     def destroy(self) -> None:
-        """Leave the graph."""
+        """Destroy the client."""
         self._client.destroy()

@@ -27,7 +27,7 @@ _LAG = 0.01
 
 
 class JointsFeature(PageFeature):
-    """Connects the page's Joints panel with the one that moves the joints, once there is one."""
+    """Connects the page's Joints panel with the panel that moves the joints, once there is one."""
 
     RECEIVES: ClassVar[tuple[type, ...]] = (SetJoint, SetJoints, RandomizeJoints, CenterJoints)
 
@@ -56,7 +56,7 @@ class JointsFeature(PageFeature):
         return [self._controls(self._panel), JointPositions(self._panel.positions())]
 
     def receive(self, page: Page, message: SetJoint | SetJoints | RandomizeJoints | CenterJoints) -> None:
-        """Carry out a request. Unknown joints, and those that mimic another, are ignored."""
+        """Handle a request. Unknown joints, and those that mimic another, are ignored."""
         panel = self._panel
         if panel is None:
             return
@@ -91,7 +91,7 @@ class JointsFeature(PageFeature):
             [
                 JointControl(
                     name=slider.name,
-                    kind=cast("Any", slider.kind),  # the joints that move are of these three kinds
+                    kind=cast("Any", slider.kind),  # movable joints are of these three kinds
                     lower=slider.lower,
                     upper=slider.upper,
                     zero=slider.zero,

@@ -1,6 +1,6 @@
-"""Features that are made when they are needed: when a page asks for one, or a topic of theirs is published.
+"""Features that are created on demand: when a page asks for one, or one of their topics is published.
 
-Their modules are imported then. Until then pages are told what there is without them.
+Their modules are imported then. Until then pages receive default messages in their place.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ _ANSWERED_BY: dict[str, tuple[type, ...]] = {
         voice_words.WatchWords,
     ),
 }
-"""The messages that each feature receives, by its module and class below this package."""
+"""The messages that each feature handles, by its module and class below this package."""
 
 _WOKEN_BY = {
     "/simulation_state": _SIMULATION,
@@ -98,18 +98,18 @@ _WOKEN_BY = {
     "/rosout": _LOG,
     "/voice/command": _VOICE,
 }
-"""Topics on which a publisher means that there is something to tell pages."""
+"""Topics whose publishers make a feature necessary."""
 
 _WHILE_NOT_MADE: dict[str, ServerMessage] = {
     _MODELLING: modelling.NO_WORLD,
     _RECORDING: recording.NOTHING_RECORDED,
     _SIMULATION: simulation.NO_SIMULATION,
 }
-"""The message that stands for a feature while it is not made."""
+"""The message that pages receive while a feature does not exist."""
 
 
 class OnDemandFeatures(PageFeature):
-    """Makes each of them, once, and passes on the message that asked for it; later messages go to it directly."""
+    """Creates each of them once, and forwards the message that asked for it; later messages go to it directly."""
 
     RECEIVES: ClassVar[tuple[type, ...]] = tuple(message for asked in _ANSWERED_BY.values() for message in asked)
 
@@ -120,7 +120,7 @@ class OnDemandFeatures(PageFeature):
         self._listening = False
 
     def opening(self) -> list[ServerMessage]:
-        """The messages of features that are not made yet; listens for their topics while there are pages."""
+        """Return the messages of features that are not made yet; watches their topics while there are pages."""
         if not self._listening and self._asleep:
             self._listening = True
             self.context.graph_changes.listen(self._review)
@@ -128,23 +128,23 @@ class OnDemandFeatures(PageFeature):
         return [told for where, told in _WHILE_NOT_MADE.items() if where not in self._made]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Make the feature that takes the message, and pass it on."""
+        """Create the feature that handles the message, and forward it."""
         self._make(next(where for where, asked in _ANSWERED_BY.items() if type(message) in asked)).receive(
             page, message
         )
 
     def recording_shown(self) -> None:
-        """Make the features that are refused beside a recording; they are told next."""
+        """Create the features that refuse work beside a recording; they are notified next."""
         for where in (_SIMULATION, _RECORDING):
             self._make(where)
 
     def page_gone(self, page: Page) -> None:
-        """Stop listening after the last page."""
+        """Stop watching after the last page."""
         if self._listening and len(self.context.pages) == 0:
             self._stop()
 
     def close(self) -> None:
-        """Make no more features."""
+        """Create no more features."""
         self._stop()
 
     def _stop(self) -> None:
@@ -152,7 +152,7 @@ class OnDemandFeatures(PageFeature):
         self.context.graph_changes.ignore(self._review)
 
     def _review(self) -> None:
-        """Make the features whose topics are published now."""
+        """Create the features whose topics are published now."""
         for topic, where in list(self._asleep.items()):
             if self.context.node.count_publishers(topic):
                 self._make(where)

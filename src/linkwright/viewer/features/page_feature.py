@@ -1,4 +1,4 @@
-"""Page features, which answer pages' requests besides displays: their base class, and making them.
+"""Page features, which handle pages' requests besides displays: their base class, and their creation.
 
 They are found through the entry points ``linkwright.page_features``.
 """
@@ -28,7 +28,7 @@ class FeatureHost(Protocol):
     Attributes:
         context: the viewer's node, files and pages.
         managers: the configurations that pages see: one that they share, and those of single pages.
-        live: keeps what came in the last minutes; None where nothing does.
+        live: the history of the last minutes; None if there is none.
     """
 
     context: ViewerContext
@@ -36,7 +36,7 @@ class FeatureHost(Protocol):
     live: LiveHistory | None
 
     def add_feature(self, cls: type[F], receives: Iterable[type] = ()) -> F:
-        """A feature of a class, told of all events from now on; the present one, if any.
+        """Return the feature of a class, which receives all events from now on; the existing one, if any.
 
         Args:
             cls: its class.
@@ -44,14 +44,14 @@ class FeatureHost(Protocol):
         """
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """The messages of all features about a configuration."""
+        """Return the messages of all features about a configuration."""
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
-        """Messages for a page that begins to see a configuration, the frame table last; and binary frames."""
+        """Return messages for a page that begins to see a configuration, the frame table last; and binary frames."""
 
 
 class PageFeature:
-    """Answers some of the messages of pages.
+    """Handles some of the messages of pages.
 
     A feature must cost nothing while no page uses it: keep what a page subscribed to per page, and drop it in
     `page_gone`.
@@ -61,10 +61,10 @@ class PageFeature:
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = ()
-    """The messages of pages that come to `receive`; of features that are made on demand `on_demand` names them."""
+    """The messages of pages that `receive` handles; those of features made on demand are in `on_demand`."""
 
     BEFORE_DISPLAYS: ClassVar[bool] = False
-    """Whether a page is told of its `opening` before the displays, whose places may depend on it."""
+    """Whether a page receives its `opening` before the displays, whose places may depend on it."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         self.viewer = viewer
@@ -72,43 +72,43 @@ class PageFeature:
         self.managers = viewer.managers
 
     def start(self) -> None:
-        """The viewer has begun to listen."""
+        """Start: the viewer is listening."""
 
     def opening(self) -> list[ServerMessage]:
-        """Messages for a page that opens now."""
+        """Return messages for a page that opens now."""
         return []
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Messages about a configuration, for a page that opens, or for all its pages when another file was opened."""
+        """Return messages about a configuration, for a page that opens, or for all pages after a file was opened."""
         return []
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Undo, redo or whether something of a configuration is unsaved may have changed."""
+        """Handle a change of undo, redo or the unsaved state of a configuration."""
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """A manager was closed: drop what is kept for it."""
+        """Handle the end of a manager: drop its data."""
 
     def robot_changed(self) -> None:
-        """A display shows another robot."""
+        """Handle another robot of a display."""
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """The findings about the description have changed; an empty list when it is in order."""
+        """Handle new findings on the description; an empty list if it is in order."""
 
     def recording_shown(self) -> None:
-        """A recording is shown: requests to robots and simulations are refused from now on."""
+        """Handle a recording that is shown: requests to robots and simulations are refused from now on."""
 
     def receive(self, page: Page, message: Any) -> None:
-        """Carry out a request; the message is of one of the classes that it takes."""
+        """Handle a request, a message of one of its classes."""
 
     def page_gone(self, page: Page) -> None:
-        """A page was closed."""
+        """Handle the end of a page."""
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Keep unsaved edits of pages, before the program ends; returns the notices about it."""
+        """Store unsaved edits of pages, before the program ends; returns the findings about it."""
         return []
 
     def close(self) -> None:
-        """End for good."""
+        """Stop for good."""
 
 
 GROUP = "linkwright.page_features"
@@ -116,7 +116,7 @@ GROUP = "linkwright.page_features"
 
 
 def make_features(viewer: FeatureHost) -> list[PageFeature]:
-    """A feature of each kind; one of another package that cannot be made is logged, and left out."""
+    """Return a feature of each kind; one of another package that cannot be made is logged, and left out."""
     made: list[PageFeature] = []
     for name, entry in extensions(GROUP).items():
         try:
@@ -127,6 +127,6 @@ def make_features(viewer: FeatureHost) -> list[PageFeature]:
             if isinstance(feature, PageFeature):
                 made.append(feature)
                 continue
-            problem = f"{entry.value} makes no PageFeature"
-        viewer.context.node.get_logger().error(f"The page feature '{name}' cannot be had: {problem}")
+            problem = f"{entry.value} does not make a PageFeature"
+        viewer.context.node.get_logger().error(f"The page feature '{name}' cannot be loaded: {problem}")
     return made

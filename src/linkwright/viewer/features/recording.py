@@ -1,6 +1,6 @@
 """Recording from pages: one recording at a time, which all pages see, and the last minutes as a file.
 
-Files go into the folder in which the program runs, under names that the program chooses; pages choose nothing of that.
+Files go into the program's working directory, under names that the program chooses; pages cannot choose them.
 """
 
 from __future__ import annotations
@@ -36,21 +36,21 @@ if TYPE_CHECKING:
     from linkwright.viewer.live_history import LiveHistory
 
 _PERIOD = 1.0
-"""Seconds between two times that pages are told how it goes."""
+"""Seconds between two reports of the progress to pages."""
 
 LEFT_FREE = 256_000_000
-"""Bytes of the disk that recordings from pages leave to others."""
+"""Bytes of the disk that recordings from pages leave free."""
 
 _MOST_FILES = 20
 _NANO = 1_000_000_000
 
 
 class RecordingFeature(PageFeature):
-    """Records topics for pages. It goes on when its page is closed, and ends well when the program does.
+    """Records topics for pages. It continues when its page is closed, and ends well when the program does.
 
     Attributes:
         folder: the folder for recordings.
-        left_free: bytes of the disk that are left to others.
+        left_free: bytes of the disk to leave free.
     """
 
     def __init__(self, viewer: FeatureHost) -> None:
@@ -72,7 +72,7 @@ class RecordingFeature(PageFeature):
         self._tell()
 
     def opening(self) -> list[ServerMessage]:
-        """The state of the recording."""
+        """Return the state of the recording."""
         return [self._state()]
 
     def receive(self, page: Page, message: RecordTopics | StopRecording | SaveMinutes) -> None:
@@ -121,7 +121,7 @@ class RecordingFeature(PageFeature):
         self._tell_later()
 
     def _guarded(self, callback: Callable[..., object]) -> Callable[..., object]:
-        """A callback for the recorder's node that ends the recording when a write fails."""
+        """Return a callback for the recorder's node that ends the recording when a write fails."""
 
         def call(*arguments: Any) -> None:
             try:
@@ -135,7 +135,7 @@ class RecordingFeature(PageFeature):
     def _end_at_reset(self, recorder: Recorder) -> None:
         if self._running is not None and self._running.recorder is recorder:
             path = display_path(self._running.writer.path)
-            self._refused([_finding(phrase("recording '{path}' ends here: simulated time began anew", path=path))])
+            self._refused([_finding(phrase("recording '{path}' ends here: simulated time was reset", path=path))])
             self._end()
 
     def _end(self) -> None:
@@ -153,7 +153,7 @@ class RecordingFeature(PageFeature):
             self._made(path, running.length, running.simulated)
         else:
             shutil.rmtree(path, ignore_errors=True)
-            self._refused([_finding(phrase("nothing came, so that there is no recording"))])
+            self._refused([_finding(phrase("no messages arrived, so there is no recording"))])
         self._tell()
 
     # --- the last minutes --------------------------------------------------------------------------------------
@@ -177,7 +177,7 @@ class RecordingFeature(PageFeature):
         simulated = bool(self.context.node.get_parameter("use_sim_time").value)
         messages = await asyncio.to_thread(live.part, topics, start_ns, end_ns, simulated=simulated)
         if not messages:
-            self._refused([_finding(phrase("nothing came in that time, so that there is no recording"))])
+            self._refused([_finding(phrase("no messages arrived in that time, so there is no recording"))])
             return
         try:
             await asyncio.to_thread(save_messages, path, topics, messages, self._note)
@@ -191,7 +191,7 @@ class RecordingFeature(PageFeature):
     def _written(self, task: asyncio.Task[None]) -> None:
         self._saving = self._saved = None
         error = None if task.cancelled() else task.exception()
-        if error is not None:  # a fault of ours must not leave pages waiting
+        if error is not None:  # a bug must not leave pages waiting
             self.context.node.get_logger().error(f"The last minutes were not saved: {error!r}")
             self._refused([_finding(phrase("the last minutes were not saved: {reason}", reason=foreign(repr(error))))])
         self._tell()
@@ -208,17 +208,17 @@ class RecordingFeature(PageFeature):
         return path
 
     def _check_room(self, needed: int) -> None:
-        """Check that the disk has room left.
+        """Check that the disk has space left.
 
         Raises:
-            LinkwrightError: BAG110, it has too little.
+            LinkwrightError: BAG110, there is not enough.
         """
         if self._free() < self.left_free + needed:
             raise LinkwrightError(
                 _finding(
                     phrase(
-                        "there is too little room for a recording in '{folder}': {free} MB are free, and "
-                        "{least} MB must be",
+                        "there is not enough space for a recording in '{folder}': {free} MB are free, {least} "
+                        "MB are required",
                         folder=display_path(self.folder),
                         free=self._free() // 1_000_000,
                         least=(self.left_free + needed) // 1_000_000,
@@ -227,7 +227,7 @@ class RecordingFeature(PageFeature):
             )
 
     def _free(self) -> int:
-        """The free bytes where recordings go; infinite where that cannot be told, since writing fails then."""
+        """Return the free bytes of the recordings' disk; infinite if unknown, as writing then reports the error."""
         try:
             return shutil.disk_usage(self.folder).free
         except OSError:
@@ -251,7 +251,7 @@ class RecordingFeature(PageFeature):
         self._tell()
 
     def _refused(self, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show pages and the terminal an error."""
+        """Show an error in pages and in the terminal."""
         for diagnostic in diagnostics:
             self.context.report(diagnostic)
         self._problem = in_one_line(diagnostics)
@@ -301,12 +301,12 @@ class _Running:
 
     @property
     def length(self) -> float:
-        """Seconds since it began."""
+        """Seconds since the start."""
         return time.monotonic() - self._began
 
     @property
     def simulated(self) -> float | None:
-        """Seconds of the simulation since it began; None where there is none, or it began anew."""
+        """Simulated seconds since the recording began; None if there is no simulated time, or after its reset."""
         if self._clock is None:
             return None
         passed = (self._clock.now().nanoseconds - self._simulated_from) / 1e9

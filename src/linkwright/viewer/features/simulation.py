@@ -1,4 +1,4 @@
-"""The simulation bar, and moving models of a simulated world: through topics and services alone.
+"""The simulation bar, and moving models of a simulated world: only through topics and services.
 
 Source of their names: gazebo_ros and simulation_interfaces.
 """
@@ -56,7 +56,7 @@ _ACTIONS = {
 
 @dataclass(slots=True)
 class _Drag:
-    """A model that a page moves: its pose before, once that is known, and the newest one not sent yet."""
+    """A model that a page moves: its original pose, once that is known, and the newest one not sent yet."""
 
     model: str
     start: Any = None
@@ -65,7 +65,7 @@ class _Drag:
 
 
 class SimulationFeature(PageFeature):
-    """Tells pages the state of a simulation, and passes their requests on; listens while there are pages."""
+    """Sends pages the state of a simulation, and forwards their requests; subscribes while there are pages."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -78,7 +78,7 @@ class SimulationFeature(PageFeature):
         self._spawning: set[asyncio.Task[None]] = set()
 
     def opening(self) -> list[ServerMessage]:
-        """The state of the simulation."""
+        """Return the state of the simulation."""
         if not self._listening and not self._recorded:
             self._listening = True
             self.context.graph_changes.listen(self._review)
@@ -91,7 +91,7 @@ class SimulationFeature(PageFeature):
         self._stop()
 
     def page_gone(self, page: Page) -> None:
-        """Let go of the models that the page moves, and stop listening after the last page."""
+        """Release the models that the page moves, and unsubscribe after the last page."""
         self._drags.pop(page, None)
         if self._listening and len(self.context.pages) == 0:
             self._stop()
@@ -200,12 +200,12 @@ class SimulationFeature(PageFeature):
         self._services.ask(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, listed)
 
     def _model_at(self, address: str) -> tuple[str, str] | None:
-        """Name and description of the model at an address; None for a world without one.
+        """Return name and description of the model at an address; None for a world without one.
 
         Raises:
             LinkwrightError: it cannot be found or read.
         """
-        from linkwright.sdf.resources import ResourceFinder  # every page has this feature, and few have a world
+        from linkwright.sdf.resources import ResourceFinder  # here, because few viewers show a world
         from linkwright.sdf.writer import save
 
         finder = self.context.finder
@@ -236,7 +236,7 @@ class SimulationFeature(PageFeature):
             self._put(page, drag)
 
     def _put(self, page: Page, drag: _Drag) -> None:
-        """Send the newest pose, when the simulation has answered the request before."""
+        """Send the newest pose, after the simulation has answered the request before."""
         if drag.start is None or drag.wanted is None or drag.calling:
             return
         start = drag.start.pose.position
@@ -265,7 +265,7 @@ class SimulationFeature(PageFeature):
 
 
 def _tell_added(page: Page, name: str, free: str, response: Any) -> None:
-    """Tell a page that a model is there, and that it was renamed where its name was taken."""
+    """Tell a page that a model was added, and that it was renamed if its name was taken."""
     if response is None or not response.success:
         return
     page.send(ModelAdded(free))

@@ -1,4 +1,4 @@
-"""Calls services of a simulation for pages, which are told why a call failed."""
+"""Calls services of a simulation for pages, and reports failures to them."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from linkwright.viewer.web.audience import Page
 
 
 class SimulationServices:
-    """Clients of services, each made when it is first needed.
+    """Clients of services, each created on first use.
 
     Args:
-        context: the context of the viewer, whose node calls.
+        context: the context of the viewer, whose node calls services.
     """
 
     def __init__(self, context: ViewerContext) -> None:
@@ -34,15 +34,15 @@ class SimulationServices:
         answered: Callable[[Any], None] = lambda _: None,
         refused: Phrase | None = None,
     ) -> None:
-        """Call a service; the page is told when there is none, or when it refuses.
+        """Call a service; the page receives an error if there is none, or if it refuses.
 
         Args:
             page: the page that requests it.
             kind: the service's type.
             name: its name.
             fields: the fields of the request.
-            answered: called with the response; None where there is no such service.
-            refused: the text for the page where the response gives no reason.
+            answered: called with the response; None if there is no such service.
+            refused: the text for the page if the response gives no reason.
         """
         client = self._clients.get(name)
         if client is None:
@@ -66,7 +66,7 @@ class SimulationServices:
         future.add_done_callback(done)
 
     def close(self) -> None:
-        """Destroy the clients; they are made anew when they are needed again."""
+        """Destroy the clients; they are created again when they are needed."""
         with suppress(ValueError):  # the node may have been destroyed before
             for client in self._clients.values():
                 self._node.destroy_client(client)
@@ -74,5 +74,5 @@ class SimulationServices:
 
 
 def refuse(page: Page, text: str | Phrase) -> None:
-    """Tell a page why a request was refused."""
+    """Report to a page why a request was refused."""
     page.send(SimulationNotice(text))

@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from linkwright.viewer.visualization.manager import VisualizationManager
 
 _PERIOD = 0.1
-"""Seconds between two looks at clocks that pages cannot count on by themselves."""
+"""Seconds between two checks of clocks that pages cannot count by themselves."""
 
 
 @dataclass(slots=True)
 class _Since:
-    """The times from which elapsed time is counted, nanoseconds."""
+    """The start of elapsed times, nanoseconds."""
 
     ros: int
     wall: int
@@ -32,7 +32,7 @@ class _Since:
 class TimeFeature(PageFeature):
     """The Time panel of pages.
 
-    Clocks that go as the wall clock does are told once, and pages count on; others are told while they change.
+    Clocks that run as the wall clock does are sent once, and pages count on; others are sent while they change.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (SetTime, ResetTime, WatchClock)
@@ -51,12 +51,12 @@ class TimeFeature(PageFeature):
         self._jumps = self.context.node.get_clock().create_jump_callback(threshold, post_callback=self._jumped)
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """The state of time."""
+        """Return the state of time."""
         self._begin(manager)
         return [_state(manager)]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Forget when its time began."""
+        """Forget the start of its time."""
         self._since.pop(manager, None)
 
     def receive(self, page: Page, message: Any) -> None:
@@ -89,7 +89,7 @@ class TimeFeature(PageFeature):
 
     def _begin(self, manager: VisualizationManager) -> _Since:
         known = self._since.get(manager)
-        if known is None or known.ros == 0:  # simulated time is zero until somebody tells it, and elapses from then on
+        if known is None or known.ros == 0:  # simulated time is zero until it is published, and elapses from then on
             now = manager.time.now_ns()
             known = self._since[manager] = _Since(now, time.time_ns() if known is None else known.wall)
         return known
@@ -109,7 +109,7 @@ class TimeFeature(PageFeature):
             for manager in self.managers.all():
                 self._reset(manager)
 
-        # The clock is moved in whatever thread a message of /clock comes in.
+        # A message of /clock moves the clock, in any thread.
         self._loop.call_soon_threadsafe(reset)
 
     def _tell_all(self) -> None:

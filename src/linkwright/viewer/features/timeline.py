@@ -1,4 +1,4 @@
-"""The timeline of a recording, or of the last minutes: its times for pages, and their control of it."""
+"""The timeline of a recording, or of the last minutes: its times for pages, and their playback control."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ if TYPE_CHECKING:
     from linkwright.bag.reading import BagReader
 
 _PERIOD = 0.1
-"""Seconds between two times that pages are told while a recording is played."""
+"""Seconds between two positions that pages receive while a recording plays."""
 
 _PARTS = 200
 """Equal parts of a recording whose messages are counted."""
 
 _KEPT_PERIOD = 1.0
-"""Seconds between two times that pages are told how much of the last minutes is kept."""
+"""Seconds between two reports to pages of the extent of the live history."""
 
 _CAUGHT_UP_NS = 100_000_000
-"""The distance from the present at which playing the last minutes has caught up with it."""
+"""The distance from the present, nanoseconds, at which playback of the last minutes becomes live."""
 
 _SECOND = 1_000_000_000
 
@@ -48,11 +48,10 @@ _SECOND = 1_000_000_000
 class TimelineFeature(PageFeature):
     """Shows pages the position in a recording, and controls its playback for them.
 
-    Without a recording, nor a history of what comes, it does nothing. A recording begins to play
-    when the first page opens.
+    Without a recording or a live history it does nothing. A recording begins to play when the first page opens.
 
     Attributes:
-        jumped: called when another time is shown than the next one.
+        jumped: called when the time that is shown jumps.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (Play, SeekTime, StepTime, SetPlayback, GoLive)
@@ -73,7 +72,7 @@ class TimelineFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def attach(self, playback: Playback, bag: BagReader) -> None:
-        """Show pages a recording; `failed` is to be called when it cannot be read."""
+        """Show pages a recording; `failed` is to be called if it cannot be read."""
         from linkwright.bag.publishing import untyped
 
         counts = bag.counts(_PARTS)
@@ -92,20 +91,20 @@ class TimelineFeature(PageFeature):
         self._changed()
 
     def keep(self, most_bytes: int) -> LiveHistory:
-        """Keep messages of the last minutes, up to so many bytes, for pages; returns the history."""
+        """Store messages of the last minutes, up to so many bytes, for pages; returns the history."""
         self._live = LiveHistory(self.context, most_bytes, self.failed)
         self._live.begin_anew = self._begin_anew
         self._live.changed = self._changed
         return self._live
 
     def failed(self, error: LinkwrightError) -> None:
-        """Show an error: the recording cannot be read on."""
+        """Show an error: the rest of the recording cannot be read."""
         self._problem = in_one_line(error.diagnostics)
         for diagnostic in error.diagnostics:
             self.context.report(diagnostic)
 
     def opening(self) -> list[ServerMessage]:
-        """The recording, and the position in it."""
+        """Return the recording, and the position in it."""
         playback = self._recorded
         if self._live is not None:
             kept = self._kept(self._live)
@@ -147,12 +146,12 @@ class TimelineFeature(PageFeature):
                 playback.set_loop(loop)
 
     def before(self, topics: Collection[str], seconds: float, most_bytes: int) -> list[Recorded]:
-        """The messages of some topics of so many seconds up to the time that is shown, where they are known.
+        """Return the messages of some topics in the seconds before the time that is shown, as far as known.
 
         Args:
-            topics: the topics; of the last minutes, only those are known that the viewer is subscribed to.
+            topics: the topics; the last minutes only have those that the viewer is subscribed to.
             seconds: the length of time.
-            most_bytes: the limit; none are returned where they are larger together.
+            most_bytes: the limit; if they are larger together, none are returned.
         """
         if self._live is None and self._recorded is None:
             return []
@@ -175,7 +174,7 @@ class TimelineFeature(PageFeature):
     # -----------------------------------------------------------------------------------------------------------
 
     def _begin_anew(self) -> None:
-        """Drop what is shown, and queued messages: they are of another time."""
+        """Drop the displayed and queued messages: they belong to another time."""
         for subscription in self.context.node.subscriptions:
             subscription.discard()
         for manager in self.managers.all():
@@ -227,7 +226,7 @@ class TimelineFeature(PageFeature):
             self._telling = self._loop.call_later(_KEPT_PERIOD, self._tell_kept)
 
     def _tell_kept(self) -> None:
-        """Tell pages how much is kept, as long as there are any."""
+        """Report the extent of the history to pages, as long as there are any."""
         self._telling = None
         if self._live is not None and len(self.context.pages):
             self.context.pages.publish(self._kept(self._live))

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 
 class ViewsFeature(PageFeature):
-    """Every page has a camera of its own and begins with the file's; the last that any page told is saved."""
+    """The cameras of pages, which start with the file's view; the last view of any page is saved."""
 
     RECEIVES: ClassVar[tuple[type, ...]] = (ViewChanged, RobotMeasured, SaveView, ChangeSavedView, RemoveSavedView)
 
@@ -53,15 +53,15 @@ class ViewsFeature(PageFeature):
         self._classes = ViewClasses(view_classes())
 
     def opening(self) -> list[ServerMessage]:
-        """The classes of views."""
+        """Return the classes of views."""
         return [self._classes]
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """The view of the file, whichever pages have now, and the saved ones."""
+        """Return the view of the file, whichever pages have now, and the saved ones."""
         return [ViewState(manager.view, manager.opened, manager.shows_whole_robot), self._saved(manager)]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Keep the views that pages send; those that are not valid are refused."""
+        """Store the views that pages send; those that are not valid are refused."""
         manager = self.managers.of(page)
         views = manager.config.views
         try:
@@ -80,7 +80,7 @@ class ViewsFeature(PageFeature):
         except KeyError:
             return  # another page removed it
         except ValueError as error:
-            self.context.node.get_logger().warning(f"A page sent a view that is none: {error}")
+            self.context.node.get_logger().warning(f"A page sent an invalid view: {error}")
             return
         manager.edited()
         manager.publish(self._saved(manager))
@@ -109,7 +109,7 @@ class _Shelf:
 class ToolsFeature(PageFeature):
     """The tools of a configuration, for the pages that see it.
 
-    Publishers are made at the start, as RViz makes them: whoever listens is found before the first message.
+    Publishers are created at the start, as in RViz: subscribers are then discovered before the first message.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (SetToolProperty, AddTool, RemoveTool, PoseChosen, PointChosen)
@@ -119,12 +119,12 @@ class ToolsFeature(PageFeature):
         self._shelves: dict[VisualizationManager, _Shelf] = {}
 
     def start(self) -> None:
-        """Make the publishers of the tools."""
+        """Create the publishers of the tools."""
         for manager in self.managers.all():
             self._shelf(manager)
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """The tools."""
+        """Return the tools."""
         return [_told(self._shelf(manager))]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
@@ -157,7 +157,7 @@ class ToolsFeature(PageFeature):
             self.manager_closed(manager)
 
     def _shelf(self, manager: VisualizationManager) -> _Shelf:
-        """The tools of a manager; those of another configuration than the last time get new publishers."""
+        """Return the tools of a manager; after a change of the configuration they get new publishers."""
         shelf = self._shelves.get(manager)
         if shelf is None or shelf.config is not manager.config.tools:
             if shelf is not None:
@@ -220,7 +220,7 @@ class ToolsFeature(PageFeature):
         """Recreate the publisher; without a topic there is none."""
         kind = TOOL_KINDS.get(entry.cls)
         if kind is not None and kind.action is not None:
-            from linkwright.viewer.features.goals import GoalSender  # not above: few configurations have such a tool
+            from linkwright.viewer.features.goals import GoalSender  # here, because few configurations have such a tool
 
             shelf.goals[entry.id] = GoalSender(self.context.node, *kind.action)
         if kind is None or kind.publishes is None:
@@ -244,7 +244,7 @@ class ToolsFeature(PageFeature):
     def _find(
         self, manager: VisualizationManager, identity: str, classes: Collection[str]
     ) -> tuple[ToolEntry, Publisher[Any]] | None:
-        """A tool of one of some classes, and its publisher."""
+        """Return a tool of some classes, and its publisher."""
         shelf = self._shelves[manager]
         entry, publisher = shelf.config.find(identity), shelf.publishers.get(identity)
         return None if entry is None or publisher is None or entry.cls not in classes else (entry, publisher)
@@ -288,7 +288,7 @@ class ToolsFeature(PageFeature):
         publisher.publish(message)
 
     def _stamped(self, manager: VisualizationManager, kind: str | None, pose: Transform) -> tuple[Any, list[float]]:
-        """The message of a tool without its pose; and that, given in the Fixed Frame, in the frame of the message."""
+        """Return a tool's message without its pose; and a pose in the Fixed Frame, in the frame of the message."""
         assert kind is not None
         message = get_message(kind)()
         message.header.frame_id, place = self.context.transforms.known(manager.fixed_frame, pose)
@@ -297,7 +297,7 @@ class ToolsFeature(PageFeature):
 
 
 def _fill(pose: Any, place: list[float]) -> Any:
-    """Write numbers into a geometry_msgs/msg/Pose, and return that."""
+    """Write numbers into a geometry_msgs/msg/Pose, and return it."""
     pose.position.x, pose.position.y, pose.position.z = place[:3]
     pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w = place[3:]
     return pose

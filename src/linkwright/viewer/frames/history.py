@@ -22,11 +22,11 @@ _IDENTITY = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 @dataclass(frozen=True)
 class OwnFrame:
-    """A frame that tf does not know, and that a display places all the same.
+    """A frame that tf does not know, and that a display places.
 
     Attributes:
         name: the name of the frame.
-        parent: a frame of tf; None while none is known to be connected with it.
+        parent: a frame of tf; None while none is connected with it.
         pose: the pose of that frame in this one: x, y, z, qx, qy, qz, qw.
     """
 
@@ -38,13 +38,13 @@ class OwnFrame:
 class FrameHistory:
     """A tf2 buffer that subscribes only while a display uses it: robots alone need no history.
 
-    Displays may place frames that tf does not know, so that these can be the Fixed Frame; nobody else sees them.
+    Displays may place frames that tf does not know, so that these can be the Fixed Frame; only this viewer sees them.
 
     Args:
         node: to subscribe with.
 
     Attributes:
-        on_own: called when a frame that tf does not know has another place.
+        on_own: called when a frame that tf does not know moves.
     """
 
     def __init__(self, node: Node) -> None:
@@ -61,7 +61,7 @@ class FrameHistory:
         return BufferCore(logger=self._node.get_logger())
 
     def use(self, listener: Callable[[], None]) -> Callable[[], None]:
-        """Listen, and call back whenever transforms came; returns a function that ends that."""
+        """Subscribe, and call back whenever transforms arrive; returns a function that ends that."""
         self._listeners.append(listener)
         if not self._subscriptions:
             for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
@@ -78,12 +78,12 @@ class FrameHistory:
         return release
 
     def pose(self, fixed_frame: str, frame: str, stamp_ns: int) -> NDArray[np.float64]:
-        """The pose of a frame in the Fixed Frame: x, y, z, qx, qy, qz, qw.
+        """Return the pose of a frame in the Fixed Frame: x, y, z, qx, qy, qz, qw.
 
         Args:
             fixed_frame: the Fixed Frame.
             frame: the frame, which may be the Fixed Frame though tf does not know it.
-            stamp_ns: when, nanoseconds; 0 for the latest.
+            stamp_ns: the time, nanoseconds; 0 for the latest.
 
         Raises:
             TransformException: tf2's reasons why there is none.
@@ -97,16 +97,16 @@ class FrameHistory:
         return np.array(found)
 
     def names(self) -> frozenset[str]:
-        """The frames that transforms named."""
+        """The frames that transforms have named."""
         return frozenset(self._buffer.frame_names())
 
     def own(self, name: str) -> OwnFrame | None:
-        """A frame of displays; None where no display places one of that name, or tf knows it."""
+        """Return a frame of displays, or None if no display places one of that name, or tf knows it."""
         found = next((own for own in self._own.values() if own.name == name), None)
         return None if found is None or name in self._buffer.frame_names() else found
 
     def known(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:
-        """A pose as other programs know it: in a frame of tf, where the given one is of a display.
+        """Return a pose in a frame of tf, if the given one is in a frame of a display, so that other programs know it.
 
         Args:
             frame: the frame that the pose is in.
@@ -122,7 +122,7 @@ class FrameHistory:
 
         Args:
             display: its id.
-            own: the frame and its place; None for none.
+            own: the frame and its pose; None to withdraw it.
         """
         if own is None:
             if self._own.pop(display, None) is None:
@@ -133,7 +133,7 @@ class FrameHistory:
             listener()
 
     def forget(self) -> None:
-        """Forget all moving transforms: time begins anew."""
+        """Forget all moving transforms: time was reset."""
         self._buffer.clear()
 
     def _take(self, message: TFMessage, *, static: bool) -> None:

@@ -1,6 +1,6 @@
 """Sends transforms from the graph to the pages: at most at the Frame Rate, at once after a pause, and only changes.
 
-`TimeControl` says at which time frames are shown, `FrameView` what displays know of them.
+`TimeControl` has the time at which frames are shown, `FrameView` the information for displays.
 """
 
 from __future__ import annotations
@@ -34,26 +34,26 @@ from linkwright.viewer.protocol.displays import StatusRow
 from linkwright.viewer.protocol.time import SyncMode
 
 _SHORTEST_PAUSE = 0.004
-"""Seconds between two looks at the buffer that find nothing new, so that a flood of equal transforms costs little."""
+"""Seconds between two reads of the buffer that find nothing new, so that a flood of equal transforms costs little."""
 
 _AHEAD = 0.8
 _HURRY = 0.95
-"""Parts of the time between two updates: by which one may come too early, and after which the next one is due.
+"""Parts of the time between two updates: by the first an update may be early, after the second the next one is due.
 
-Transforms that come at the very rate, but at other moments than updates are due, so hardly have to wait: each of them
-waits a little shorter than the one before.
+Transforms that arrive at exactly the rate, but at other moments than updates are due, hardly have to wait: each of them
+waits a little less than the one before.
 """
 
 _AGE_PERIOD = 0.25
-"""Seconds between looks when nothing arrives: frames that are heard of no more must fade."""
+"""Seconds between updates when nothing arrives: frames without new transforms must fade."""
 
 _FADE_STEP = 0.02
-"""Part of the Frame Timeout by which an age must differ to be sent anew; younger than a third of it all look alike."""
+"""Change of an age, as part of the Frame Timeout, that is sent again; ages below a third of it look alike."""
 
 _IDENTITY = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]])
 
 _APPROACH = 0.3
-"""Part by which the delay of Approximate comes nearer to that of the last message, at each look (rviz_common)."""
+"""Part by which the delay of Approximate approaches that of the last message, at each update (rviz_common)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,14 +73,14 @@ class FrameView:
     placed: frozenset[str] = field(default_factory=frozenset)
 
     def problem(self, frame: str) -> Phrase | None:
-        """RViz's words for a frame that cannot be placed, or None."""
+        """Return RViz's text for a frame that cannot be placed, or None."""
         if frame in self.placed:
             return None
         return phrase("No transform from [{frame}] to [{fixed_frame}]", frame=frame, fixed_frame=self.fixed_frame)
 
 
 def transform_status(frames: FrameView, frame: str) -> StatusRow:
-    """The Transform row of a display in a frame (or in ``<Fixed Frame>``), in RViz's words."""
+    """Return the Transform row of a display in a frame (or in ``<Fixed Frame>``), in RViz's words."""
     if frame == FIXED_FRAME or frame in frames.placed:
         return StatusRow("Transform", "ok", phrase("Transform OK"))
     return StatusRow(
@@ -93,19 +93,19 @@ def transform_status(frames: FrameView, frame: str) -> StatusRow:
 class TimeControl:
     """RViz's Time panel: Pause, and Synchronization with its Source.
 
-    While paused displays take no messages and frames stay where they are. Exact shows the frames where they were at
-    the time of the source's last message; Approximate lets time go on behind the present by the source's delay.
+    While paused displays take no messages and frames do not move. Exact shows the frames at the time of the source's
+    last message; Approximate lets time follow the present with the source's delay.
 
     Args:
         clock: the viewer's.
         changed: called when one of the attributes has changed.
-        signalled: called when the source took a message, so that frames must be looked at.
+        signalled: called when the source took a message, so that frames must be updated.
 
     Attributes:
-        paused: whether time stands still.
+        paused: whether time is paused.
         mode: Off, Exact or Approximate.
-        source: the name of the display that leads.
-        sources: names of the displays that can, in the order in which their first messages came.
+        source: the name of the leading display.
+        sources: names of the displays that can lead, in the order of their first messages.
     """
 
     def __init__(
@@ -123,7 +123,7 @@ class TimeControl:
         self._paused_ns = 0
 
     def set(self, *, paused: bool, mode: SyncMode, source: str) -> None:
-        """Pause or go on; follow a source or none."""
+        """Pause or resume; follow a source or none."""
         if paused and not self.paused:
             self._paused_ns = self.now_ns()
         if (mode, source) != (self.mode, self.source):
@@ -143,7 +143,7 @@ class TimeControl:
         self._signalled()
 
     def lookup_ns(self) -> int | None:
-        """The time at which frames are to be shown, nanoseconds; None for the latest there is."""
+        """Return the time at which frames are to be shown, nanoseconds; None for the latest one."""
         if self.paused and self.mode != "Off":
             return self._paused_ns
         if self.mode == "Exact":
@@ -154,7 +154,7 @@ class TimeControl:
         return None
 
     def now_ns(self) -> int:
-        """The ROS time that the Time panel shows, nanoseconds."""
+        """Return the ROS time that the Time panel shows, nanoseconds."""
         if self.paused:
             return self._paused_ns
         if self.mode == "Exact" and self._exact_ns:
@@ -162,7 +162,7 @@ class TimeControl:
         return self._clock.now_ns() - (self._current_delay_ns if self.mode == "Approximate" else 0)
 
     def reset(self) -> None:
-        """Forget what messages said of time."""
+        """Forget the times of messages."""
         self.sources.clear()
         self._exact_ns = self._delay_ns = self._current_delay_ns = 0
         self._paused_ns = self._clock.now_ns()
@@ -170,10 +170,10 @@ class TimeControl:
 
 
 class FrameAudience(Protocol):
-    """The pages that are told where frames are."""
+    """The pages that receive frames."""
 
     def __len__(self) -> int:
-        """The number of pages; for none nothing is computed."""
+        """Return the number of pages; without pages nothing is computed."""
 
     def publish(self, message: FrameTable, /) -> None:
         """Send a new frame table, before transforms that need it."""
@@ -183,9 +183,9 @@ class FrameAudience(Protocol):
 
 
 class FrameStream:
-    """Keeps the tf buffer of the viewer and sends what changed in it.
+    """Maintains the tf buffer of the viewer and sends its changes.
 
-    A frame that tf does not know may be the Fixed Frame where a display places it (`FrameHistory.place`).
+    A frame that tf does not know may be the Fixed Frame if a display places it (`FrameHistory.place`).
 
     A robot of a single link has no transforms, so tf does not know its frame. When that is the Fixed Frame it is sent
     all the same, as the identity: RViz places a frame in itself without asking tf.
@@ -193,11 +193,11 @@ class FrameStream:
     Args:
         node: to subscribe with.
         pages: the pages that see the result.
-        time: whether frames stay where they are, and the time at which they are shown.
+        time: whether time is paused, and the time at which frames are shown.
         history: the history of transforms, for a time other than the latest.
-        on_frames: called when frames came or went, or can be placed now or no more.
-        fade_time: gives the shortest Frame Timeout of the displays, seconds; None when no display shows ages.
-        own_frames: gives the frames that robots have links for, which tf may not know.
+        on_frames: called when frames appear or disappear, or when it changes whether they can be placed.
+        fade_time: returns the shortest Frame Timeout of the displays, seconds; None when no display shows ages.
+        own_frames: returns the frames of robots' links, which tf may not know.
 
     Attributes:
         fixed_frame: the Fixed Frame.
@@ -244,7 +244,7 @@ class FrameStream:
         self._paused_ns: int | None = None
 
     def start(self) -> None:
-        """Subscribe, and begin."""
+        """Subscribe, and start sending."""
         for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
             self._node.create_subscription(TFMessage, topic, partial(self._take, static=static), qos).take_together()
         self._history.on_own.append(self._wake)
@@ -264,7 +264,7 @@ class FrameStream:
             self._release = None
 
     def time_changed(self) -> None:
-        """Look again, as time was paused, resumed, or is another one."""
+        """Update, because time was paused, resumed, or set to another source."""
         if self._time.paused:
             self._paused_ns = self._paused_ns or self._clock.now_ns()
         else:
@@ -276,31 +276,31 @@ class FrameStream:
         self.refresh()
 
     def forget(self) -> None:
-        """Forget all moving transforms: time begins anew."""
+        """Forget all moving transforms: time was reset."""
         self._held.clear()
         self._buffer.clear()
         self.refresh()
 
     def look_soon(self) -> None:
-        """Look as soon as the rate allows."""
+        """Update as soon as the rate allows."""
         self._wake()
 
     def robot_changed(self, gone: set[str]) -> None:
-        """Forget the frames that a new robot lacks, and look whether it has one that tf does not know."""
+        """Forget the frames that a new robot lacks, and check whether it has one that tf does not know."""
         known = gone.intersection(self._buffer.frames())
         if known:
             self._buffer.remove(known)
         self._wake()
 
     def refresh(self) -> None:
-        """Look now, even if nobody watches: the Fixed Frame or the robot has changed, or a page opens."""
+        """Update now, even without pages: the Fixed Frame or the robot has changed, or a page opens."""
         if self._later is not None:
             self._later.cancel()
         self._look()
 
     @property
     def opening(self) -> tuple[FrameTable, bytes]:
-        """The frame table and the last binary frame, for a page that opens; empty before there is one."""
+        """Return the frame table and the last binary frame, for a page that opens; empty before there is one."""
         return self._table, self._frame
 
     def _take(self, message: TFMessage, *, static: bool) -> None:
@@ -351,7 +351,7 @@ class FrameStream:
         self._tell_displays(snapshot, rows, fixed_frame, changed=changed)
 
     def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
-        """The poses of all frames in the Fixed Frame, which may be one that a display places."""
+        """Return the poses of all frames in the Fixed Frame, which may be one that a display places."""
         # The buffer may know the frame before the history does.
         own = None if self._buffer.knows(fixed_frame) else self._history.own(fixed_frame)
         if own is None or own.parent is None:
@@ -360,12 +360,12 @@ class FrameStream:
         return replace(snapshot, poses=compose(own.pose, snapshot.poses))
 
     def _stands_alone(self, frame: str) -> bool:
-        """Whether a frame that tf does not know is there all the same, and none of tf is connected with it."""
+        """Return whether a frame that tf does not know is a robot's or a display's, without a connection to tf's."""
         own = self._history.own(frame)
         return frame in self._own_frames() or (own is not None and own.parent is None)
 
     def _poses_then(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
-        """The poses of frames at the time to be shown; where nothing is known of that time, the present ones."""
+        """Return the poses of frames at the time to be shown, or the present ones if that time is unknown."""
         stamp_ns = self._time.lookup_ns()
         self._follow(needed=stamp_ns is not None)
         if stamp_ns is None:
@@ -377,7 +377,7 @@ class FrameStream:
         return poses
 
     def _follow(self, *, needed: bool) -> None:
-        """Keep the history while another time than the latest is shown."""
+        """Subscribe to the history while another time than the latest is shown."""
         if needed and self._release is None:
             self._release = self._history.use(lambda: None)
         elif not needed and self._release is not None:
@@ -415,9 +415,9 @@ class FrameStream:
         self._pages.send_transforms(self._frame)
 
     def _next_due(self) -> float:
-        """The earliest time of the next update.
+        """Return the earliest time of the next update.
 
-        What is sent a little late does not make the next one later: transforms that come at the rate would else wait
+        A slightly late update does not delay the next one: transforms that arrive at the rate would otherwise wait
         longer and longer, until one of them is left out.
         """
         period = _HURRY / self.rate

@@ -1,4 +1,4 @@
-"""Markers: what visualization_msgs says, as pages draw it."""
+"""Markers: visualization_msgs in the form that pages draw."""
 
 from linkwright.viewer.markers.shapes import BadMarkerError, MarkerReading, MarkerStore, read_marker
 

@@ -1,6 +1,6 @@
 """Interactive markers: a client of a server, and the conversion of its markers to what the page draws.
 
-All its markers come first, then what changes, and all of them again when a change was lost. Controls without markers
+It receives all markers first, then changes, and all of them again after a lost change. Controls without markers
 get the arrows, rings and buttons that the ``interactive_markers`` package gives them.
 """
 
@@ -36,7 +36,7 @@ from linkwright.viewer.protocol.markers import (
 from linkwright.viewer.web.files import MeshIndex
 
 _PERIOD = 0.25
-"""Seconds between two looks whether the server is there."""
+"""Seconds between two checks for the server."""
 
 _UPDATE_DEPTH = 100
 _UPDATE = 1
@@ -47,7 +47,7 @@ class ClientEvents:
     """The events of a connection to a server.
 
     Attributes:
-        everything: its markers, at the beginning and when updates were lost.
+        everything: its markers, at the beginning and after a lost update.
         update: a visualization_msgs/msg/InteractiveMarkerUpdate.
         gone: the server has no markers now, or has gone.
         status: the state of the connection, for the display's status.
@@ -60,7 +60,7 @@ class ClientEvents:
 
 
 class InteractiveMarkerClient:
-    """Connects to one server, waiting until it is there, and again when it comes back.
+    """Connects to one server, waiting until it appears, and again when it comes back.
 
     Args:
         node: to subscribe with.
@@ -68,7 +68,7 @@ class InteractiveMarkerClient:
         events: the callbacks.
 
     Raises:
-        LinkwrightError: the namespace makes no name of a topic.
+        LinkwrightError: the namespace does not give a valid topic name.
     """
 
     def __init__(self, node: Node, namespace: str, events: ClientEvents) -> None:
@@ -100,7 +100,7 @@ class InteractiveMarkerClient:
         self._feedback.publish(feedback)
 
     def close(self) -> None:
-        """Leave the server."""
+        """Disconnect from the server."""
         if self._look is not None:
             self._look.cancel()
             self._look = None
@@ -129,7 +129,7 @@ class InteractiveMarkerClient:
 
     def _answered(self, request: Any, response: Any) -> None:
         if request is not self._request or response is None:
-            return  # of a server that has gone since
+            return  # from a server that has gone since
         self._request = None
         self._sequence = response.sequence_number
         self._events.everything(list(response.markers))
@@ -143,7 +143,7 @@ class InteractiveMarkerClient:
             self._early = [*self._early, update][-_UPDATE_DEPTH:]
             return
         if update.seq_num <= self._sequence and update.type == _UPDATE:
-            return  # the first answer has it already
+            return  # the first answer includes it already
         expected = self._sequence + (1 if update.type == _UPDATE else 0)
         if update.seq_num != expected:
             self._begin_anew()
@@ -176,19 +176,19 @@ _NONE = np.empty((0, 4), dtype=np.float32)
 
 
 FramePlacer = Callable[[str, str], Transform]
-"""Gives the pose of the second frame in the first, now; raises a LinkwrightError where it has none."""
+"""Returns the pose of the second frame in the first, now; raises a LinkwrightError if there is none."""
 
 
 def read_interactive_marker(
     message: Any, index: MeshIndex, frames: FramePlacer, *, transparent: bool
 ) -> InteractiveMarkerShape:
-    """The shape and the controls of an interactive marker.
+    """Return the shape and the controls of an interactive marker.
 
     Args:
         message: a visualization_msgs/msg/InteractiveMarker.
         index: finds the files that it names.
         frames: places markers that name a frame of their own.
-        transparent: whether arrows and rings made here are seen through.
+        transparent: whether default arrows and rings are transparent.
 
     Raises:
         BadMarkerError: it cannot be drawn.
@@ -265,7 +265,7 @@ def _marker(marker: Any, message: Any, index: MeshIndex, frames: FramePlacer) ->
     frame = marker.header.frame_id.removeprefix("/")
     reference = message.header.frame_id.removeprefix("/")
     if frame:
-        # It says where it is by itself: here it hangs on the control all the same.
+        # The marker has a pose of its own, but here it is attached to the control.
         in_reference = compose(frames(reference, frame), _as_pose(shape.pose))
         shape.pose = list(compose(invert(_as_pose(pose_of(message.pose))), in_reference))
     return shape
@@ -292,14 +292,14 @@ def _default_markers(
 
 
 def _color_of(orientation: list[float]) -> list[float]:
-    """Red for an axis along x, green along y, blue along z, mixed between."""
+    """Return red for an axis along x, green along y, blue along z, mixed between."""
     axis = np.abs(rotation_matrix(orientation)[:, 0])
     color: list[float] = (axis / axis.max()).tolist()
     return color
 
 
 def _ring(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray[np.float64] | None]:
-    """Triangles of a ring about x with an inner radius of a half, and how dark each is, or None."""
+    """Return triangles of a ring about x with an inner radius of a half, and how dark each is, or None."""
     angles = np.arange(_RING_STEPS) * (2 * np.pi / _RING_STEPS)
     inner = 0.5 * np.stack([np.zeros(_RING_STEPS), np.cos(angles), np.sin(angles)], axis=1)
     outer = (1 + _RING_WIDTH) * inner
@@ -308,7 +308,7 @@ def _ring(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray[np.float6
         return np.roll(ring, -steps, axis=0)
 
     inner_1, outer_1, outer_2 = after(inner, 1), after(outer, 1), after(outer, 2)
-    if mode == "rotate_axis":  # slanting teeth, light and dark by turns
+    if mode == "rotate_axis":  # slanting teeth, alternately light and dark
         corners = np.stack([inner, outer_1, inner_1, inner_1, outer_1, outer_2], axis=1)
         shades = np.repeat(_DARK + (1 - _DARK) * (np.arange(_RING_STEPS) % 2), 2)
     elif mode == "move_rotate":  # dark points inward, light ones outward

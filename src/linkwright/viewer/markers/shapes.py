@@ -1,4 +1,4 @@
-"""From a visualization_msgs/msg/Marker to what the page draws, and the markers that a display shows.
+"""Conversion of visualization_msgs/msg/Marker to the page's shapes, and the markers that a display shows.
 
 The rules and their texts are RViz's.
 """
@@ -29,7 +29,7 @@ _NO_UVS = np.empty((0, 2), dtype=np.float32)
 
 
 class BadMarkerError(ValueError):
-    """A marker cannot be drawn; the text says why."""
+    """A marker cannot be drawn; the text gives the reason."""
 
 
 @dataclass(slots=True)
@@ -60,16 +60,16 @@ def made_marker(
     colors: NDArray[np.float32] = _NO_COLORS,
     mesh: MarkerMesh | None = None,
 ) -> MarkerShape:
-    """A marker made of its parts, without a message.
+    """Return a marker from its parts, without a message.
 
     Args:
-        namespace: with the name, what it is known by.
+        namespace: its namespace.
         name: within the namespace.
         kind: the kind of its shape.
         pose: x, y, z, qx, qy, qz, qw in `frame`.
         scale: x, y, z, as visualization_msgs/msg/Marker has it for the kind.
         color: red, green, blue, alpha, from 0 to 1.
-        frame: the frame that it follows; the Fixed Frame where empty.
+        frame: the frame that it follows; the Fixed Frame if empty.
         points: shape (N, 3), metres.
         colors: one for each point, shape (N, 4); or none.
         mesh: the file of a ``mesh``.
@@ -92,12 +92,12 @@ def made_marker(
 
 
 def marker_id(message: Any) -> str:
-    """The name in RViz's status rows: ``<namespace>/<number>``."""
+    """Return the name in RViz's status rows: ``<namespace>/<number>``."""
     return f"{message.ns}/{message.id}"
 
 
 def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
-    """The shape of a marker.
+    """Return the shape of a marker.
 
     Args:
         message: a visualization_msgs/msg/Marker whose action is ADD.
@@ -136,12 +136,12 @@ def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
 
 
 def placed_in(frame: Transform, reading: MarkerReading) -> list[float]:
-    """The marker's pose in the frame that the pose of its own frame is given in."""
+    """Return the marker's pose in the frame in which the pose of its own frame is given."""
     return list(compose(frame, reading.pose))
 
 
 def pose_of(pose: Any) -> list[float]:
-    """A geometry_msgs/msg/Pose as x, y, z, qx, qy, qz, qw, the quaternion of length one."""
+    """Return a geometry_msgs/msg/Pose as x, y, z, qx, qy, qz, qw, with a unit quaternion."""
     return list(_pose(pose))
 
 
@@ -151,7 +151,7 @@ def _pose(pose: Any) -> Transform:
 
 
 def unit_quaternion(q: Any) -> Quaternion:
-    """A geometry_msgs/msg/Quaternion of length one; one that was not set stands for no rotation, as in RViz."""
+    """Return a geometry_msgs/msg/Quaternion with length one; one that was not set means no rotation, as in RViz."""
     return normalized(q.x, q.y, q.z, q.w)
 
 
@@ -240,7 +240,7 @@ _CHECKS: dict[MarkerKind, Callable[[MarkerShape], Phrase | None]] = {
 
 
 def _mesh(message: Any, shape: MarkerShape, index: MeshIndex) -> MarkerMesh:
-    """The mesh: the bytes in the message, which Iron and later may carry, or the file that it names."""
+    """Return the mesh: the bytes in the message, which Iron and later may carry, or the file that it names."""
     name = message.mesh_resource
     carried = message.mesh_file
     if carried.filename and len(carried.data):
@@ -292,11 +292,11 @@ def _ending(name: str) -> str:
 
 
 _MOST_GONE = 5000
-"""The number of removed markers that are remembered; a page that missed more is sent everything anew."""
+"""The number of removed markers that are remembered; a page that missed more receives all markers again."""
 
 
 class MarkerStore:
-    """Markers by id, counted by change, so that a page can be sent what happened since it was sent the last.
+    """Markers by id, with a revision for each change, so that a page can receive the changes since its last one.
 
     It is the `outbox.Changes` of its display.
 
@@ -325,14 +325,14 @@ class MarkerStore:
         return [shape for _, shape in self._shown.values()]
 
     def put(self, shape: MarkerShape) -> None:
-        """Show a marker, in place of that with its id."""
+        """Show a marker, replacing one with its id."""
         self._change += 1
         self._gone.pop(shape.id, None)
-        self._shown.pop(shape.id, None)  # so that what changed last stands last
+        self._shown.pop(shape.id, None)  # so that the last change is last in the order
         self._shown[shape.id] = (self._change, shape)
 
     def remove(self, identity: str) -> bool:
-        """Remove a marker; False when it was not shown."""
+        """Remove a marker; False if it was not shown."""
         if self._shown.pop(identity, None) is None:
             return False
         self._change += 1
@@ -350,7 +350,7 @@ class MarkerStore:
         self._gone.clear()
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """The changes since a revision, for a page that has seen those up to it."""
+        """Return the changes since a revision, for a page that has all up to it."""
         if seen == self._change:
             return None, seen
         if self._packed is None or self._packed[:2] != (seen, self._change):

@@ -1,4 +1,4 @@
-"""Asking the user for the arguments that a description needs and nobody gave."""
+"""Asking the user for the arguments that a description needs and that have no value."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessag
 
 
 class ArgumentChoice(Record):
-    """Values that are given together somewhere; `label` has what sets them apart from the other choices."""
+    """Values that are used together somewhere; `label` has those that differ from the other choices."""
 
     label: str
     values: dict[str, str]
 
 
 class ArgumentForm(ServerMessage):
-    """The arguments that a file needs, in order, and the values to begin with; without a file nothing is asked."""
+    """The arguments that a file needs, in order, and their initial values; without a file there is no form."""
 
     file: str
     names: list[str]

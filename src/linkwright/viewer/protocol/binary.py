@@ -31,11 +31,11 @@ class FrameTable(ServerMessage):
 
 
 def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDArray[Any]) -> bytes:
-    """A binary frame of transforms: header, poses, ages, little endian.
+    """Return a binary frame of transforms: header, poses, ages, little endian.
 
     The header is four uint32 (kind 1, revision of the frame table, number of frames N, 0) and a float64 stamp in
     seconds; then float32 N x 7 (x y z qx qy qz qw in the fixed frame, NaN where there is no transform) and float32 N
-    (seconds since each frame was last heard of; 0 for static frames).
+    (seconds since each frame's last transform; 0 for static frames).
 
     Args:
         revision: the revision of the `FrameTable` that names the rows.
@@ -54,7 +54,7 @@ def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDAr
 
 
 def unpack_transforms(frame: bytes) -> tuple[int, NDArray[np.float64]]:
-    """Revision and poses, shape (N, 7), of a frame of `pack_transforms`; revision -1 for another kind of frame."""
+    """Return revision and poses, shape (N, 7), of a frame of `pack_transforms`; revision -1 for other frames."""
     if len(frame) < _TRANSFORMS_HEADER.size or _TRANSFORMS_HEADER.unpack_from(frame)[0] != TRANSFORMS_KIND:
         return -1, np.empty((0, 7))
     _, revision, count, _, _ = _TRANSFORMS_HEADER.unpack_from(frame)
@@ -67,7 +67,7 @@ _HEADER = struct.Struct("<IIII")
 _ALIGNMENT = 8
 
 Floats = NDArray[np.float32]
-"""An array of any shape that pages see flat, as a Float32Array."""
+"""An array of any shape, flat in the page, as a Float32Array."""
 
 Bytes = NDArray[np.uint8]
 """Bytes; a Uint8Array in the page."""
@@ -95,7 +95,7 @@ def pack_data(
     pose: NDArray[Any] | None = None,
     stamp: float = 0.0,
 ) -> bytes:
-    """A binary frame with a display's content.
+    """Return a binary frame with a display's content.
 
     Args:
         display: its id.
@@ -124,7 +124,7 @@ class _Arrays:
     """The arrays of a frame, one after the other.
 
     Attributes:
-        parts: their bytes and what pads them.
+        parts: their bytes and the padding.
     """
 
     def __init__(self) -> None:
@@ -132,12 +132,12 @@ class _Arrays:
         self._length = 0
 
     def clear(self) -> None:
-        """Forget all of them."""
+        """Forget all arrays."""
         self.parts.clear()
         self._length = 0
 
     def put_aside(self, value: Any) -> Any:
-        """Add an array; returns its placeholder in the header. Other values become plain ones."""
+        """Add an array and return its placeholder in the header; other values become plain ones."""
         return self.put(value) if isinstance(value, np.ndarray) else plain(value)
 
     def put(self, array: NDArray[Any]) -> dict[str, list[Any]]:
@@ -154,7 +154,7 @@ class _Arrays:
 
 
 def _json(header: dict[str, Any], arrays: _Arrays) -> bytes:
-    """The header, its arrays put aside; half characters, as names of files may have, become question marks."""
+    """Return the header, without its arrays; half characters, as names of files may have, become question marks."""
     try:
         return msgspec.json.encode(header, enc_hook=arrays.put_aside)
     except UnicodeEncodeError:
@@ -171,13 +171,13 @@ PIECE_KIND = 4
 
 
 def pack_piece(frame: bytes, number: int, offset: int, size: int) -> bytes:
-    """A binary frame with a part of another.
+    """Return a binary frame with a part of another.
 
     It is four uint32, little endian (kind 4, number, offset, length of the whole frame), and the bytes from the offset
     on. The page takes the whole frame as received when it has the last piece; a piece with the offset 0 begins another.
 
     Args:
-        frame: the whole.
+        frame: the complete frame.
         number: the same for all pieces of the frame, and another for those of the next.
         offset: the offset of the piece, bytes.
         size: the largest size of the piece, bytes.

@@ -1,4 +1,4 @@
-"""Two descriptions in one scene: how they differ, and which links show it."""
+"""Two descriptions in one scene: their differences, and the links that show them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Mark = Literal["added", "removed", "changed"]
 
 
 class ComparedRobot(Record):
-    """A robot of the comparison: its RobotModel display, empty where none shows it, its name, and the links to mark."""
+    """A robot of the comparison: its RobotModel display, empty if none shows it, its name, and the links to mark."""
 
     display: str
     label: str
@@ -19,7 +19,7 @@ class ComparedRobot(Record):
 
 
 class ComparedPlace(Record):
-    """A place in a text, from 1: as readers know it, and as the Source panel does, or with no file."""
+    """A place in a text, 1-based: for readers, and for the Source panel, or without a file."""
 
     text: str
     file: str
@@ -29,8 +29,8 @@ class ComparedPlace(Record):
 class ComparedItem(Record):
     """A difference, as `linkwright diff` prints it.
 
-    `property` is empty where it is about all of the thing; `old` and `new` are None where a description says nothing.
-    `element` is the link or joint that shows it, empty where there is none, and `in_old` whether only the old
+    `property` is empty for a difference of the whole item; `old` and `new` are None for a value that a description does
+    not set. `element` is the link or joint that shows it, empty if there is none, and `in_old` whether only the old
     description has that.
     """
 

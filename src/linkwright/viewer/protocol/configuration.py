@@ -1,4 +1,4 @@
-"""The configuration file and what is edited in it: displays that come, go and move, undo and redo, open and save."""
+"""The configuration file and its edits: adding, removing and moving displays, undo and redo, open and save."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class Configuration(ServerMessage):
 
     Attributes:
         path: the path of its file on the server; None when it has none yet.
-        opened: counts the configurations opened so far; when it grows, all that was known is of another file.
-        unsaved: whether the file lacks something that was edited.
+        opened: counts the configurations opened so far; when it grows, earlier messages are about another file.
+        unsaved: whether there are edits that the file lacks.
         undo: the edit that undo would revert; None for none.
         redo: the edit that redo would repeat; None for none.
         own: whether the page has displays of its own.
@@ -85,7 +85,7 @@ class ConfigurationSaved(ServerMessage):
 
 
 class ConfigurationRefused(ServerMessage):
-    """A request of a page was refused. With a question, the page may confirm it and ask again."""
+    """A request of a page was refused. With a question, the page may confirm it and repeat the request."""
 
     message: str
     question: Question | None
@@ -103,26 +103,26 @@ class AddDisplay(PageMessage):
 
 
 class DuplicateDisplays(PageMessage):
-    """Add a display alike after each of these."""
+    """Add a copy after each of these displays."""
 
     displays: list[str]
 
 
 class RenameDisplay(PageMessage):
-    """Give a display another name."""
+    """Rename a display."""
 
     display: str
     name: str
 
 
 class RemoveDisplays(PageMessage):
-    """Remove displays, and what is in them."""
+    """Remove displays with their content."""
 
     displays: list[str]
 
 
 class MoveDisplays(PageMessage):
-    """Put displays into a group (None for none), in front of one of it (None for the end)."""
+    """Move displays into a group (None for the top level), before one of its displays (None for the end)."""
 
     displays: list[str]
     group: str | None
@@ -130,7 +130,7 @@ class MoveDisplays(PageMessage):
 
 
 class GroupDisplays(PageMessage):
-    """Put displays into a new group, where the first of them is."""
+    """Put displays into a new group, in the place of the first of them."""
 
     displays: list[str]
     name: str
@@ -141,11 +141,11 @@ class Undo(PageMessage):
 
 
 class Redo(PageMessage):
-    """Repeat the edit that was undone last."""
+    """Redo the edit that was undone last."""
 
 
 class AskDisplayChoices(PageMessage):
-    """Asks for the classes of displays that can be added, the topics, and the displays that show them."""
+    """Ask for the classes of displays that can be added, the topics, and the displays that show them."""
 
 
 class AskFolder(PageMessage):
@@ -155,13 +155,13 @@ class AskFolder(PageMessage):
 
 
 class NewConfiguration(PageMessage):
-    """Begin anew with RViz's default; `discard` says that what is unsaved may be lost."""
+    """Start with RViz's default configuration; `discard` allows losing unsaved edits."""
 
     discard: bool
 
 
 class OpenConfiguration(PageMessage):
-    """Open a file of the server; `discard` says that what is unsaved may be lost."""
+    """Open a file of the server; `discard` allows losing unsaved edits."""
 
     path: str
     discard: bool
@@ -176,7 +176,7 @@ class LoadConfiguration(PageMessage):
 
 
 class RevertConfiguration(PageMessage):
-    """Open the file again, without what was edited."""
+    """Open the file again, without the edits."""
 
 
 class SaveConfiguration(PageMessage):
@@ -184,7 +184,7 @@ class SaveConfiguration(PageMessage):
 
     Attributes:
         path: ends in ``.rviz``; None for the file it has.
-        replace: whether a file that is there, or was changed by another program, may be replaced.
+        replace: whether an existing file, or one that another program changed, may be replaced.
     """
 
     path: str | None
@@ -192,11 +192,11 @@ class SaveConfiguration(PageMessage):
 
 
 class AskConfigurationText(PageMessage):
-    """Asks for the file as it would be saved now, to be kept on the browser's machine."""
+    """Ask for the file as it would be saved now, to store it on the browser's machine."""
 
 
 PanelName = Literal["displays", "selection", "tool-properties", "views", "time", "transformation", "navigation"]
-"""The panels that RViz has, or nav2 for it, too; the names are the page's."""
+"""RViz's and nav2's panels that the page has too; the names are the page's."""
 
 
 class Panels(ServerMessage):
@@ -205,7 +205,7 @@ class Panels(ServerMessage):
     Attributes:
         opened: counts the configurations of this page's displays: with another number the page shows these panels.
         origin: the name under which a page remembers a configuration that has no file.
-        shown: the panels that are open, in the order of the file; None where the file says nothing of panels.
+        shown: the panels that are open, in the order of the file; None if the file does not list panels.
     """
 
     opened: int
@@ -214,6 +214,6 @@ class Panels(ServerMessage):
 
 
 class ShowPanels(PageMessage):
-    """The user opened or closed one of these panels, and these are open in the page now. The file takes that over."""
+    """The user opened or closed one of these panels; the file stores the open ones."""
 
     shown: list[PanelName]

@@ -1,6 +1,6 @@
-"""The description behind a robot: links and joints as they are written, texts, and what is odd about masses.
+"""The description of a robot: links and joints as written, texts, and findings on masses.
 
-A page asks for what it shows. `DescriptionChanged` tells every page that there is something new to ask for.
+A page asks for the parts that it shows. `DescriptionChanged` notifies every page of a new description.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ class SourceRange(Record):
 
 
 class Written(Record):
-    """The place of an element: in the expanded text, and where it was written, with the calls between them.
+    """The place of an element: in the expanded text, and in its file, with the calls between them.
 
     `origin` is None where only the expanded text is known. `calls` has macro calls and includes, innermost first;
-    of very many the outermost are left out.
+    the outermost of very many are left out.
     """
 
     expanded: SourceRange | None
@@ -44,8 +44,8 @@ class Written(Record):
 class LinkInertia(Record):
     """Mass in kg and centre of mass in the link's frame, m.
 
-    `box` has the edges, m, of the uniform box of the same inertia, whose axes `quaternion` turns into the link's; it is
-    empty where no body can have this inertia.
+    `box` has the edges, m, of the uniform box of the same inertia, with the orientation `quaternion` in the link; it is
+    empty if no body can have this inertia.
     """
 
     mass: float
@@ -55,7 +55,7 @@ class LinkInertia(Record):
 
 
 class LinkDetails(Record):
-    """A link as it is described; `frame` is its name in tf."""
+    """A link as described; `frame` is its name in tf."""
 
     name: str
     frame: str
@@ -73,9 +73,9 @@ class JointMimic(Record):
 
 
 class JointDetails(Record):
-    """A joint as it is described: the origin in the parent's frame, the unit axis in the joint's frame; SI units.
+    """A joint as described: the origin in the parent's frame, the unit axis in the joint's frame; SI units.
 
-    What is not written, or is no finite number, is None.
+    A value that is not set, or is not a finite number, is None.
     """
 
     name: str
@@ -118,7 +118,7 @@ class Description(ServerMessage):
 
 
 class DescriptionChanged(ServerMessage):
-    """A display shows another description now; the links and joints that say something else than before are named."""
+    """A display shows another description now; lists the links and joints that differ."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -129,7 +129,7 @@ class DescriptionChanged(ServerMessage):
 
 
 class DescriptionText(ServerMessage):
-    """A text of a description, or the expanded one where `file` is empty; None for what is no file of it."""
+    """A text of a description, or the expanded one if `file` is empty; None for a file that is not part of it."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "file")
 
@@ -149,7 +149,7 @@ class InertiaFinding(Record):
 
 
 class InertiaFindings(ServerMessage):
-    """All that is implausible about the masses of a robot; answers `AskInertia`."""
+    """All implausible masses of a robot; answers `AskInertia`."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -175,7 +175,7 @@ class AskDescriptionText(PageMessage):
 
 
 class AskInertia(PageMessage):
-    """The page wants to mark links whose masses are implausible, which takes the server a while."""
+    """Ask for implausible masses, which the page marks; takes the server a while."""
 
     display: str
 
@@ -206,6 +206,6 @@ class DiagnosticItem(Record):
 
 
 class Diagnostics(ServerMessage):
-    """The findings on the description now; none clears the list."""
+    """The current findings on the description; an empty list clears them."""
 
     items: list[DiagnosticItem]

@@ -23,11 +23,11 @@ class SolidBoxes(DataContent):
 class PictureBoxes(DataContent):
     """Detection2DArray: boxes over an image.
 
-    `boxes` has shape (N, 5): x y of the middle, width and height in pixels of the image, and how far the box is turned,
+    `boxes` has shape (N, 5): x y of the middle, width and height in pixels of the image, and the rotation of the box,
     radians clockwise. The rest is as in `SolidBoxes`.
 
-    `of_image` says whether the image with the stamp of the content is the one they were found in; else they are drawn
-    over whichever image is there.
+    `of_image` is whether the boxes were detected in the image with the stamp of the content; else they are drawn over
+    the current image.
     """
 
     boxes: Floats

@@ -1,4 +1,4 @@
-"""The Displays tree, and what displays and panels are made of: rows of properties and of status."""
+"""The Displays tree, and the elements of displays and panels: rows of properties and of status."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RowDetails = Literal["frame", "link", "joint", "effort"]
 
 
 class TopicOffer(Record):
-    """The topics offered for a row: those of one of the types with one of the words, if any, in their names."""
+    """The topics offered for a row: those of one of the types, whose names contain one of the words, if any."""
 
     messages: list[str]
     words: list[str]
@@ -27,10 +27,10 @@ class Property(Record):
     `id` is unique in the page and stable for the life of a display. Colours are ``#rrggbb``. A `group` has no value;
     any other kind may have children too (``Line Style`` > ``Line Width``).
 
-    A row with `details` stands for a frame, link or joint of its name. Where that is now the page knows without being
-    told again, so it adds read-only rows of its own: RViz's ``Position``, ``Orientation`` and the like.
+    A row with `details` represents the frame, link or joint of its name. The page knows its current pose, so it adds
+    read-only rows of its own: RViz's ``Position``, ``Orientation`` and the like.
 
-    For a `topic` without `topics` those are offered that the display can be added for.
+    A `topic` without `topics` offers those that the display can be added for.
     """
 
     id: str
@@ -49,7 +49,7 @@ class Property(Record):
 
 
 class StatusRow(Record):
-    """A row below a display's Status. Its text, as a rule a phrase, goes to each page in the page's language."""
+    """A row below a display's Status. Its text is usually a phrase, which each page gets in its language."""
 
     name: str
     level: StatusLevel
@@ -69,11 +69,11 @@ class Display(Record):
     """A display of the Displays panel. `cls` is RViz's class, such as ``rviz_default_plugins/Grid``.
 
     `group` is the id of the group it is in, ``rviz_common/Group``, which comes before it. `enabled` is its own box; it
-    is drawn when those of the groups around it are on too.
+    is drawn if those of the groups around it are on too.
 
     `drawing` is the class whose drawing the page uses: its own, or for a display of another package the one it is like.
 
-    `supported` is false for a class this program does not draw; it is kept and shown as such. What the rows mean:
+    `supported` is false for a class this program does not draw; it is kept and shown as such. The rows:
 
     - RobotModel: a shape is drawn with the alpha of its colour, times ``Alpha``, times the link's ``Alpha`` below
       ``Links``. A link's row is a ``bool`` (draw its shapes) when it has any, else a ``group``.
@@ -94,7 +94,7 @@ class Display(Record):
 
 
 class Tree(ServerMessage):
-    """The whole Displays tree: sent at the start and whenever displays come or go."""
+    """The complete Displays tree: sent at the start and when displays are added, removed or moved."""
 
     global_options: list[Property]
     global_status: list[StatusRow]
@@ -103,7 +103,7 @@ class Tree(ServerMessage):
 
 
 class DisplayProperties(ServerMessage):
-    """The property rows of one display anew (the links of a new robot, the frames of TF)."""
+    """All property rows of one display again (the links of a new robot, the frames of TF)."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 

@@ -1,4 +1,4 @@
-"""Editing a robot: what of it can be edited, the changes of text that an edit comes to, writing them, taking them back.
+"""Editing a robot: its editable parts, the text changes of an edit, writing and undoing them.
 
 Positions are in metres, angles in radians, in the frame of the parent link for a joint, of the link for a visual, a
 collision or an inertial. An axis is in its joint's frame.
@@ -15,11 +15,11 @@ EditedPart = Literal["joint", "axis", "visual", "collision", "inertial"]
 
 
 class EditablePart(Record):
-    """Something with a place: the origin of a joint, visual, collision or inertial, or the axis of a joint.
+    """A part of a robot with a pose: the origin of a joint, visual, collision or inertial, or the axis of a joint.
 
-    `index` counts the visuals or collisions of the link `name`; `title` says which it is. `rpy` is empty for an axis.
-    `written` is the text of the file, empty where nothing is written; `file` and `line` are where
-    that is, or would be.
+    `index` counts the visuals or collisions of the link `name`; `title` is the label for users. `rpy` is empty for an
+    axis. `written` is the text of the file, empty if nothing is written; `file` and `line` are where that is, or would
+    be.
     """
 
     part: EditedPart
@@ -34,7 +34,7 @@ class EditablePart(Record):
 
 
 class EditableParts(ServerMessage):
-    """The editable parts of a link of a display, the joint above it first; `why_not` is empty where there are some."""
+    """The editable parts of a link of a display, the joint above it first; `why_not` is the reason for none."""
 
     display: str
     link: str
@@ -43,16 +43,16 @@ class EditableParts(ServerMessage):
 
 
 class EditedFile(Record):
-    """A file that an edit changes: its whole name, and the lines that it takes away, adds and has around."""
+    """A file that an edit changes: its full name, and the lines that it removes, adds and keeps around them."""
 
     file: str
     diff: list[str]
 
 
 class EditPreview(ServerMessage):
-    """The outcome of an edit, or why it is refused; `also` is what would change with it.
+    """The outcome of an edit, or why it is refused; `also` lists further changes.
 
-    `number` is that of the question. `files` is empty where nothing changes, or nothing can be changed.
+    `number` is that of the request. `files` is empty if nothing changes, or the edit is refused.
     """
 
     number: int
@@ -62,30 +62,30 @@ class EditPreview(ServerMessage):
 
 
 class EditWritten(ServerMessage):
-    """The outcome of writing files: `refusal` says why they were not; `files` were written, after an undo too."""
+    """The outcome of writing files: `refusal` is the reason if it failed; `files` were written, also by an undo."""
 
     files: list[str]
     refusal: DiagnosticItem | None
 
 
 class EditHistory(ServerMessage):
-    """Whether an edit can be taken back, or made again."""
+    """Whether an edit can be undone, or redone."""
 
     can_undo: bool
     can_redo: bool
 
 
 class AskEditableParts(PageMessage):
-    """The user wants to edit a link of a display."""
+    """The user selects a link of a display for editing."""
 
     display: str
     link: str
 
 
 class PreviewEdit(PageMessage):
-    """The user moves or turns something; None for what stays.
+    """The user moves or rotates a part; None for a value that does not change.
 
-    With `together` all that the same text makes may change.
+    With `together` all elements that the same text produces may change.
     """
 
     number: int
@@ -99,14 +99,14 @@ class PreviewEdit(PageMessage):
 
 
 class ApplyEdit(PageMessage):
-    """The user wants the edit of the preview with this number to be written."""
+    """The user applies the edit of the preview with this number."""
 
     number: int
 
 
 class UndoEdit(PageMessage):
-    """The user takes the last edit that was written back."""
+    """Undo the last edit written to the files."""
 
 
 class RedoEdit(PageMessage):
-    """The user makes the edit again that was taken back last."""
+    """Redo the edit that was undone last."""

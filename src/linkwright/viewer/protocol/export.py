@@ -1,4 +1,4 @@
-"""The robot as a file."""
+"""The export of a robot as a file."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from linkwright.viewer.protocol.views_and_tools import View
 
 
 class AskExport(PageMessage):
-    """The user wants what is seen as a file; `view` is the camera as the page has it."""
+    """The user exports the scene as a file; `view` is the page's camera."""
 
     format: Literal["html", "glb"]
     view: View
 
 
 class ExportReady(ServerMessage):
-    """The file can be fetched, once, from an address of the server; answers `AskExport`.
+    """The file can be fetched once, from an address of the server; answers `AskExport`.
 
-    `outside` are the paths of files in no package, nor below the folder of the description, whose contents are in it.
+    `outside` are the paths of included files that are neither in a package nor below the description's folder.
     """
 
     url: str

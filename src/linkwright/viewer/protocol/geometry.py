@@ -1,4 +1,4 @@
-"""Content of the displays of points, poses, paths and what else a few numbers say."""
+"""Content of the displays of points, poses, paths and other small data."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class PoseMarks(DataContent):
 
 
 class ParticleMarks(DataContent):
-    """ParticleCloud: poses as in `PoseMarks`, and how likely each is, shape (N,)."""
+    """ParticleCloud: poses as in `PoseMarks`, and the weight of each, shape (N,)."""
 
     poses: Floats
     weights: Floats
@@ -39,8 +39,8 @@ class PolygonLine(DataContent):
 class GridSurface(DataContent):
     """GridMap: the middles of cells in the frame of the content, row by row.
 
-    `points` has shape (rows * columns, 3); `colors` (rows * columns, 4): red, green, blue, and 0 where a cell is not
-    there. The surface is drawn where it is `filled`; otherwise only lines are.
+    `points` has shape (rows * columns, 3); `colors` (rows * columns, 4): red, green, blue, and 0 for a missing cell.
+    The surface is drawn where it is `filled`; otherwise only lines are.
     """
 
     rows: int
@@ -51,7 +51,7 @@ class GridSurface(DataContent):
 
 
 class RangeCone(DataContent):
-    """Range: a cone along x of the frame of the content, metres and radians; no cone where `range` is 0."""
+    """Range: a cone along x of the frame of the content, metres and radians; no cone if `range` is 0."""
 
     range: float
     field_of_view: float

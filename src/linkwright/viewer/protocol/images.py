@@ -9,10 +9,10 @@ from linkwright.viewer.protocol.message import DataContent, PageMessage, Record
 
 
 class CameraModel(Record):
-    """The pinhole camera that an image is seen through, from the projection matrix of its CameraInfo.
+    """The pinhole camera of an image, from the projection matrix of its CameraInfo.
 
-    Sizes, focal lengths and the principal point are pixels; `offset_x` and `offset_y` say how far, in metres right and
-    down, the camera is from the frame of the image.
+    Sizes, focal lengths and the principal point are pixels; `offset_x` and `offset_y` are the camera's distance from
+    the frame of the image, in metres right and down.
     """
 
     width: float
@@ -28,7 +28,7 @@ class CameraModel(Record):
 class ImageFrame(DataContent):
     """Image and Camera: one image.
 
-    `width` and `height` are those of the message; `columns` and `rows` those of the data, which may have fewer pixels.
+    `width` and `height` are those of the message; `columns` and `rows` those of the data, which may be smaller.
     The data are 8-bit pixels row by row, or a file that browsers read. `quality` is that of the WebP (1 to 95) which
     was made of the image for a slow line, else 0.
     """
@@ -44,7 +44,7 @@ class ImageFrame(DataContent):
 
 
 class PictureSize(PageMessage):
-    """The size of the panel of an Image display in pixels, 0 while it is not seen; a larger image is not needed."""
+    """The size of an Image display's panel in pixels, 0 while it is hidden; larger images are not needed."""
 
     display: str
     width: int

@@ -10,7 +10,7 @@ from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessag
 class JointControl(Record):
     """A row of the Joints panel.
 
-    `mimic` is the joint it follows, position = multiplier * position of that + offset: such a row cannot be moved.
+    `mimic` is the joint that it follows, position = multiplier * position of that + offset; the user cannot move it.
     """
 
     name: str
@@ -30,7 +30,7 @@ class Joints(ServerMessage):
 
 
 class JointPositions(ServerMessage):
-    """Positions of the Joints panel's joints, rad or m, mimicking joints included."""
+    """Positions of the Joints panel's joints, rad or m, including mimicking ones."""
 
     positions: dict[str, float]
 
@@ -43,7 +43,7 @@ class SetJoint(PageMessage):
 
 
 class SetJoints(PageMessage):
-    """A pose was recalled, or a sweep goes on: several joints at once, rad or m."""
+    """A pose was recalled, or a sweep advances: several joints at once, rad or m."""
 
     positions: dict[str, float]
 

@@ -1,4 +1,4 @@
-"""Markers: content of the Marker and MarkerArray displays, and markers that can be moved, turned and clicked."""
+"""Markers: content of the Marker and MarkerArray displays, and interactive markers."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class MarkerShape(Record):
     """A marker, as visualization_msgs/msg/Marker has it.
 
     `id` is ``<namespace>/<number>``. `pose` (x y z qx qy qz qw) is in the Fixed Frame, or, when `frame` is not empty,
-    in that frame wherever it goes. `scale` is x, y, z; `color` red, green, blue, alpha. `points` has shape (N, 3),
+    in that frame, which it follows. `scale` is x, y, z; `color` red, green, blue, alpha. `points` has shape (N, 3),
     `colors` (N, 4) or none, `uvs` (N, 2) or none. `texture` is an address of an image.
     """
 
@@ -63,7 +63,7 @@ class MarkerShape(Record):
 class MarkersChanged(DataContent):
     """Marker and MarkerArray: new and changed markers, and the ids of removed ones.
 
-    With `everything` set, whatever was there before has gone too.
+    With `everything` set, all earlier markers are removed.
     """
 
     everything: bool
@@ -72,7 +72,7 @@ class MarkersChanged(DataContent):
 
 
 OrientationMode = Literal["inherit", "fixed", "view_facing"]
-"""In the order of visualization_msgs' numbers, as the modes below."""
+"""In the order of visualization_msgs' numbers, as are the modes below."""
 
 InteractionMode = Literal[
     "none",
@@ -92,7 +92,7 @@ FeedbackEvent = Literal["pose_update", "menu_select", "button_click", "mouse_dow
 class InteractiveControl(Record):
     """A handle of an interactive marker.
 
-    Its axis is the x axis of `orientation` (x y z w, in the frame that the orientation mode says). The poses of
+    Its axis is the x axis of `orientation` (x y z w, in the frame that the orientation mode selects). The poses of
     `markers` are in the frame of the control, or in that of the interactive marker when `independent_orientation`.
     """
 
@@ -133,9 +133,9 @@ class InteractiveMarkerMoved(DataContent):
 
 
 class MarkerFeedback(PageMessage):
-    """The user did something to an interactive marker; poses and points are in the marker's frame.
+    """The user acted on an interactive marker; poses and points are in the marker's frame.
 
-    `mouse_point` is where the mouse met the marker, or none.
+    `mouse_point` is the point of the marker under the mouse, or none.
     """
 
     display: str

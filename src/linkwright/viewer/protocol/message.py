@@ -1,7 +1,6 @@
 """The base classes of messages, and their encoding and decoding as text.
 
-To define a message is to register it: the codec and the page's types follow. Of what pages send nothing is taken on
-trust.
+To define a message is to register it: the codec and the page's types follow. All messages of pages are validated.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from linkwright.diagnostics.translation import said_in
 
 
 def _tag(name: str) -> str:
-    """The name of a class in JSON: ``SetJoint`` is ``set_joint``."""
+    """Return the name of a class in JSON: ``SetJoint`` is ``set_joint``."""
     return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
 
 
@@ -31,8 +30,8 @@ class ServerMessage(Struct, tag_field="type", tag=_tag):
     """A message from the server to pages."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ()
-    """Fields that say what a message is about: of messages that wait for a slow page only the newest for each of their
-    values is sent; without any, the newest of the class."""
+    """Fields that identify the subject of a message: of messages that wait for a slow page only the newest for each of
+    their values is sent; without any, the newest of the class."""
 
 
 class PageMessage(Struct, tag_field="type", tag=_tag, forbid_unknown_fields=True):
@@ -44,27 +43,27 @@ class DataContent(Struct, tag_field="kind", tag=_tag):
 
 
 def tag_of(message: Struct) -> str:
-    """The name of a message's class in JSON."""
+    """Return the name of a message's class in JSON."""
     return str(message.__struct_config__.tag)
 
 
 class BadMessageError(ValueError):
-    """A page sent something that is not a message of the protocol; the text says why."""
+    """A page sent data that is not a message of the protocol; the text gives the reason."""
 
 
 def plain(value: Any) -> Any:
-    """The plain text or number of a derived class, such as those of numpy, for JSON."""
+    """Return the plain text or number of a derived class, such as those of numpy, for JSON."""
     if isinstance(value, str):
         return str.__str__(value)
     if isinstance(value, float):
         return float(value)
     if isinstance(value, int):
         return int(value)
-    raise TypeError(f"JSON has nothing for a {type(value).__name__}")
+    raise TypeError(f"JSON cannot represent a {type(value).__name__}")
 
 
 def encode(message: ServerMessage, language: str | None = None) -> str:
-    """A message as JSON. Half characters, as names of files may have that are not in UTF-8, become question marks.
+    """Return a message as JSON. Half characters of names that are not in UTF-8 become question marks.
 
     Args:
         message: the message.
@@ -84,20 +83,20 @@ def _encoder(language: str | None) -> msgspec.json.Encoder:
 
 
 def _said(value: Any, language: str | None) -> Any:
-    """A phrase in the language; anything else as `plain` has it."""
+    """Return a phrase in the language, or another value as `plain` has it."""
     return plain(said_in(value, language) if language is not None and isinstance(value, Phrase) else value)
 
 
 def redundancy_key(message: ServerMessage) -> str:
-    """The key by which a message replaces earlier ones: one for each class, or for each value of its `NEWEST_OF`."""
+    """Return the key by which a message replaces earlier ones: one for each class, or each value of its `NEWEST_OF`."""
     return "\n".join((tag_of(message), *(str(getattr(message, name)) for name in message.NEWEST_OF)))
 
 
 def decode(text: str) -> PageMessage:
-    """The message that a page sent.
+    """Return the message that a page sent.
 
     Raises:
-        BadMessageError: it is not JSON, of no known type, or its fields are not exactly those of the type.
+        BadMessageError: it is not JSON, its type is unknown, or its fields are not exactly those of the type.
     """
     try:
         message: PageMessage = _decoder(len(PageMessage.__subclasses__())).decode(text)
@@ -108,7 +107,7 @@ def decode(text: str) -> PageMessage:
 
 @lru_cache(maxsize=1)
 def _decoder(_known: int) -> msgspec.json.Decoder[Any]:
-    """The decoder of all messages defined so far; made anew when a feature was imported that defines more."""
+    """Return the decoder of all messages defined so far; a new one after a feature defined more."""
     by_tag: dict[str, type[PageMessage]] = {}
     for cls in PageMessage.__subclasses__():
         tag = str(cls.__struct_config__.tag)

@@ -36,9 +36,9 @@ class WorldThing(Record):
 
 
 class ModellingState(ServerMessage):
-    """Whether the world can be edited and is, and what stands in it.
+    """Whether the world can be edited and is being edited, and its content.
 
-    `file` is None for a world without a file of its own, which is saved as one that the user names. While nobody edits
+    `file` is None for a world without a file of its own, which is saved as one that the user names. While no user edits
     the world, `things` may be empty.
     """
 
@@ -70,7 +70,7 @@ class ModelChoices(ServerMessage):
 
 
 class ThingChange(Record):
-    """A change of a model or light; fields that are None stay."""
+    """The change of a model or light; fields that are None stay."""
 
     name: str
     pose: list[float] | None
@@ -81,13 +81,13 @@ class ThingChange(Record):
 
 
 class SetModelling(PageMessage):
-    """The user begins or ends to edit the world; while it is edited, time stands still at the beginning."""
+    """The user starts or stops editing the world; meanwhile the simulation is paused at its start."""
 
     active: bool
 
 
 class AddThing(PageMessage):
-    """The user adds something; `address` is that of a model, `size` may be empty for the usual one."""
+    """The user adds an object; `address` is that of a model, an empty `size` means the default one."""
 
     shape: NewKind
     address: str
@@ -96,50 +96,50 @@ class AddThing(PageMessage):
 
 
 class ChangeThings(PageMessage):
-    """The user changes things, in one step of undo."""
+    """The user changes objects, in one undo step."""
 
     changes: list[ThingChange]
 
 
 class CopyThings(PageMessage):
-    """The user copies things; the copies stand at an offset (x y z) from them."""
+    """The user copies objects; the copies are placed at an offset (x y z) from them."""
 
     names: list[str]
     offset: list[float]
 
 
 class DeleteThings(PageMessage):
-    """The user takes things out of the world."""
+    """The user deletes objects from the world."""
 
     names: list[str]
 
 
 class GroupThings(PageMessage):
-    """The user makes one model of several, which are then its parts."""
+    """The user makes one model of several, which become its parts."""
 
     names: list[str]
     name: str
 
 
 class UngroupThing(PageMessage):
-    """The user makes models of the world of the parts of one."""
+    """The user splits a model into its parts."""
 
     name: str
 
 
 class UndoWorld(PageMessage):
-    """The user takes the last change of the world back."""
+    """Undo the last change of the world."""
 
 
 class RedoWorld(PageMessage):
-    """The user makes the change again that was taken back last."""
+    """Redo the change that was undone last."""
 
 
 class SaveWorld(PageMessage):
-    """The user saves the world: into its file, or as another where `path` names one."""
+    """The user saves the world: into its file, or into `path` if it is set."""
 
     path: str | None
 
 
 class AskModels(PageMessage):
-    """The user wants to choose among the models on the search path."""
+    """The user opens the choice of models on the search path."""

@@ -21,7 +21,7 @@ from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessag
 
 
 class TopicRow(Record):
-    """A topic of the graph; several `types` are a mistake of its users."""
+    """A topic of the graph; several `types` are an error of its users."""
 
     name: str
     types: list[str]
@@ -30,7 +30,7 @@ class TopicRow(Record):
 
 
 class TopicTraffic(Record):
-    """The traffic of a measured topic: hertz and bytes a second. `error` tells why it cannot be measured or shown.
+    """The traffic of a measured topic: hertz and bytes a second. `error` is why it cannot be measured or shown.
 
     Both figures are None before there are two messages.
     """
@@ -87,14 +87,14 @@ _SERIES = struct.Struct("<II")
 
 
 class PlotField(Record):
-    """A field that can be plotted, as it is written behind the topic's name; `kind` is the type of its values."""
+    """A field that can be plotted, in the notation behind the topic's name; `kind` is the type of its values."""
 
     path: str
     kind: str
 
 
 class PlotSeries(Record):
-    """A series that a page plots; the page chooses the id, which no other series of it has."""
+    """A series that a page plots; the page chooses the id, which is unique in it."""
 
     id: int
     topic: str
@@ -102,7 +102,7 @@ class PlotSeries(Record):
 
 
 class SeriesState(Record):
-    """Why a series has no values; None when it has, or when it waits for a first message."""
+    """Why a series has no values; None if it has some, or waits for a first message."""
 
     id: int
     error: str | None
@@ -124,20 +124,20 @@ class SeriesStates(ServerMessage):
 
 
 class AskFields(PageMessage):
-    """The user chooses from the fields of a topic; None when the choice is over."""
+    """The user chooses from the fields of a topic; None after the choice."""
 
     topic: str | None
 
 
 class WatchSeries(PageMessage):
-    """All series that the page plots from now on, and how many seconds of the past it shows of them."""
+    """All series that the page plots from now on, and the seconds of the past that it shows."""
 
     series: list[PlotSeries]
     seconds: float = 30.0
 
 
 def pack_samples(series: Sequence[tuple[int, NDArray[Any]]]) -> bytes:
-    """A binary frame of samples.
+    """Return a binary frame of samples.
 
     Args:
         series: ids, each with an array of shape (3, M): received (s), stamp (s), value.
@@ -149,7 +149,7 @@ def pack_samples(series: Sequence[tuple[int, NDArray[Any]]]) -> bytes:
 
 
 class GraphTopic(Record):
-    """A topic with the full names of the nodes at both ends."""
+    """A topic with the full names of its publishers and subscribers."""
 
     name: str
     types: list[str]
@@ -165,7 +165,7 @@ class NodeGraph(ServerMessage):
 
 
 class WatchNodeGraph(PageMessage):
-    """Whether the page wants to be told of the node graph."""
+    """Whether the page subscribes to the node graph."""
 
     watched: bool
 
@@ -199,7 +199,7 @@ class ParameterRow(Record):
 
 
 class ParameterNodes(ServerMessage):
-    """Full names of the nodes whose parameters can be asked for."""
+    """Full names of the nodes that offer their parameters."""
 
     nodes: list[str]
 
@@ -224,7 +224,7 @@ class ParameterResult(ServerMessage):
 
 
 class ParameterDump(ServerMessage):
-    """Answers `DumpParameters`: a parameter file, and what to call it."""
+    """Answers `DumpParameters`: a parameter file, and its name."""
 
     node: str
     file: str
@@ -249,7 +249,7 @@ class SetParameter(PageMessage):
 
 
 class DumpParameters(PageMessage):
-    """The user wants the parameters of a node as a file."""
+    """Ask for the parameters of a node as a file."""
 
     node: str
 
@@ -267,14 +267,14 @@ class LogLine(Record):
 
 
 class LogLines(ServerMessage):
-    """New records in the order they came; `missed` counts those that were too many to be sent."""
+    """New records in the order of arrival; `missed` counts those that were too many to send."""
 
     lines: list[LogLine]
     missed: int
 
 
 class WatchLog(PageMessage):
-    """Whether the page wants to be told of new records."""
+    """Whether the page subscribes to new log records."""
 
     watched: bool
 
@@ -283,7 +283,7 @@ TwistKind = Literal["auto", "Twist", "TwistStamped"]
 
 
 class TeleopTarget(Record):
-    """The topic and type of a pad; `auto` takes the type of the topic's subscribers, Twist where there are none."""
+    """The topic and type of a pad; `auto` is the type of the topic's subscribers, or Twist without any."""
 
     topic: str
     kind: TwistKind
@@ -291,7 +291,7 @@ class TeleopTarget(Record):
 
 
 class TeleopState(ServerMessage):
-    """The state of a pad: the type it publishes, how many listen, and why it does not publish, if so."""
+    """The state of a pad: its type, the number of subscribers, and why it does not publish, if so."""
 
     topic: str
     kind: str
@@ -300,15 +300,15 @@ class TeleopState(ServerMessage):
 
 
 class AimTeleop(PageMessage):
-    """The page opens its pad, or gives it another target; None closes it."""
+    """The page opens its pad, or changes its target; None closes it."""
 
     target: TeleopTarget | None
 
 
 class Drive(PageMessage):
-    """A velocity to publish now: m/s along x, y, z and rad/s around x, y, z. Comes again and again while one is held.
+    """A velocity to publish now: m/s along x, y, z and rad/s around x, y, z. Repeated while one is held.
 
-    When none comes for a while, or the page goes, zero is published.
+    Without one for a while, or when the page closes, zero is published.
     """
 
     linear: list[float]

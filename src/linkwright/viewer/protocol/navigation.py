@@ -1,4 +1,4 @@
-"""The panel of nav2: what its nodes and its goal are doing, and commands to them."""
+"""The panel of nav2: the states of its nodes and its goal, and commands to them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Literal
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 
 ManagerState = Literal["unknown", "inactive", "active"]
-"""The state of a lifecycle manager's nodes; unknown where there is none."""
+"""The state of a lifecycle manager's nodes; unknown if there is none."""
 
 GoalState = Literal["none", "active", "canceling", "succeeded", "canceled", "aborted"]
 
@@ -15,7 +15,7 @@ NavigationCommand = Literal["startup", "pause", "resume", "reset", "cancel"]
 
 
 class WatchNavigation(PageMessage):
-    """The page shows its panel, or shows it no more."""
+    """Whether the page shows its panel."""
 
     open: bool
 
@@ -33,12 +33,12 @@ class NavigationState(ServerMessage):
         navigation: the nodes of lifecycle_manager_navigation.
         localization: the state of lifecycle_manager_localization.
         goal: the last goal of ``navigate_to_pose``.
-        eta: seconds that it will take from now; None without feedback, as all below.
+        eta: seconds that remain; None if there is no feedback, as for all below.
         distance: metres that remain.
-        taken: seconds that it took till now.
+        taken: seconds that have passed.
         recoveries: the number of recoveries so far.
-        busy: a command is under way.
-        problem: why the last command was not done; empty where it was.
+        busy: whether a command is running.
+        problem: why the last command failed; empty if it did not.
     """
 
     navigation: ManagerState
@@ -56,7 +56,7 @@ class GoalOutcome(ServerMessage):
     """Whether the last goal failed, which is shown over the scene.
 
     Attributes:
-        reason: the last error of the node that gave it up, or why it was not sent; empty where none is known.
+        reason: the last error of the node that aborted it, or why it was not sent; empty if unknown.
         failed: whether it failed; false from when another goal is accepted.
     """
 

@@ -11,9 +11,9 @@ from linkwright.viewer.protocol.message import DataContent, PageMessage, ServerM
 class CloudPoints(DataContent):
     """PointCloud2 and its kin: points in the frame of the message, metres, shape (N, 3).
 
-    `colours` has red, green, blue and alpha of each point, shape (N, 4), or nothing where all have the display's own
-    colour. `translucent` says whether an alpha is less than full. `pixel` is the size of points by their depth in the
-    frame, metres per metre; 0 where they have the size that the display says. For a slow line only every `step`-th
+    `colours` has red, green, blue and alpha of each point, shape (N, 4), or nothing if all have the display's own
+    colour. `translucent` is whether an alpha is less than full. `pixel` is the size of points by their depth in the
+    frame, metres per metre; 0 if they have the display's size. For a slow line only every `step`-th
     point is sent.
     """
 
@@ -33,7 +33,7 @@ class CellGrid(DataContent):
 
 
 class AskPoint(PageMessage):
-    """The user selected a point of a display's content and wants to know its fields; answered by `PointFields`."""
+    """The user selected a point of a display's content; answered by `PointFields`."""
 
     display: str
     key: str
@@ -43,7 +43,7 @@ class AskPoint(PageMessage):
 class PointFields(ServerMessage):
     """The fields of a point besides its coordinates, by name, in the order of the message.
 
-    A packed colour is ``#rrggbbaa``; a value that is no finite number is a text.
+    A packed colour is ``#rrggbbaa``; a number that is not finite is a text.
     """
 
     display: str

@@ -1,4 +1,4 @@
-"""Recording from pages: what topics carry from now on, and what came in the last minutes, as files of the server."""
+"""Recording from pages: the messages of topics from now on, or of the last minutes, as files of the server."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessag
 
 
 class RecordedFile(Record):
-    """A recording that was made: its file on the server, bytes, seconds, and where pages can fetch it.
+    """A finished recording: its file on the server, bytes, seconds, and its address for pages.
 
     `simulated` are the seconds that passed in the simulation meanwhile; None where time is not simulated, or not known.
     """
@@ -20,11 +20,11 @@ class RecordedFile(Record):
 
 
 class RecordingState(ServerMessage):
-    """Whether something is recorded, which all pages see; told each second meanwhile.
+    """The state of recording, for all pages; sent each second while there is a recording.
 
-    `possible` is false beside a recording that is shown. `path` is that of what is being written, empty where nothing
-    is; `length` are seconds, `size` bytes. `saved` is the part of the last minutes that is written, null while none is.
-    `problem` says why the last one could not be made or ended early. `files` are those of this program, the last first.
+    `possible` is false while a recording is shown. `path` is that of the recording being written, empty if there is
+    none; `length` are seconds, `size` bytes. `saved` is the written part of the last minutes, null if none is.
+    `problem` is why the last recording failed or ended early. `files` are those of this program, the last first.
     """
 
     possible: bool
@@ -40,17 +40,17 @@ NOTHING_RECORDED = RecordingState(possible=True, path="", length=0.0, size=0, sa
 
 
 class RecordTopics(PageMessage):
-    """The user has topics recorded; without any, all that there are and those to come."""
+    """The user records topics; without any, all present and future ones."""
 
     topics: list[str]
 
 
 class StopRecording(PageMessage):
-    """The user ends what is being recorded."""
+    """The user stops the recording."""
 
 
 class SaveMinutes(PageMessage):
-    """The user has the last minutes saved, or the part between two times, seconds since the epoch."""
+    """The user saves the last minutes, or the part between two times, seconds since the epoch."""
 
     start: float | None
     end: float | None

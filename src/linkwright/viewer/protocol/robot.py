@@ -14,7 +14,7 @@ from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessag
 ShapeKind = Literal[
     "box", "cylinder", "capsule", "sphere", "mesh", "ellipsoid", "cone", "plane", "polyline", "heightmap"
 ]
-"""The kinds of shapes; those from ``ellipsoid`` on are only in worlds."""
+"""The kinds of shapes; those from ``ellipsoid`` on occur only in worlds."""
 
 
 class Submesh(Record):
@@ -27,7 +27,7 @@ class Submesh(Record):
 class Surface(Record):
     """The material of a shape of a world: roughness and metalness from 0 to 1, and addresses of images.
 
-    `emissive_map` is what it gives off by itself, `occlusion_map` where (red) light from all sides does not reach it.
+    `emissive_map` is its own light, `occlusion_map` (red) darkens places that ambient light does not reach.
     """
 
     roughness: float
@@ -85,7 +85,7 @@ class LinkScene(Record):
 class JointScene(Record):
     """A joint, posed in its parent link's frame; `axis` is in the joint's own. SI units.
 
-    `lower` and `upper` are None without a limit; a number of the description that is not finite is None too.
+    `lower` and `upper` are None if there is no limit, or if it is not finite.
     """
 
     name: str
@@ -100,7 +100,7 @@ class JointScene(Record):
 
 
 class RobotScene(ServerMessage):
-    """The robot of a RobotModel display; `revision` counts descriptions. No links means no robot."""
+    """The robot of a RobotModel display; `revision` counts descriptions. An empty list of links means no robot."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -112,7 +112,7 @@ class RobotScene(ServerMessage):
 
 
 class MeshStatus(PageMessage):
-    """The outcome of loading a mesh in the page; `error` is None when it is drawn."""
+    """The outcome of loading a mesh in the page; `error` is None if it is drawn."""
 
     display: str
     link: str
@@ -121,7 +121,7 @@ class MeshStatus(PageMessage):
 
 
 class AskProvenance(PageMessage):
-    """The user selected a link of a RobotModel display and wants to know where it was written."""
+    """The user selected a link of a RobotModel display; ask for its place in the files."""
 
     display: str
     link: str

@@ -1,15 +1,15 @@
-"""The connection itself."""
+"""The messages about the connection itself."""
 
 from __future__ import annotations
 
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 
 PROTOCOL_VERSION = 5
-"""Raised on every change that an older page would misread; the page reloads itself when it differs."""
+"""Increased on every change that an older page would misread; the page reloads itself if it differs."""
 
 
 class Hello(ServerMessage):
-    """First message on every connection; `run` is another one when the program was started again."""
+    """First message on every connection; `run` changes when the program is started again."""
 
     protocol: int
     version: str

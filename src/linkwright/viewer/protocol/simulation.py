@@ -8,10 +8,10 @@ from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 
 
 class SimulationStatus(ServerMessage):
-    """The state of the simulation; `present` is false where there is none.
+    """The state of the simulation; `present` is false if there is none.
 
-    `drivable` is true where something listens for velocities, on whatever topic.
-    `time` is simulated time; it and the real-time factor are None until the simulation has told them.
+    `drivable` is true if a topic of velocities has a subscriber.
+    `time` is simulated time; it and the real-time factor are None until the simulation publishes them.
     """
 
     present: bool
@@ -25,38 +25,38 @@ NO_SIMULATION = SimulationStatus(present=False, drivable=False, paused=False, ti
 
 
 class SimulationNotice(ServerMessage):
-    """Why the simulation did not do what the page asked for."""
+    """Why the simulation refused the page's request."""
 
     text: str
 
 
 class ModelAdded(ServerMessage):
-    """The model that the page asked for is in the world."""
+    """The model that the page requested is in the world."""
 
     name: str
 
 
 class ControlSimulation(PageMessage):
-    """The user wants time to go on, to stand still, to make one step, or to begin anew."""
+    """The user resumes, pauses, steps or resets the simulation."""
 
     action: Literal["play", "pause", "step", "reset"]
 
 
 class SpawnModel(PageMessage):
-    """The user puts a model or robot into the world: a file's path, ``package://`` or ``model://`` address."""
+    """The user adds a model or robot to the world: a file's path, ``package://`` or ``model://`` address."""
 
     address: str
     position: list[float]
 
 
 class DeleteModel(PageMessage):
-    """The user takes a model out of the world."""
+    """The user deletes a model from the world."""
 
     model: str
 
 
 class DragModel(PageMessage):
-    """The user moves a model by an offset, in the world's frame, from where it was when `begins` was true last."""
+    """The user moves a model by an offset, in the world's frame, from its pose when `begins` was true last."""
 
     model: str
     begins: bool

@@ -1,4 +1,4 @@
-"""The Time panel: pause, synchronization and clocks. Pausing is shared by all pages, as what they show is."""
+"""The Time panel: pause, synchronization and clocks. All pages share a pause, as they share the content."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class TimeState(ServerMessage):
 class Clock(ServerMessage):
     """The clocks now, in seconds, for pages that watch them.
 
-    `ros_start` and `wall_start` are when the time that elapsed began. While `running` the ROS time goes on as the
-    wall time does and the page counts by itself; a simulated or paused one is told anew whenever it has changed.
+    `ros_start` and `wall_start` are when the elapsed time began. While `running` the ROS time advances as the wall time
+    does, and the page counts by itself; a simulated or paused clock is sent again whenever it has changed.
     """
 
     ros: float
@@ -37,7 +37,7 @@ class TimeReset(ServerMessage):
 
 
 class SetTime(PageMessage):
-    """The user pauses, goes on, or leads time by a display's messages."""
+    """The user pauses or resumes, or synchronizes time with a display's messages."""
 
     paused: bool
     mode: SyncMode
@@ -49,6 +49,6 @@ class ResetTime(PageMessage):
 
 
 class WatchClock(PageMessage):
-    """A page shows the clocks, or no more."""
+    """Whether a page shows the clocks."""
 
     watching: bool

@@ -1,4 +1,4 @@
-"""The timeline: which time of a recording is shown, and control of its playback. Times are seconds since the epoch."""
+"""The timeline: the time of a recording that is shown, and playback control. Times are seconds since the epoch."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessag
 
 
 class TimelineTopic(Record):
-    """A topic of a recording, with how many messages it has.
+    """A topic of a recording, with the number of its messages.
 
-    `counts` are those in equal parts of the recording; empty where that is not known.
+    `counts` are those in equal parts of the recording; empty if unknown.
     """
 
     name: str
@@ -20,7 +20,7 @@ class TimelineTopic(Record):
 class Timeline(ServerMessage):
     """The recording that is shown: its name, its times and topics.
 
-    With `live` it is what came in the last minutes: it has no name, and `Kept` tells how its ends move on.
+    With `live` it is the history of the last minutes: it has no name, and `Kept` reports how its ends move.
     """
 
     name: str
@@ -31,7 +31,7 @@ class Timeline(ServerMessage):
 
 
 class Kept(ServerMessage):
-    """The part of the last minutes that is kept: from when to when, its bytes, and how many it may take."""
+    """The stored part of the last minutes: its first and last time, its bytes, and their limit."""
 
     start: float
     end: float
@@ -43,8 +43,8 @@ class Playhead(ServerMessage):
     """The position in a recording. While `playing`, sent a few times a second.
 
     `live` is whether the present is shown, of a timeline of the last minutes.
-    `seeks` is how often somebody went to another time: a page whose own has been done goes on to the next.
-    `problem` says why it stands still where it cannot be read; else it is empty.
+    `seeks` counts the seeks of all users: a page whose own seek is done proceeds to its next one.
+    `problem` is why playback stopped if the recording cannot be read; else it is empty.
     """
 
     position: float
@@ -57,7 +57,7 @@ class Playhead(ServerMessage):
 
 
 class Play(PageMessage):
-    """The user has a recording go on, or stand still."""
+    """The user resumes or pauses a recording."""
 
     playing: bool
 
@@ -69,7 +69,7 @@ class SeekTime(PageMessage):
 
 
 class StepTime(PageMessage):
-    """The user goes to the next message of what is shown, or to the one before; or to that of a single topic."""
+    """The user goes to the next message that is shown, or to the one before; or to that of a single topic."""
 
     forward: bool
     topic: str = ""
@@ -80,7 +80,7 @@ class GoLive(PageMessage):
 
 
 class SetPlayback(PageMessage):
-    """The user plays a recording slower or faster, once or over and over."""
+    """The user changes the speed of playback, or whether it repeats."""
 
     speed: float
     loop: bool

@@ -1,7 +1,7 @@
-"""Views, where the camera is, and tools, what the mouse does in the scene.
+"""Views, the poses of the camera, and tools, the uses of the mouse in the scene.
 
-Every page has a camera of its own and a tool in hand; what pages share is the file's view, the saved ones, and the list
-and settings of tools. The values of a view are named by the path of their property: ``Distance``, ``Focal Point/X``.
+Every page has a camera and a selected tool of its own; pages share the file's view, the saved views, and the list and
+settings of tools. The values of a view are named by the path of their property: ``Distance``, ``Focal Point/X``.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class ViewClass(Record):
 
 
 class ViewClasses(ServerMessage):
-    """All classes of views; comes before the first view."""
+    """All classes of views; sent before the first view."""
 
     classes: list[ViewClass]
 
@@ -37,8 +37,8 @@ class ViewClasses(ServerMessage):
 class ViewState(ServerMessage):
     """The view of a configuration; the page owns the camera from then on.
 
-    `revision` counts the configurations that were opened: a page that comes back keeps its camera while it is the same.
-    `whole_robot` says that nobody chose this view: the camera goes where all of the robot is seen, once it is drawn.
+    `revision` counts the configurations that were opened: a page that reconnects keeps its camera while it is the same.
+    `whole_robot` is whether no user chose this view: the camera then fits the robot, once it is drawn.
     """
 
     view: View
@@ -47,28 +47,28 @@ class ViewState(ServerMessage):
 
 
 class SavedView(Record):
-    """A saved view and its id, which stays while it is renamed or changed."""
+    """A saved view and its id, which stays the same when the view is renamed or changed."""
 
     id: str
     view: View
 
 
 class SavedViews(ServerMessage):
-    """The saved views, in their order, whenever they change."""
+    """The saved views, in their order, sent after each change."""
 
     views: list[SavedView]
 
 
 class ViewChanged(PageMessage):
-    """The camera as the page has it now, at most a few times a second; the last of any page is saved in the file."""
+    """The page's current camera, sent at most a few times a second; the last one of any page is saved in the file."""
 
     view: View
 
 
 class RobotMeasured(PageMessage):
-    """The extent of robots with their meshes, measured by a page whose camera nobody has moved.
+    """The extent of robots with their meshes, measured by a page whose camera the user has not moved.
 
-    That is the diagonal of the box around them, and how high the ground is that they stand on, in the Fixed Frame, m.
+    That is the diagonal of the box around them, and the height of the ground below them, in the Fixed Frame, m.
     """
 
     diagonal: float
@@ -82,20 +82,20 @@ class SaveView(PageMessage):
 
 
 class ChangeSavedView(PageMessage):
-    """Give a saved view another name or other values."""
+    """Change the name or the values of a saved view."""
 
     id: str
     view: View
 
 
 class RemoveSavedView(PageMessage):
-    """Take a saved view away."""
+    """Remove a saved view."""
 
     id: str
 
 
 class Tool(Record):
-    """A tool of the toolbar. `supported` is false for a class that this program does not know; the file keeps it."""
+    """A tool of the toolbar. `supported` is false for an unknown class, which the file keeps."""
 
     id: str
     cls: str
@@ -112,14 +112,14 @@ class ToolClass(Record):
 
 
 class Tools(ServerMessage):
-    """The tools in the order of the toolbar, whenever they change; the first is the default one."""
+    """The tools in the order of the toolbar, sent after each change; the first is the default one."""
 
     tools: list[Tool]
     classes: list[ToolClass]
 
 
 class ToolPropertyChanged(ServerMessage):
-    """A new setting of a tool, set by any page; a refused value is answered with the present one."""
+    """A new setting of a tool, set by any page; the answer to a refused value is the present one."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("id",)
 
@@ -141,7 +141,7 @@ class AddTool(PageMessage):
 
 
 class RemoveTool(PageMessage):
-    """Take a tool out of the toolbar."""
+    """Remove a tool from the toolbar."""
 
     id: str
 

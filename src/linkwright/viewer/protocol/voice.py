@@ -1,6 +1,6 @@
-"""The Voice panel: sound of pages' microphones, what was heard and answered, commands as text.
+"""The Voice panel: sound of pages' microphones, recognized commands and answers, commands as text.
 
-Sound comes in binary frames, little endian: four uint32 (kind 5, number of samples N, number of samples that the
+Sound is sent in binary frames, little endian: four uint32 (kind 5, number of samples N, number of samples that the
 browser lost in them or before them, 0), and int16 N, mono at 16 kHz. A frame has a tenth of a second, or less where the
 sound ends.
 """
@@ -24,7 +24,7 @@ MOST_SAMPLES = 1600
 """The largest number of samples in a frame."""
 
 MOST_LOST_SAMPLES = 5 * SOUND_RATE
-"""Samples that a frame may say were lost; of more than that a page says so many."""
+"""The most lost samples that a frame may report; a page that lost more reports this number."""
 
 _HEADER = struct.Struct("<IIII")
 
@@ -35,7 +35,7 @@ class SoundBlock:
 
     Attributes:
         samples: mono PCM of 16 bits at 16 kHz, shape (n,).
-        lost: seconds that are missing in them or before them: the browser's machine was too busy.
+        lost: seconds that are missing in them or before them, because the browser's machine was too busy.
     """
 
     samples: NDArray[np.int16]
@@ -43,7 +43,7 @@ class SoundBlock:
 
 
 def unpack_sound(frame: bytes) -> SoundBlock | None:
-    """The sound in a binary frame of a page; None for anything else."""
+    """Return the sound in a binary frame of a page, or None for another frame."""
     if len(frame) < _HEADER.size:
         return None
     kind, count, lost, _ = _HEADER.unpack_from(frame)
@@ -55,13 +55,13 @@ def unpack_sound(frame: bytes) -> SoundBlock | None:
 
 
 class VoiceNode(ServerMessage):
-    """Whether a node is there that carries out spoken commands."""
+    """Whether there is a node that carries out spoken commands."""
 
     present: bool
 
 
 class WatchVoice(PageMessage):
-    """Start or stop sending what is heard and answered."""
+    """Start or stop sending recognized commands and answers."""
 
     watched: bool
 
@@ -72,14 +72,14 @@ TalkMode = Literal["off", "ready", "held", "open"]
 class Talk(PageMessage):
     """The mode of the page's microphone.
 
-    It is off; ready, which publishes nothing yet; or its sound is meant: as long as a button is held, or all of it.
+    It is off; ready, which publishes nothing yet; or published, while a button is held or all the time.
     """
 
     mode: TalkMode
 
 
 class SayCommand(PageMessage):
-    """A command as text, as if it had been heard."""
+    """A command as text, handled like a spoken one."""
 
     text: str
 
@@ -91,12 +91,12 @@ class VoiceState(ServerMessage):
     """The page that talks, and the listeners in the graph.
 
     Attributes:
-        talking: whose sound is published. One page talks at a time: the first that holds its button, else the first
-            that listens all the time.
+        talking: the page whose sound is published. One page talks at a time: the first with its button held, else the
+            first that listens all the time.
         sound_listeners: the number of subscribers to sound.
         text_listeners: the number of subscribers to commands as text.
-        cut: the page sent more sound than time has passed, or says that more was lost, and has to begin anew.
-        proposes_enrolling: the robot knows none of what was said and proposes to enrol words where the user stands.
+        cut: the page sent more sound than time has passed, or reported too much loss, and has to restart.
+        proposes_enrolling: the robot recognized no word of a command and proposes to enrol words.
     """
 
     talking: Talking
@@ -110,7 +110,7 @@ SaidPart = Literal["partial", "text", "command", "response"]
 
 
 class VoiceSaid(ServerMessage):
-    """A text of the conversation: what is being heard, was heard, was understood, is answered."""
+    """A text of the conversation: partial or final speech, a recognized command, or an answer."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("number",)
 

@@ -1,4 +1,4 @@
-"""Words that the user enrols in the Voice panel: recorded three times each, and kept in a file of the user's."""
+"""Words that the user enrols in the Voice panel: recorded three times each, and stored in a file of the user's."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessag
 
 
 class EnrolledWord(Record):
-    """A word and how often it was said."""
+    """A word and the number of its takes."""
 
     name: str
     takes: int
@@ -21,7 +21,7 @@ class WatchWords(PageMessage):
 
 
 class BeginTake(PageMessage):
-    """Begin a take: the sound until `EndTake` is a word, said once; it is not published."""
+    """Start a take: the sound until `EndTake` is a word, said once; it is not published."""
 
     name: str
 
@@ -30,7 +30,7 @@ class EndTake(PageMessage):
     """End the take.
 
     Attributes:
-        has_gaps: the page knows that some of the sound was lost.
+        has_gaps: whether some of the sound was lost.
     """
 
     has_gaps: bool
@@ -50,13 +50,13 @@ class RenameWord(PageMessage):
 
 
 class ImportWords(PageMessage):
-    """Add the words of a file; they replace words of the same names."""
+    """Import the words of a file; they replace words of the same names."""
 
     text: str
 
 
 class AskWordsFile(PageMessage):
-    """Asks for the file of the words."""
+    """Ask for the file of the words."""
 
 
 class VoiceWords(ServerMessage):
@@ -65,8 +65,8 @@ class VoiceWords(ServerMessage):
     Attributes:
         words: in the order in which they were enrolled.
         enough: the number of takes that a word needs.
-        file: the file in which they are kept.
-        problem: why the file cannot be read or written, or something was not done.
+        file: the file in which they are stored.
+        problem: why the file cannot be read or written, or a request failed.
     """
 
     words: list[EnrolledWord]

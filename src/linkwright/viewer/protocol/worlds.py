@@ -42,8 +42,8 @@ class LidarScene(Record):
     """A lidar of a world, with those of its rays that are drawn.
 
     `name` is its own with those of model and link, `position` (m) and `quaternion` (x y z w) are in the frame of the
-    link. It looks along x; horizontal angles are about z, vertical ones upwards. `nearest` and `farthest` is what it
-    measures, in m. `visualized` tells whether it says itself that it is to be drawn.
+    link. It looks along x; horizontal angles are about z, vertical ones upwards. `nearest` and `farthest` are its
+    range, in m. `visualized` is whether its description asks to draw it.
     """
 
     name: str
@@ -60,8 +60,8 @@ class LidarScene(Record):
 class CameraScene(Record):
     """A camera of a world; as `LidarScene`, and it looks along x with z up.
 
-    `left`, `right`, `up` and `down` are how far its picture goes at a distance of 1; it sees from `near` to `far`, in
-    m along x.
+    `left`, `right`, `up` and `down` are the bounds of its image at a distance of 1; it sees from `near` to `far`, in m
+    along x.
     """
 
     name: str
@@ -78,7 +78,7 @@ class CameraScene(Record):
 
 
 class FogScene(Record):
-    """Fog of a world: its colour, red, green, blue; from `start` to `end` in m, or with `density` by that, in 1/m."""
+    """Fog of a world: its colour, red, green, blue; from `start` to `end` in m, or with `density` in 1/m."""
 
     color: list[float]
     start: float
@@ -87,12 +87,12 @@ class FogScene(Record):
 
 
 class WorldScene(DataContent):
-    """World: what is drawn; `revision` counts descriptions.
+    """World: the content to draw; `revision` counts descriptions.
 
-    `ambient` and `background` are colours, red, green, blue; `shadows` tells whether lights cast any. `daylight`
-    is that of its sky, from 0 at night to 1; None where there is no sky. `robots` are the models that are robots;
-    `camera` is where the world's file puts the camera of a window, x y z qx qy qz qw in the frame of the world, looking
-    along x; None where it says nothing.
+    `ambient` and `background` are colours, red, green, blue; `shadows` is whether lights cast any. `daylight` is that
+    of its sky, from 0 at night to 1; None if there is no sky. `robots` are the models that are robots; `camera` is the
+    pose that the world's file gives to the camera of a window, x y z qx qy qz qw in the frame of the world, looking
+    along x; None if it gives none.
     """
 
     revision: int
@@ -123,7 +123,7 @@ class WorldPoses(DataContent):
 class WorldRays(DataContent):
     """World: the lengths of the rays of the lidar with this name, m, shape (vertical * horizontal,).
 
-    inf for those that met nothing, -inf for those that met something too near to be measured.
+    inf for rays that hit nothing, -inf for rays that hit an object that is too near to be measured.
     """
 
     lidar: str

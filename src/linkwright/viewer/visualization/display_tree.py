@@ -13,17 +13,17 @@ from linkwright.viewer.protocol.configuration import EditKind, EditName
 from linkwright.viewer.visualization.history import Edit, History
 
 MAXIMUM_DISPLAYS = 1000
-"""Most displays; pages may add no more."""
+"""Most displays; pages may not add more."""
 
 MAXIMUM_NESTING = 20
-"""Most groups around a display; pages may put none deeper, so that the file stays one that can be read."""
+"""Most groups around a display; pages may not nest deeper, so that the file can be read again."""
 
 
 class DisplayTree:
     """The displays, which follow the entries of the configuration.
 
-    What is done here can be undone. A display that is removed is stopped; when that is undone, another one with its id
-    and its part of the file takes its place.
+    Changes here can be undone. A display that is removed is stopped; undo creates another one with its id and its part
+    of the file.
 
     Args:
         config: the configuration with the entries.
@@ -51,31 +51,31 @@ class DisplayTree:
         self.fill(config)
 
     def fill(self, config: RvizConfig) -> None:
-        """Make the displays of a configuration, without starting them."""
+        """Create the displays of a configuration, without starting them."""
         self._config = config
         self.displays = [self._make(entry) for entry in config.walk()]
         self._tell_arrangement()
 
     def start(self) -> None:
-        """Start all of them."""
+        """Start all displays."""
         self._running = True
         for display in self.displays:
             display.start()
 
     def stop(self) -> None:
-        """Stop all of them."""
+        """Stop all displays."""
         self._running = False
         for display in self.displays:
             display.stop()
 
     def find(self, identity: str) -> ViewerDisplay | None:
-        """The display with an id."""
+        """Return the display with an id."""
         return next((display for display in self.displays if display.id == identity), None)
 
     # --- edits -------------------------------------------------------------------------------------------------
 
     def check(self, display: ViewerDisplay, value: bool) -> None:
-        """Switch a display on or off, and with it what is in it."""
+        """Enable or disable a display with its content."""
         if value == display.config.checked:
             return
         before, enabled = display.config.box, self._enabled()
@@ -94,11 +94,11 @@ class DisplayTree:
 
         Args:
             entry: its part of the file.
-            group: to hold it.
+            group: the group for it.
             prepare: sets properties before it starts.
 
         Raises:
-            ValueError: the group is none, or nested too deeply, or there are too many displays.
+            ValueError: it is not a group, or nested too deeply, or there are too many displays.
         """
         self._check_room([entry])
         _check_nesting(group, [entry])
@@ -136,10 +136,10 @@ class DisplayTree:
     def move(
         self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None, before: DisplayConfig | None
     ) -> None:
-        """Put displays into a group, in front of one of it or last.
+        """Move displays into a group, before one of its displays or to the end.
 
         Raises:
-            ValueError: the group is none, or inside of one of the displays, or nested too deeply.
+            ValueError: it is not a group, or is inside of one of the displays, or nested too deeply.
         """
         moved = _outermost(displays)
         if group is not None and (not group.is_group or any(group in entry.walk() for entry in moved)):
@@ -157,7 +157,7 @@ class DisplayTree:
         self._rearrange(_named("move", displays), shift)
 
     def gather(self, displays: Sequence[ViewerDisplay], name: str) -> None:
-        """Put displays into a new group, where the first of them is.
+        """Put displays into a new group, in the place of the first of them.
 
         Raises:
             ValueError: there are too many displays, or the group is nested too deeply.
@@ -177,7 +177,7 @@ class DisplayTree:
         self._rearrange(EditName("group", name), put_together)
 
     def rename(self, display: ViewerDisplay, name: str) -> None:
-        """Give a display another name."""
+        """Rename a display."""
         if name == display.config.name:
             return
         section = display.config.section
@@ -198,7 +198,7 @@ class DisplayTree:
     # --- what edits do -----------------------------------------------------------------------------------------
 
     def _swap_box(self, identity: str, box: list[Memory]) -> list[Memory]:
-        """Restore what the file had for a display's box; returns what it has now."""
+        """Restore the file's entry of a display's check box; returns the present one."""
         display = self.find(identity)
         if display is None:
             return box
@@ -208,14 +208,14 @@ class DisplayTree:
         return now
 
     def _box_set(self, display: ViewerDisplay, enabled: dict[DisplayConfig, bool]) -> None:
-        """Tell pages that a display's box was set, and displays that are on or off by it; `enabled` is from before."""
+        """Send pages a display's check box, and notify displays that it switched; `enabled` is the state before."""
         display.set_checked(display.config.checked)
         for other in self.displays:
             if other.enabled != enabled[other.config]:
                 other.enabled_changed()
 
     def arrange(self, arrangement: Arrangement) -> Arrangement:
-        """Restore an arrangement; returns the one it replaces."""
+        """Restore an arrangement; returns the present one."""
         before, enabled = self._config.arrangement(), self._enabled()
         self._config.arrange(arrangement)
         self._follow(enabled)
@@ -267,23 +267,23 @@ class DisplayTree:
 
 
 def _check_nesting(group: DisplayConfig | None, entries: Sequence[DisplayConfig], more: int = 0) -> None:
-    """Raise ValueError if entries have too many groups around them or in them once they are in a group."""
+    """Raise ValueError if entries in a group would be nested too deeply."""
     if _depth(group) + more + max(map(_height, entries)) > MAXIMUM_NESTING:
         raise ValueError(f"groups cannot be nested deeper than {MAXIMUM_NESTING}")
 
 
 def _depth(group: DisplayConfig | None) -> int:
-    """The number of groups around the content of a group."""
+    """Return the number of groups around the content of a group."""
     return 0 if group is None else 1 + _depth(group.group)
 
 
 def _height(entry: DisplayConfig) -> int:
-    """The number of groups around the innermost display of an entry, itself included."""
+    """Return the number of groups around the innermost display of an entry, including itself."""
     return 1 + max(map(_height, entry.displays), default=0) if entry.is_group else 0
 
 
 def _outermost(displays: Sequence[ViewerDisplay]) -> list[DisplayConfig]:
-    """The entries that are in no other one of them."""
+    """Return the entries that are not inside another one of them."""
     entries = [display.config for display in displays]
     return [entry for entry in entries if not any(entry in other.walk() for other in entries if other is not entry)]
 

@@ -9,12 +9,12 @@ from typing import Any, Generic, TypeVar
 from linkwright.viewer.protocol.configuration import EditName
 
 PAUSE = 1.0
-"""Seconds without an edit after which another edit of the same thing is one of its own: a drag is one edit."""
+"""Seconds without an edit after which another edit of the same subject is a separate one: a drag is one edit."""
 
 State = TypeVar("State")
 
 LONGEST = 500
-"""Most edits remembered."""
+"""Most edits in the history."""
 
 
 class Edit(Generic[State]):
@@ -22,9 +22,9 @@ class Edit(Generic[State]):
 
     Args:
         name: the name of the edit, for menus.
-        swap: brings a state about, and returns the one that was there.
+        swap: restores a state, and returns the present one.
         before: the state before.
-        subject: edits of one subject that follow each other quickly are one, see `History.is_at`; None for none such.
+        subject: quick successive edits of one subject are merged, see `History.is_at`; None for no merging.
     """
 
     def __init__(
@@ -69,23 +69,23 @@ class History:
 
     @property
     def unsaved(self) -> bool:
-        """Whether the file lacks something."""
+        """Whether the file lacks an edit."""
         return self._touched or self._saved_at != len(self._done)
 
     def is_at(self, subject: str) -> bool:
-        """Whether an edit of a subject would be merged with the last one, as the steps of a drag are."""
+        """Return whether an edit of a subject would be merged with the last one, as the steps of a drag are."""
         follows = self._clock() - self._last < PAUSE and not self._undone and self._saved_at != len(self._done)
         return follows and bool(self._done) and self._done[-1].subject == subject
 
     def prolong(self) -> None:
-        """Merge a change with the last edit, which already knows the state before."""
+        """Merge a change with the last edit, which has the state before."""
         self._last = self._clock()
 
     def add(self, edit: Edit[Any]) -> None:
-        """Remember an edit that was done."""
+        """Add an edit that was done."""
         self._last = self._clock()
         if self._saved_at is not None and self._saved_at > len(self._done):
-            self._saved_at = None  # the saved state is on the branch that is abandoned here
+            self._saved_at = None  # the saved state is on the branch that is dropped here
         self._undone.clear()
         self._done.append(edit)
         if len(self._done) > LONGEST:
@@ -108,7 +108,7 @@ class History:
             self._end_drag()
 
     def redo(self) -> None:
-        """Redo what was undone last, if there is anything."""
+        """Redo the edit that was undone last, if there is one."""
         if self._undone:
             edit = self._undone.pop()
             edit.turn()
@@ -116,12 +116,12 @@ class History:
             self._end_drag()
 
     def saved(self) -> None:
-        """The file has everything now."""
+        """Note that the file has all edits."""
         self._saved_at, self._touched = len(self._done), False
         self._changed()
 
     def clear(self) -> None:
-        """Forget everything: another file was opened."""
+        """Clear the history: another file was opened."""
         self._done.clear()
         self._undone.clear()
         self._end_drag()

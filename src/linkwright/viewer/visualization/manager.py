@@ -1,6 +1,6 @@
 """A visualization: a configuration, its displays, and its undo history.
 
-There is one that pages share, and one for each page that asks for its own.
+Pages share one, and a page may request its own.
 """
 
 from __future__ import annotations
@@ -35,26 +35,26 @@ if TYPE_CHECKING:
 
 
 GLOBAL = "global"
-"""The owner of the Global Options, where others have the id of a display."""
+"""The owner of the Global Options, in place of a display's id."""
 
 _FIXED_FRAME = "Fixed Frame"
 _FRAME_RATE = "Frame Rate"
 
 
 class ManagerOwner(Protocol):
-    """The owner of managers, which is told of their events."""
+    """The owner of managers, which receives their events."""
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Undo, redo or whether something is unsaved may have changed."""
+        """Handle a change of undo, redo or the unsaved state."""
 
     def robot_changed(self) -> None:
-        """A display shows another robot."""
+        """Handle another robot of a display."""
 
     def fixed_frame_changed(self, manager: VisualizationManager) -> None:
-        """The Fixed Frame has changed."""
+        """Handle another Fixed Frame."""
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """A manager was closed."""
+        """Handle the end of a manager."""
 
 
 class VisualizationManager:
@@ -63,18 +63,18 @@ class VisualizationManager:
     Args:
         context: the viewer's node, files and pages.
         config: displays, options and view.
-        owner: the owner, which is told of events.
+        owner: the owner, which receives events.
 
     Attributes:
         context: the viewer's node, files and pages.
         pages: the pages that see it.
         view: the first view of a page that opens, whichever others have now.
-        shows_whole_robot: nobody put it there: pages move it so that all of the robot is seen.
+        shows_whole_robot: whether no user chose the view: pages then fit the camera to the robot.
         config: the configuration now.
         opened: counts the configurations that it has had.
         frames: the frames now.
-        time: whether time stands still, and what leads it.
-        tree: the displays, and what is done to them.
+        time: whether time is paused, and what it is synchronized with.
+        tree: the displays, and the operations on them.
         history: the edits.
     """
 
@@ -104,7 +104,7 @@ class VisualizationManager:
     # --- life --------------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Subscribe, and begin."""
+        """Subscribe, and start."""
         self._warn()
         self._stream.start()
         self.tree.start()
@@ -112,12 +112,12 @@ class VisualizationManager:
         self._synchronize()
 
     def close(self) -> None:
-        """End for good."""
+        """Stop for good."""
         self._stream.close()
         self.tree.stop()
 
     def open(self, config: RvizConfig) -> None:
-        """Show another configuration; what was edited in the one before is forgotten."""
+        """Show another configuration; the edits of the one before are forgotten."""
         self.tree.stop()
         self.config = config
         self.view, self.shows_whole_robot = config.views.current, config.shows_whole_robot
@@ -149,7 +149,7 @@ class VisualizationManager:
         self.pages.publish(message)
 
     def opening(self) -> tuple[list[ServerMessage], FrameTable, list[Payload]]:
-        """The first messages for a new page: messages, then the frame table, then binary frames."""
+        """Return the first messages for a new page: messages, then the frame table, then binary frames."""
         self._stream.refresh()
         table, transforms = self._stream.opening
         messages: list[ServerMessage] = [self.tree_message()]
@@ -159,7 +159,7 @@ class VisualizationManager:
         return messages, table, [*([transforms] if transforms else []), *data]
 
     def tree_message(self) -> Tree:
-        """The Displays panel, for pages."""
+        """Return the Displays panel, for pages."""
         return Tree(
             global_options=self.config.options.rows(),
             global_status=self._global_status,
@@ -175,15 +175,15 @@ class VisualizationManager:
         return self.tree.displays
 
     def display(self, identity: str) -> ViewerDisplay | None:
-        """The display with an id."""
+        """Return the display with an id."""
         return self.tree.find(identity)
 
     def robot_models(self) -> list[RobotModelDisplay]:
-        """The displays that show robots."""
+        """Return the displays that show robots."""
         return [display for display in self.displays if isinstance(display, RobotModelDisplay)]
 
     def store(self, owner: str) -> PropertyStore:
-        """The properties of a display, or the Global Options.
+        """Return the properties of a display, or the Global Options.
 
         Raises:
             KeyError: there is no such display.
@@ -196,11 +196,11 @@ class VisualizationManager:
         return display.properties
 
     def set_property(self, page: Page, identity: str, value: object) -> None:
-        """Set a property for a page; a value that is refused is answered with the present one."""
+        """Set a property for a page; the answer to a refused value is the present one."""
         owner, _, rest = identity.partition("/")
         display = self.display(owner)
         if display is None and owner != GLOBAL:
-            return  # it was removed since
+            return  # it was removed meanwhile
         if display is not None and rest == "Enabled":
             if not isinstance(value, bool):
                 page.send(PropertyChanged(identity, display.config.checked))
@@ -210,7 +210,7 @@ class VisualizationManager:
         store = self.store(owner)
         path = store.find(identity)
         if path is None:
-            return  # rows of a robot or frame that has gone since
+            return  # rows of a robot or frame that is gone
         before = store.get(*path)
         try:
             self._edit(identity, path, lambda: self._set(display, path, value))
@@ -225,7 +225,7 @@ class VisualizationManager:
             self._set_option(path[0], value)
 
     def _edit(self, identity: str, path: Path, change: Callable[[], None]) -> None:
-        """Change a property so that it can be undone; a drag is a single edit."""
+        """Change a property with undo; a drag is a single edit."""
         if self.history.is_at(identity):
             change()
             self.history.prolong()
@@ -237,12 +237,12 @@ class VisualizationManager:
             self.history.add(Edit(EditName("set", path[-1]), partial(self._swap_values, owner), before, identity))
 
     def set_fixed_frame(self, frame: str) -> None:
-        """Change the Fixed Frame, as a page would, so that it can be undone."""
+        """Change the Fixed Frame with undo, as a page would."""
         path = (_FIXED_FRAME,)
         self._edit(self.config.options.identity(path), path, lambda: self._set_option(_FIXED_FRAME, frame))
 
     def _swap_values(self, owner: str, memories: list[Memory]) -> list[Memory]:
-        """Restore what the file had for some properties, missing keys included; returns what it has now."""
+        """Restore the file's entries of some properties, including missing keys; returns the present ones."""
         now = self.store(owner).memories(memories)
         self._recall(owner, memories)
         return now
@@ -256,7 +256,7 @@ class VisualizationManager:
                 self._option_changed(path[0])
 
     def measured(self, diagonal: float, ground: float) -> None:
-        """Fit grid and axes, where nobody set them, to size and ground, m, of a robot that a page has drawn."""
+        """Fit grid and axes to the size and ground, m, of a robot that a page has drawn, unless the user set them."""
         for config, path, value in self.config.sizes_for(diagonal, ground):
             for display in self.displays:
                 if display.config is config:
@@ -269,7 +269,7 @@ class VisualizationManager:
     # --- time --------------------------------------------------------------------------------------------------
 
     def set_time(self, *, paused: bool, mode: SyncMode, source: str) -> None:
-        """Pause or go on, and follow the messages of a display, or none."""
+        """Pause or resume, and follow the messages of a display, or none."""
         self.time.set(paused=paused, mode=mode, source=source)
         if write_synchronization(self.config.document, Synchronization(mode, source)):
             self.edited()
@@ -278,7 +278,7 @@ class VisualizationManager:
             display.time_changed()
 
     def reset_time(self) -> None:
-        """Reset time: displays forget messages, and moving frames are forgotten until they are published again."""
+        """Reset time: displays forget messages, and moving frames until they are published again."""
         self.time.reset()
         self.context.transforms.forget()
         self._stream.forget()
@@ -301,7 +301,7 @@ class VisualizationManager:
 
     @property
     def fixed_frame(self) -> str:
-        """The frame that everything is shown in."""
+        """The reference frame of the scene."""
         return self._stream.fixed_frame
 
     def _set_option(self, name: str, value: object) -> None:
@@ -349,7 +349,7 @@ class VisualizationManager:
             self.publish(DisplayStatus(GLOBAL, row.level, [row]))
 
     def robot_changed(self, gone: set[str]) -> None:
-        """A display has another robot; `gone` are the frames that only the one before had."""
+        """Handle a display's new robot; `gone` are the frames that only the former one had."""
         self._stream.robot_changed(gone - self._own_frames())
         self._owner.robot_changed()
 
@@ -362,7 +362,7 @@ class VisualizationManager:
 
 
 LINGERING = 60.0
-"""Seconds that displays of a page's own outlive it: it may be reloading, or have lost its connection."""
+"""Seconds that a page's own displays outlive it: it may be reloading, or have lost its connection."""
 
 MOST_LINGERING = 8
 """The largest number of managers without pages; beyond it the one that has waited longest is closed."""
@@ -374,7 +374,7 @@ class Managers:
     Args:
         context: the viewer's node, files and pages.
         config: the configuration of every page that does not ask for its own.
-        owner: the owner, which is told of their events.
+        owner: the owner, which receives their events.
     """
 
     def __init__(self, context: ViewerContext, config: RvizConfig, owner: ManagerOwner) -> None:
@@ -388,11 +388,11 @@ class Managers:
         return [self.shared, *self._own.values()]
 
     def of(self, page: Page) -> VisualizationManager:
-        """The manager for a page."""
+        """Return the manager for a page."""
         return self._own.get(page.own, self.shared)
 
     def enter(self, page: Page) -> VisualizationManager:
-        """The manager for a page that opens; made when the page is the first to ask for it."""
+        """Return the manager for a page that opens; created if the page is the first to ask for it."""
         if page.own:
             end = self._ends.pop(page.own, None)
             if end is not None:
@@ -403,7 +403,7 @@ class Managers:
         return self.of(page)
 
     def leave(self, page: Page) -> None:
-        """A page closed; a manager without pages is closed after a while."""
+        """Handle the end of a page; a manager without pages is closed after a while."""
         manager = self.of(page)
         manager.pages.discard(page)
         if manager is not self.shared and not len(manager.pages):

@@ -1,1 +1,1 @@
-"""The web server of a viewer: who may come in, the pages that are open, and what waits to be sent to each."""
+"""The web server of a viewer: admission, the open pages, and the queue of data for each."""

@@ -1,8 +1,8 @@
 """Access to the server: only with the token, under a name that is this machine's, and from its own pages.
 
 The token is in the address that the program prints; the page keeps it in the browser's storage, which belongs to this
-host and port alone, and shows it when it opens its WebSocket. There is no cookie: browsers send cookies to whatever
-else listens on this machine, whichever its port, and for pages that know nothing. Names are checked because a
+host and port alone, and sends it when it opens its WebSocket. There is no cookie: browsers send cookies to any server
+on this machine, at any port, and for pages without the token. Names are checked because a
 stranger's site can give its own name this machine's address (DNS rebinding) and would then be of one origin with us.
 Connections that have not shown the token are limited in number and time.
 
@@ -40,7 +40,7 @@ class Gate:
         self._names = {"localhost", host.lower(), machine, f"{machine}.local"}
 
     def refusal(self, headers: Mapping[str, str]) -> str | None:
-        """The reason why a request is refused, whatever it asks for (403); None when it may pass."""
+        """Return the reason why a request is refused, whatever it asks for (403); None if it may pass."""
         host = headers.get("Host", "")
         if not self.knows(host):
             return f"this server does not answer to the name '{host[:200]}': open the address that linkwright printed"
@@ -50,19 +50,19 @@ class Gate:
         return None
 
     def is_shown_token(self, query: Mapping[str, str]) -> bool:
-        """Whether the query of a request has the token."""
+        """Return whether the query of a request has the token."""
         given = query.get(TOKEN_PARAMETER)
         return given is not None and hmac.compare_digest(given.encode(errors="replace"), self.token.encode())
 
     def proof(self, nonce: str) -> str | None:
-        """What only who knows the token can make of a page's nonce, 32 hexadecimal digits: their HMAC-SHA256.
+        """Return the HMAC-SHA256 of a page's nonce (32 hexadecimal digits), which needs the token to compute.
 
-        None for anything else. It tells nothing about the token.
+        None for any other nonce. It reveals nothing about the token.
         """
         return hmac.digest(self.token.encode(), nonce.encode(), "sha256").hex() if _NONCE.fullmatch(nonce) else None
 
     def knows(self, host_header: str) -> bool:
-        """Whether a Host header names this machine: a bare address, localhost, or its own name."""
+        """Return whether a Host header names this machine: a bare address, localhost, or its own name."""
         if not _PLAIN_HOST.fullmatch(host_header):
             return False
         try:
@@ -85,7 +85,7 @@ def _same(origin: str, host: str) -> bool:
 
 
 def security_headers(host: str) -> dict[str, str]:
-    """Headers for every answer.
+    """Return headers for every answer.
 
     Scripts come from files of ours only. They may evaluate text: ours never do, but browser automation waits for a
     condition on ``window.linkwright`` that way, and without inline scripts there is no text of a stranger's to
@@ -116,21 +116,21 @@ def security_headers(host: str) -> dict[str, str]:
 
 
 MAXIMUM_CONNECTIONS = 256
-"""Open at once. A browser opens some six for a page."""
+"""Most open connections. A browser opens some six for a page."""
 
 PATIENCE = 10.0
-"""Seconds until a new connection must have made a request."""
+"""Seconds in which a new connection must make a request."""
 
 
 class Admission:
     """Limits the connections of a server.
 
-    When there are as many as may be, a new one takes the place of the oldest that has not shown the token yet, nor
-    named a file that only who has it knows; where all have, it is refused. So neither connections left half open nor
-    a thousand at once keep anybody out for long, and those that are let in notice nothing.
+    When the limit is reached, a new one replaces the oldest that has neither shown the token yet nor named a file that
+    only its holders know; if all have, it is refused. So neither half-open connections nor a thousand at once block
+    others for long, and admitted connections are not affected.
 
     Args:
-        make: makes the protocol of a connection.
+        make: returns the protocol of a connection.
     """
 
     def __init__(self, make: Callable[[], asyncio.Protocol]) -> None:
@@ -139,23 +139,23 @@ class Admission:
         self._count = 0
 
     def __call__(self) -> asyncio.Protocol:
-        """The protocol for the next connection."""
+        """Return the protocol for the next connection."""
         return Entrance(self, self._make())
 
     def asked(self, served: object) -> None:
-        """Let a connection that made a request stay until its place is needed, however slow its line is."""
+        """Keep a connection that made a request until its place is needed, however slow its line is."""
         entrance = self._strangers.get(served)  # type: ignore[call-overload]
         if entrance is not None:
             entrance.may_stay()
 
     def admit(self, served: object) -> None:
-        """Let a connection that has shown the token stay."""
+        """Keep a connection that has shown the token."""
         entrance = self._strangers.pop(served, None)  # type: ignore[call-overload]
         if entrance is not None:
             entrance.may_stay()
 
     def opened(self, entrance: Entrance) -> bool:
-        """Whether a new connection may stay for now."""
+        """Return whether a new connection may stay for now."""
         if self._count >= MAXIMUM_CONNECTIONS:
             oldest = next(iter(self._strangers.values()), None)
             if oldest is None:
@@ -183,7 +183,7 @@ class Entrance(asyncio.Protocol):
         self._transport: asyncio.BaseTransport | None = None
         self._counted = False
         self._deadline: asyncio.TimerHandle | None = None
-        for name in _PASSED_ON:  # in place of methods that would only hand on
+        for name in _PASSED_ON:  # in place of methods that would only forward
             setattr(self, name, getattr(served, name))
 
     def may_stay(self) -> None:

@@ -31,20 +31,20 @@ if TYPE_CHECKING:
     from linkwright.graph import Logger
 
 MAXIMUM_PAGES = 32
-"""Open at once; more are refused."""
+"""Most open pages; more are refused."""
 
 _PATIENCE = 20
-"""Messages outside of the protocol that a page may send before it is cut off."""
+"""Messages outside of the protocol that a page may send before it is disconnected."""
 
 _OURS = 4
-"""The program is late with each message and with its answer: so many times that is twice its share of the time."""
+"""The program delays each message and its answer: so many times that is twice its share of the time."""
 
 _QUIET = 0.3
-"""Seconds of an idle line after which a page is sent all of what it has only a part of."""
+"""Seconds of an idle line after which a page receives the full data of content that it has only in part."""
 
 
 def language_asked(request: Request) -> str:
-    """The language that a page asks for in an address, one of `LANGUAGES`; the terminal's where it asks for none."""
+    """Return the language that a page requests in an address, one of `LANGUAGES`; by default the terminal's."""
     return language_of(request.query.get("language", "")) or language_of_terminal()
 
 
@@ -53,8 +53,8 @@ class Page:
 
     Args:
         socket: the page's socket.
-        own: the name that the page has for displays of its own; empty for a page that shares the common ones.
-        is_here: whether it is open on this machine, or came through a tunnel to it.
+        own: the page's name for displays of its own; empty for a page that shares the common ones.
+        is_here: whether it is open on this machine, or connected through a tunnel to it.
         language: the language of its user, one of `LANGUAGES`; None leaves texts as they are.
     """
 
@@ -80,11 +80,11 @@ class Page:
         self._opening = list(opening)
 
     def send(self, message: ServerMessage) -> None:
-        """Send a message to this page only."""
+        """Send a message only to this page."""
         self.outbox.put(redundancy_key(message), encode(message, self.language))
 
     async def write(self) -> None:
-        """Send the opening messages, then whatever comes into the outbox, until the socket is gone."""
+        """Send the opening messages, then those of the outbox, until the socket is gone."""
         try:
             for payload in self._opening:
                 made = self.outbox.make(payload)
@@ -94,7 +94,7 @@ class Page:
             while True:
                 await self._send(await self.outbox.take())
         except ConnectionError:
-            pass  # the reading side sees the end too, and tidies up
+            pass  # the reader notices the end too, and cleans up
 
     def received(self, count: int) -> None:
         """Note how many messages the page has acknowledged."""
@@ -102,7 +102,7 @@ class Page:
         self._line_changed()
 
     def close(self) -> None:
-        """Cancel what is scheduled."""
+        """Cancel scheduled work."""
         if self._lateness is not None:
             self._lateness.close()
             self._lateness = None
@@ -126,7 +126,7 @@ class Page:
         self._line_changed()
 
     async def _fitted(self, payload: ScaledData) -> bytes:
-        """As much of a content as the line carries; the whole of it follows when the line is idle."""
+        """Return as much of a content as the line carries; the rest follows when the line is idle."""
         room = self.line.room
         frame = await payload.fitting(room)
         if frame is payload.whole:
@@ -156,7 +156,7 @@ class Page:
             self._completing = asyncio.get_running_loop().call_later(_QUIET, self._complete)
 
     def _judge_lateness(self) -> None:
-        """Tell the page whether this program is what is slow, while it is sent less than all."""
+        """Tell the page whether this program is the slow part, while it receives less than everything."""
         if self._lateness is None and self._reduced:
             self._lateness = Lateness(asyncio.get_running_loop())
         elif self._lateness is not None and not self._reduced:
@@ -168,7 +168,7 @@ class Page:
             self.send(ProgramIsLate(late))
 
     def _complete(self) -> None:
-        """Send the whole of a content that seldom changes, in pieces, however slow the line is."""
+        """Send the full content, which seldom changes, in pieces, however slow the line is."""
         self._completing = None
         for payload, _ in self._reduced.values():
             if payload.key not in self.outbox:
@@ -186,12 +186,12 @@ class Page:
             del self._reduced[completion.key]
 
     def _piece(self) -> int:
-        """The size of a piece in bytes; at most two are on the line."""
+        """Return the size of a piece in bytes; at most two are on the line."""
         return max(BULK, self.line.room // 2)
 
 
 class PageGroup:
-    """Pages that are sent the same messages."""
+    """Pages that receive the same messages."""
 
     def __init__(self) -> None:
         self._pages: dict[Page, None] = {}
@@ -203,11 +203,11 @@ class PageGroup:
         return page in self._pages
 
     def add(self, page: Page) -> None:
-        """Send to a page too, from now on."""
+        """Add a page that receives messages from now on."""
         self._pages[page] = None
 
     def discard(self, page: Page) -> None:
-        """Send to a page no longer."""
+        """Remove a page."""
         self._pages.pop(page, None)
 
     def publish(self, message: ServerMessage) -> None:
@@ -219,7 +219,7 @@ class PageGroup:
                 page.outbox.put(key, texts[page.language])
 
     def send_data(self, key: str, payload: Payload) -> None:
-        """Send what a display draws to every page; what waits under its key is dropped."""
+        """Send a display's data to every page; data that waits under its key is dropped."""
         for page in self._pages:
             page.outbox.put(key, payload)
 
@@ -233,7 +233,7 @@ class Audience(PageGroup):
     """All open pages.
 
     Args:
-        opening: the first messages for a page, the whole present state.
+        opening: the first messages for a page, the full present state.
         receivers: the receivers of pages' messages, by class; others are ignored.
         gone: called when a page has closed.
         logger: logs messages outside of the protocol.
@@ -261,7 +261,7 @@ class Audience(PageGroup):
 
     @contextmanager
     def expecting(self) -> Iterator[None]:
-        """Reserve a place for a page whose socket is being opened; `attend` takes it."""
+        """Reserve a place for a page whose socket is being opened; `attend` uses it."""
         self._expected += 1
         try:
             yield
@@ -269,7 +269,7 @@ class Audience(PageGroup):
             self._expected -= 1
 
     async def attend(self, page: Page, socket: WebSocketResponse) -> None:
-        """Serve a page on its socket until that closes."""
+        """Serve a page on its socket until it closes."""
         page.open(self._opening(page))
         self.add(page)
         self._sockets.add(socket)
@@ -309,7 +309,7 @@ class Audience(PageGroup):
             try:
                 decoded = decode(message.data)
             except BadMessageError as error:
-                self._logger.warning(f"A page sent what is no message: {error}")
+                self._logger.warning(f"A page sent an invalid message: {error}")
                 patience -= 1
                 if patience == 0:
                     await socket.close(code=1008, message=b"too many messages outside of the protocol")
@@ -336,7 +336,7 @@ _BURST = 4000.0
 
 
 class Pace:
-    """Limits the rate of a sender's messages, so that one page cannot keep the program from the others.
+    """Limits the rate of a sender's messages, so that one page cannot block the others.
 
     Args:
         clock: seconds.
@@ -348,7 +348,7 @@ class Pace:
         self._at = clock()
 
     def wait(self) -> float:
-        """The seconds to wait before a message is handled."""
+        """Return the seconds to wait before a message is handled."""
         now = self._clock()
         self._left = min(_BURST, self._left + (now - self._at) * _RATE) - 1.0
         self._at = now

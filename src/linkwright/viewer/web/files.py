@@ -1,7 +1,7 @@
 """The files that pages may fetch: meshes named by descriptions, files beside them, and files made for a page.
 
 A description may come from a stranger, and so may a request. A page is served only meshes and images, only from
-folders that a description shown now names, and only where the real path, links followed, is still inside. A file that
+folders that the current descriptions name, and only if the real path, links followed, is still inside. A file that
 was made for a page can be fetched once, and soon; recordings that pages made, as long as the program runs.
 """
 
@@ -52,17 +52,17 @@ _MODEL_CONFIG = "model.config"
 """The file that marks the folder of a Gazebo model."""
 
 _LOOSE_DEPTH = 2
-"""A mesh outside of any package and model opens its folder and the folders in that, no more."""
+"""A mesh outside of any package and model gives access only to its folder and the folders in that."""
 
 
 @dataclass(frozen=True, slots=True)
 class ServedFolder:
-    """A folder that pages may read from: a package's, a model's of Gazebo, or for neither that of a loose mesh.
+    """A folder that pages may read from: that of a package, of a Gazebo model, or else of a loose mesh.
 
     Attributes:
         root: the folder.
-        package: the name of the package, if it is one's.
-        is_model: whether it is a model's, which holds its meshes and textures.
+        package: the name of the package, if it is a package's folder.
+        is_model: whether it is a model's, which contains its meshes and textures.
     """
 
     root: Path
@@ -71,9 +71,9 @@ class ServedFolder:
 
     @property
     def key(self) -> str:
-        """The key of the folder in addresses: readable, yet nothing of the path above it, and hard to guess.
+        """The key of the folder in addresses: readable, without the path above it, and hard to guess.
 
-        The image elements of textures can show no token, so an address that only pages were told must do.
+        The image elements of textures cannot send a token, so an address that only pages receive must do.
         """
         name = re.sub(r"[^A-Za-z0-9_.-]", "_", self.package or self.root.name)
         root = os.fsencode(self.root)
@@ -82,7 +82,7 @@ class ServedFolder:
 
 @dataclass(frozen=True, slots=True)
 class Located:
-    """The outcome of locating a file of a description: an address for the page, or why there is none."""
+    """The outcome of locating a file of a description: an address for the page, or the reason for none."""
 
     url: str | None
     problem: Phrase | None = None
@@ -102,19 +102,19 @@ class FileRefusedError(Exception):
 
 @dataclass(slots=True)
 class MeshIndex:
-    """Finds the files that one description names, and collects the folders they are in."""
+    """Finds the files that one description names, and collects their folders."""
 
     finder: PackageFinder
     folders: dict[str, ServedFolder] = field(default_factory=dict)
     _unknown: dict[str, Located] = field(default_factory=dict)
 
     def locate(self, uri: str, base: Path | None, types: dict[str, str]) -> Located:
-        """The address of a file.
+        """Return the address of a file.
 
         Args:
-            uri: as the description has it: ``package://``, ``file://`` or a path.
-            base: the folder that a relative path starts from, that of the file the URI is written in.
-            types: the endings that are understood.
+            uri: the URI in the description: ``package://``, ``file://`` or a path.
+            base: the folder that a relative path starts from, that of the file with the URI.
+            types: the supported extensions.
         """
         package = _PACKAGE_URI.match(uri)
         if package and package[1] in self._unknown:
@@ -126,12 +126,14 @@ class MeshIndex:
         except LinkwrightError as error:
             return Located(None, error.diagnostics[0].message)
         except ValueError:
-            return Located(None, phrase("its path holds a character that no path can hold"))
+            return Located(None, phrase("its path contains an invalid character"))
         if not path.is_file():
             return Located(None, phrase("no file '{path}'", path=path))
         if path.suffix.lower() not in types:
             known = ", ".join(sorted(suffix[1:].upper() for suffix in types))
-            return Located(None, phrase("'{path}' is of no format that is shown: {known}", path=path, known=known))
+            return Located(
+                None, phrase("the format of '{path}' is not supported; supported are {known}", path=path, known=known)
+            )
         if is_pointer_file(path):
             return Located(None, phrase("'{path}': {why}; {how}", path=path, why=IS_POINTER, how=FETCH))
         folder = self._folder_of(uri, path)
@@ -157,7 +159,7 @@ class MeshIndex:
 
 
 def without_secrets(text: str) -> str:
-    """A text with addresses of files that open nothing on the server, as others may have it."""
+    """Return a text with addresses of files that give no access to the server, for others."""
     return _SECRET_OF_KEY.sub(r"\1", text)
 
 
@@ -172,35 +174,35 @@ class MeshFolders:
         self._folders[owner] = folders
 
     def copy(self) -> MeshFolders:
-        """A copy, which later changes of the displays do not affect."""
+        """Return a copy, which later changes of the displays do not affect."""
         made = MeshFolders()
         made._folders.update(self._folders)
         return made
 
     def file(self, key: str, relative: str) -> Path:
-        """The real path of a file asked for.
+        """Return the real path of a requested file.
 
         Args:
             key: the key of a folder.
             relative: the path below it, percent-decoded.
 
         Raises:
-            FileRefusedError: 404 where there is no such folder or file, 403 where it may not be read.
+            FileRefusedError: 404 if there is no such folder or file, 403 if it may not be read.
         """
         folder = next((folders[key] for folders in self._folders.values() if key in folders), None)
         if folder is None:
-            raise FileRefusedError(404, "no description shown now names this folder")
+            raise FileRefusedError(404, "no description that is shown names this folder")
         return resolve(folder, relative)
 
 
 def resolve(folder: ServedFolder, relative: str) -> Path:
-    """The real path of a file below a folder, links followed and checked.
+    """Return the real path of a file below a folder, links followed and checked.
 
     A link may lead out of a package's folder only into another folder of the same package: that is how
     ``colcon build --symlink-install`` lays share folders out.
 
     Raises:
-        FileRefusedError: 404 where there is no such file, 403 where it may not be read.
+        FileRefusedError: 404 if there is no such file, 403 if it may not be read.
     """
     parts = relative.split("/")
     if any(part in ("", ".", "..") or "\\" in part or "\0" in part for part in parts):
@@ -224,7 +226,7 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
 
 
 def _beside(path: Path) -> Path:
-    """A file, or the image of its name where a model of Gazebo keeps those that meshes name without a folder."""
+    """Return a file, or the image of its name in the place where Gazebo models store images without a folder."""
     if path.suffix.lower() in IMAGE_TYPES and not path.exists():
         model = path.parent.parent
         kept = model / "materials" / "textures" / path.name
@@ -244,7 +246,7 @@ _MOST_KEPT = 4
 
 @dataclass(frozen=True, slots=True)
 class Download:
-    """A file to be fetched."""
+    """A file for a page to fetch."""
 
     name: str
     content_type: str
@@ -253,24 +255,24 @@ class Download:
 
 
 class Downloads:
-    """Files by keys that only the page knows which asked."""
+    """Files by keys that only the requesting page knows."""
 
     def __init__(self) -> None:
         self._files: dict[str, Download] = {}
         self._kept: dict[str, Path] = {}
 
     def keep(self, path: Path) -> str:
-        """Offer a file to be fetched any number of times; returns its address."""
+        """Offer a file for any number of fetches; returns its address."""
         key = secrets.token_urlsafe(16)
         self._kept[key] = path
         return f"/export/{key}/{quote(path.name)}"
 
     def path(self, key: str) -> Path | None:
-        """The file with a key of `keep`."""
+        """Return the file with a key of `keep`."""
         return self._kept.get(key)
 
     def put(self, file: Download) -> str:
-        """Offer a file to be fetched; returns its address."""
+        """Offer a file for one fetch; returns its address."""
         while len(self._files) >= _MOST_KEPT:
             del self._files[next(iter(self._files))]
         key = secrets.token_urlsafe(16)
@@ -278,7 +280,7 @@ class Downloads:
         return f"/export/{key}/{quote(file.name)}"
 
     def take(self, key: str) -> Download | None:
-        """The file with a key, which is forgotten."""
+        """Return the file with a key, and forget it."""
         now = time.monotonic()
         for old in [old for old, file in self._files.items() if now - file.made > _KEPT_SECONDS]:
             del self._files[old]

@@ -1,8 +1,8 @@
-"""The token of a port, kept for the next start, so that open pages go on when the program is started again.
+"""The token of a port, stored for the next start, so that open pages reconnect when the program is started again.
 
-There is a file for each port, which only its user can read. A token lives for a week from when it was made, so that
-one that leaked does not open what is shown for ever. Servers that other machines can reach do not keep theirs: it goes
-over the network in plain text.
+There is a file for each port, which only its user can read. A token is valid for a week after its creation, so that
+a leaked one does not give access for ever. Servers that other machines can reach do not store theirs: it goes over
+the network in plain text.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ _LIFETIME = 7 * 24 * 3600.0
 
 _TOKEN = re.compile(r"[\w-]{32}")
 _LONGEST = 1000
-"""Bytes of such a file."""
+"""Most bytes of such a file."""
 
 
 def new_token() -> str:
-    """A token that nobody can guess, 192 bits."""
+    """Return a random token of 192 bits."""
     return secrets.token_urlsafe(24)
 
 
@@ -38,8 +38,8 @@ class PortToken:
     """The token of a port.
 
     Attributes:
-        token: what pages show.
-        pages_wait: whether pages were open when the program before ended, which look for this one now.
+        token: the token that pages send.
+        pages_wait: whether pages were open at the end of the former program, which now look for this one.
     """
 
     token: str
@@ -52,7 +52,7 @@ def token_folder() -> Path:
 
 
 def keep_token(port: int) -> PortToken:
-    """The token that the user's last program on a port had, or a new one, which is kept from now on."""
+    """Return the token of the user's last program on a port, or a new one, and store it."""
     now = time.time()
     made, kept = _read(token_folder() / str(port))
     if kept is None or not 0.0 <= now - made < _LIFETIME:
@@ -62,14 +62,14 @@ def keep_token(port: int) -> PortToken:
 
 
 def leave_token(port: int, token: str, *, pages_wait: bool) -> None:
-    """Note, as a program ends, whether its pages wait for the next; nothing where the file has another token."""
+    """Store at the end of a program whether its pages wait for the next one, unless the file has another token."""
     made, kept = _read(token_folder() / str(port))
     if kept is not None and kept.token == token:
         _write(port, made, PortToken(token, pages_wait))
 
 
 def _read(path: Path) -> tuple[float, PortToken | None]:
-    """When a token was made, seconds since the epoch, and the token; None where no file of this user alone has one."""
+    """Return a token's creation time, seconds since the epoch, and the token; None unless the file is private."""
     with suppress(OSError, ValueError, TypeError, KeyError, RecursionError):
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
         with open(descriptor, "rb") as file:  # noqa: PTH123 - a descriptor, not a path
@@ -82,7 +82,7 @@ def _read(path: Path) -> tuple[float, PortToken | None]:
 
 
 def _is_private(facts: os.stat_result) -> bool:
-    """Whether nobody but this user can have read or written a file; Windows guards the user's folders itself."""
+    """Whether only this user can have read or written a file; Windows protects the user's folders itself."""
     if not stat.S_ISREG(facts.st_mode):
         return False
     user = getattr(os, "getuid", None)
@@ -90,7 +90,7 @@ def _is_private(facts: os.stat_result) -> bool:
 
 
 def _write(port: int, made: float, kept: PortToken) -> None:
-    """Keep a token; where the state cannot be written, the next program has another, which is no error."""
+    """Store a token; if the state cannot be written, the next program has another, which is not an error."""
     folder = token_folder()
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)

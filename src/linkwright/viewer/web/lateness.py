@@ -1,4 +1,4 @@
-"""How late this program is with what it is to do."""
+"""The lateness of this program's event loop."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import asyncio
 from collections import deque
 
 _EVERY = 0.05
-"""Seconds between two looks."""
+"""Seconds between two measurements."""
 
 _LOOKS = 20
-"""Looks that count."""
+"""Measurements that count."""
 
 
 class Lateness:
-    """Measures by how much the event loop is late, from its making until it is closed.
+    """Measures by how much the event loop is late, from its creation until it is closed.
 
-    What comes from a page waits as long before it is read, and what goes to it before it is sent.
+    Messages from a page wait as long before they are read, and messages to it before they are sent.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
@@ -30,7 +30,7 @@ class Lateness:
         return sum(self._seen) / len(self._seen) if self._seen else 0.0
 
     def close(self) -> None:
-        """Measure no longer."""
+        """Stop measuring."""
         self._timer.cancel()
 
     def _look(self) -> None:

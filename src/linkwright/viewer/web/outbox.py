@@ -1,6 +1,6 @@
 """The queue of payloads for a page, and the measured rate of the page's line.
 
-Of each kind only the newest waits, transforms go before the rest, and large content is reduced for a slow line or sent
+Of each kind only the newest waits, transforms precede the rest, and large content is reduced for a slow line or sent
 in pieces.
 """
 
@@ -19,20 +19,20 @@ from linkwright.viewer.protocol.message import DataContent
 
 Pack = Callable[[DataContent], bytes]
 Shrink = Callable[[int], DataContent]
-"""Reduces the content to about so many bytes, or as far as it can be; runs in a thread."""
+"""Reduces the content to about so many bytes, or as far as possible; runs in a thread."""
 
 
 class ScaledData:
     """A content of a display, packed for a page when its turn comes.
 
     Args:
-        key: under which it waits in outboxes.
-        content: all of it.
+        key: its key in outboxes.
+        content: the full content.
         shrink: reduces it to a number of bytes.
         pack: makes the binary frame.
 
     Attributes:
-        gone: whether it was replaced or removed, and is not to be sent again.
+        gone: whether it was replaced or removed, and must not be sent again.
     """
 
     def __init__(self, key: str, content: DataContent, shrink: Shrink, pack: Pack) -> None:
@@ -45,11 +45,11 @@ class ScaledData:
 
     @cached_property
     def whole(self) -> bytes:
-        """The frame with all of it."""
+        """Return the frame with the full content."""
         return self._pack(self._content)
 
     async def fitting(self, room: int) -> bytes:
-        """The frame with as much as fits into so many bytes; cached for pages of similar lines."""
+        """Return the frame with as much as fits into so many bytes; cached for pages of similar lines."""
         if len(self.whole) <= room:
             return self.whole
         size = 1 << (room.bit_length() - 1)
@@ -66,7 +66,7 @@ class InPieces:
 
     Args:
         payload: the content.
-        number: unlike that of those before it.
+        number: a number that differs from those before.
         size: returns the bytes that the next piece may have.
     """
 
@@ -79,11 +79,11 @@ class InPieces:
 
     @property
     def done(self) -> bool:
-        """Whether all of it was given, or it is not wanted any more."""
+        """Whether all pieces were sent, or they are not needed any more."""
         return self.payload.gone or self._given >= len(self.payload.whole)
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """The next piece; None when there is none. The argument is ignored: pieces are counted here."""
+        """Return the next piece, or None if there is none. The argument is ignored: pieces are counted here."""
         if self.done:
             return None, seen
         size = self._size()
@@ -101,16 +101,16 @@ Made = str | bytes
 
 
 class Changes(Protocol):
-    """Content that is sent as changes: each page gets those it lacks, put together when its turn comes.
+    """Content that is sent as changes: each page gets those it lacks, combined when its turn comes.
 
-    A slow page so gets many changes in one frame, and nothing that has gone again meanwhile.
+    A slow page then gets many changes in one frame, and no content that is gone again.
     """
 
     key: str
-    """Under which it waits."""
+    """Its key in the outbox."""
 
     def since(self, seen: int) -> tuple[Made | None, int]:
-        """The message or binary frame for a page.
+        """Return the message or binary frame for a page.
 
         Args:
             seen: the number that this returned for the page's last one; 0 for a page that has nothing.
@@ -126,10 +126,10 @@ Payload = Made | Changes | ScaledData
 class Outbox:
     """A queue of payloads by redundancy key.
 
-    A payload replaces one that waits under its key and goes to the end, so that what is sent is in the order in which
-    it came to be; heavy content keeps the place, or that which comes most often would starve the rest. Frame tables and
-    transforms wait in a line of their own, from which every other payload is taken: a slider moves the picture before
-    anything else is sent, yet a slow page does not starve of the rest.
+    A payload replaces one that waits under its key and goes to the end, so that payloads are sent in the order of their
+    creation; heavy content keeps its position, or the most frequent content would starve the rest. Frame tables and
+    transforms have a queue of their own, which alternates with the other one: a slider moves the scene before anything
+    else is sent, yet a slow page does not starve of the rest.
 
     Attributes:
         is_held: the line is full: only frame tables and transforms are taken.
@@ -147,7 +147,7 @@ class Outbox:
         return len(self._urgent) + len(self._ordinary)
 
     def put(self, key: str, payload: Payload) -> None:
-        """Queue a payload, in place of one that waits under the same key."""
+        """Queue a payload, replacing one that waits under the same key."""
         line = self._urgent if key in _URGENT else self._ordinary
         before = line.get(key)
         if not (isinstance(before, ScaledData) and isinstance(payload, ScaledData) and not before.gone):
@@ -159,12 +159,12 @@ class Outbox:
         return key in self._urgent or key in self._ordinary
 
     def hold(self, held: bool) -> None:
-        """Hold back all but frame tables and transforms, or release them."""
+        """Hold back everything except frame tables and transforms, or release it."""
         self.is_held = held
         self._filled.set()
 
     async def take(self) -> Made | ScaledData:
-        """The next payload, as soon as there is one."""
+        """Return the next payload, as soon as there is one."""
         while True:
             while not self._urgent and (self.is_held or not self._ordinary):
                 self._filled.clear()
@@ -177,7 +177,7 @@ class Outbox:
                 return made
 
     def make(self, payload: Payload) -> Made | ScaledData | None:
-        """The message or frame to send for a payload now; None for nothing."""
+        """Return the message or frame to send for a payload now, or None."""
         if isinstance(payload, (str, bytes)):
             return payload
         if isinstance(payload, ScaledData):
@@ -196,10 +196,10 @@ _FIRST_ROOM = 24 * 1024
 _LEAST_ROOM = 6 * 1024
 
 _BLOCKED = 0.02
-"""Seconds of waiting for the socket that say something about the line, and not about this machine."""
+"""Seconds of waiting for the socket that indicate a slow line, not a busy machine."""
 
 _MEAN_OF = 8
-"""Messages whose answers are looked back at."""
+"""Number of answers in the mean."""
 
 _MOST_ON_THE_WAY = 64
 """Messages remembered for the first answer of a page that may never answer."""
@@ -215,8 +215,8 @@ class _OnTheWay:
 class Line:
     """Measures the connection to one page.
 
-    Pages acknowledge large messages, which measures all of the way, tunnels with buffers of their own included. Of a
-    page that does not, only the time is known that the socket took to accept what was sent.
+    Pages acknowledge large messages, which measures the full path, including tunnels with buffers of their own. For a
+    page that does not, only the time is known that the socket took to accept the data.
 
     Args:
         clock: seconds.
@@ -238,21 +238,21 @@ class Line:
 
     @property
     def room(self) -> int:
-        """The size in bytes that a reducible payload should have."""
+        """Return the size in bytes that a reducible payload should have."""
         return _FIRST_ROOM if self.rate is None else max(_LEAST_ROOM, int(self.rate * _SHARE))
 
     @property
     def is_full(self) -> bool:
-        """Whether large messages should wait until the page has those that are on the way."""
+        """Whether large messages should wait until the page has received the earlier ones."""
         return self._answers and sum(on_the_way.size for on_the_way in self._on_the_way) >= self.room / 2
 
     @property
     def is_idle(self) -> bool:
-        """Whether the page has said that nothing large is on the way."""
+        """Whether the page has acknowledged all large messages."""
         return self._answers and not self._on_the_way
 
     def sending(self, size: int) -> float:
-        """Note that a message of so many bytes is handed to the socket; returns the time, which `sent` takes."""
+        """Note that a message of so many bytes is passed to the socket; returns the time for `sent`."""
         now = self._clock()
         self._number += 1
         if self._number == 1:
@@ -262,7 +262,7 @@ class Line:
         return now
 
     def sent(self, size: int, since: float) -> None:
-        """Note that the socket has accepted a message that it was handed at a time."""
+        """Note that the socket has accepted a message that was passed to it at a time."""
         if self._answers or size < BULK:
             return
         while len(self._on_the_way) > _MOST_ON_THE_WAY:
@@ -289,6 +289,6 @@ class Line:
                 self._learn(arrived.size / max(took - self._shortest, took / 10, 1e-4))
 
     def _learn(self, rate: float) -> None:
-        """Adopt a measured rate. A single one may be chance: it changes the rate to twice or half at most."""
+        """Adopt a measured rate. A single one may be an outlier: it at most doubles or halves the rate."""
         known = self.room / _SHARE
         self.rate = min(max(rate, known / 2), known * 2)

@@ -1,4 +1,4 @@
-"""The server of a viewer from the moment at which it listens: it gives out the page before there is a viewer."""
+"""The server of a viewer as soon as it listens: it serves the page before there is a viewer."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 
 class PageServer:
-    """Listens at an address, with the token that its pages know.
+    """Listens at an address, with the token of its pages.
 
     Args:
-        host: the address to listen on; any but this machine's loopback address lets others in who know the token.
+        host: the address to listen on; any but this machine's loopback address admits others who know the token.
         port: 0 for any; None for 7448 or the next free one.
 
     Attributes:
-        host: where it listens.
+        host: the address that it listens on.
         meshes: the folders that pages may read from.
         downloads: files that were made for pages.
         url: the address to open in a browser, token included; empty before `open`.
@@ -40,7 +40,7 @@ class PageServer:
         self._kept: tuple[int, PortToken] | None = None
 
     async def open(self) -> None:
-        """Listen, and give out the page; whoever asks for more waits for `show`.
+        """Listen, and serve the page; further requests wait for `show`.
 
         Raises:
             LinkwrightError: VIEW101 to VIEW103, it cannot listen where it should.
@@ -63,11 +63,11 @@ class PageServer:
 
     @property
     def pages_wait(self) -> bool:
-        """Whether pages of the program that was ended at this port before look for this one."""
+        """Whether pages of the former program at this port are looking for this one."""
         return self._kept is not None and self._kept[1].pages_wait
 
     def leave_token(self, *, pages_wait: bool) -> None:
-        """Note, as the program ends, whether its pages wait for the next one."""
+        """Store at the end of the program whether its pages wait for the next one."""
         if self._kept is not None:
             (port, kept), self._kept = self._kept, None
             leave_token(port, kept.token, pages_wait=pages_wait)

@@ -1,4 +1,4 @@
-"""The web server: the socket it listens on, the page, its WebSocket, and the files that the page fetches."""
+"""The web server: its listening socket, the page, its WebSocket, and the files that the page fetches."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ PAGE_FOLDER = Path(__file__).parent.parent / "page"
 """The folder into which ``frontend/`` is built."""
 
 MAXIMUM_MESSAGE = 1024 * 1024
-"""Longest message taken from a page, bytes: a configuration file. A longer one ends the connection (1009)."""
+"""Longest message accepted from a page, bytes: a configuration file. A longer one ends the connection (1009)."""
 
 _OWN_KEY = re.compile(r"[0-9A-Za-z-]{8,64}")
 _HEARTBEAT = 15.0
@@ -44,7 +44,7 @@ _BLOCK = 256 * 1024
 
 _LEAST_PACKED, _WORTH_PACKING, _PACKING_LEVEL = 4096, 0.9, 1
 """Meshes from so many bytes on go compressed, where so small a part of them is left. The next levels take twice the
-time and leave a tenth less."""
+time and save another tenth."""
 
 _GOODBYE = 0.5
 """Seconds a page has to answer a closing handshake, and a request to end."""
@@ -81,14 +81,14 @@ _TRIES = 10
 _WILDCARDS = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - what an address to open is instead of
 
 MOST_UNSENT = 16 * 1024
-"""Bytes that may wait in the program, and again as many in the operating system, before the writer has to."""
+"""Bytes that may wait in the program, and again as many in the operating system, before the writer must wait."""
 
 _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 
 
 @dataclass(frozen=True, slots=True)
 class _Shown:
-    """What pages are let in to: the audience that takes their sockets, and who shows the recordings that they give."""
+    """The services for pages: the audience that takes their sockets, and the guests that show their recordings."""
 
     audience: Audience
     guests: Guests | None
@@ -118,7 +118,7 @@ class WebServer:
         self._reading = asyncio.Lock()
 
     async def start(self, listener: socket.socket) -> str:
-        """Serve on a listening socket, which is closed when this fails; the address to open, token included."""
+        """Serve on a listening socket, which is closed if this fails; returns the address to open, token included."""
         application = web.Application(middlewares=[self._guard])
         application.on_response_prepare.append(self._add_headers)
         application.router.add_get("/", self._index)
@@ -159,7 +159,7 @@ class WebServer:
 
         Args:
             audience: takes the WebSockets.
-            guests: shows the recordings that pages give; None where none are taken.
+            guests: shows the recordings that pages upload; None if uploads are not accepted.
         """
         from linkwright.viewer.web.uploads import Uploads
 
@@ -214,7 +214,7 @@ class WebServer:
         return await self._page_response(request, index, _PAGE_TYPES[".html"], "no-cache")
 
     async def _proof(self, request: web.Request) -> web.Response:
-        """What proves to a page that was let in before that this is the program that it knows."""
+        """Prove to a page that was let in before that this is the program that it knows."""
         proof = self._gate.proof(request.query.get("nonce", ""))
         if proof is None:
             return web.Response(status=400, text="This address is for the page's question.\n")
@@ -226,7 +226,7 @@ class WebServer:
         content_type = _PAGE_TYPES.get(Path(parts[-1]).suffix)
         if content_type is None or any(part in ("", ".", "..") or "\0" in part or "\\" in part for part in parts):
             raise web.HTTPNotFound(text="There is no such page.\n")
-        hashed = parts[0] == "assets"  # Vite names these by their content
+        hashed = parts[0] == "assets"  # Vite derives these names from their content
         cache = "private, max-age=31536000, immutable" if hashed else "no-cache"
         file = self._page_folder / path
         packed = file.with_name(f"{file.name}.gz")
@@ -235,7 +235,7 @@ class WebServer:
         if not _takes_gzip(request):
             vary = {"Vary": "Accept-Encoding"}
             return await self._page_response(request, packed, content_type, cache, vary, unpack=True)
-        # A quarter of the bytes: over a slow line the page is there in seconds instead of tens of them.
+        # A quarter of the bytes: over a slow line the page loads in seconds instead of tens of them.
         packing = {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
         return await self._page_response(request, packed, content_type, cache, packing)
 
@@ -249,7 +249,7 @@ class WebServer:
         *,
         unpack: bool = False,
     ) -> web.StreamResponse:
-        """A file of the page. It is in memory once for all requests, however slow their readers are."""
+        """Return a file of the page. It is in memory once for all requests, however slow their readers are."""
         async with self._reading:
             kept = self._page_contents.get((path, unpack))
             try:
@@ -279,7 +279,7 @@ class WebServer:
             return web.Response(status=error.status, text=f"Refused: {error}.\n")
         self._admit(request)
         content_type = CONTENT_TYPES[path.suffix.lower()]
-        packs = _takes_gzip(request) and path.suffix.lower() not in IMAGE_TYPES  # images are packed already
+        packs = _takes_gzip(request) and path.suffix.lower() not in IMAGE_TYPES  # images are compressed already
         return await _file_response(request, path, content_type, "private, no-cache", packs=packs)
 
     async def _export(self, request: web.Request) -> web.StreamResponse:
@@ -300,20 +300,20 @@ class WebServer:
     ) -> web.Response:
         uploads = (await self._viewer()).uploads
         if uploads is None:
-            raise web.HTTPNotFound(text="This program takes no recordings.\n")
+            raise web.HTTPNotFound(text="This program does not accept recordings.\n")
         return await take(uploads, request)
 
     async def _viewer(self) -> _Shown:
-        """What pages are let in to, as soon as it is there."""
+        """Return the services for pages, as soon as they are available."""
         try:
             return await asyncio.shield(self._shown)
         except asyncio.CancelledError:
             if not self._shown.cancelled():
-                raise  # who asks is gone
+                raise  # the request is gone
             raise web.HTTPServiceUnavailable(text="The program ends.\n") from None
 
     async def _show_kept(self, uploads: Uploads, request: web.Request) -> web.Response:
-        """Show a recording that this program made: its file is here already."""
+        """Show a recording that this program made: its file is on this machine already."""
         kept = self._downloads.path(request.match_info["key"])
         if kept is None:
             raise web.HTTPNotFound(text="There is no such recording.\n")
@@ -322,7 +322,7 @@ class WebServer:
     def _shielded(
         self, handler: Callable[[web.Request], Awaitable[web.Response]]
     ) -> Callable[[web.Request], Awaitable[web.StreamResponse]]:
-        """A handler that refuses requests without the token."""
+        """Return a handler that refuses requests without the token."""
 
         async def asked(request: web.Request) -> web.StreamResponse:
             return await handler(request) if self._gate.is_shown_token(request.query) else _without_token()
@@ -362,18 +362,18 @@ _UPLOADS: tuple[tuple[str, str, Callable[[Uploads, web.Request], Awaitable[web.R
     ("POST", "/recordings/{key}", lambda uploads, request: uploads.open(request)),
     ("DELETE", "/recordings/{key}", lambda uploads, request: uploads.give_up(request)),
 )
-"""Method, address and handler of what pages ask for to give a recording."""
+"""Method, address and handler of the requests with which pages upload a recording."""
 
 
 def _audience_of(shown: _Shown, request: web.Request) -> Audience:
-    """The pages of the recording that a page names; where that is no longer shown, those of the viewer itself."""
+    """Return the pages of the recording that a page names, or those of the viewer if it is no longer shown."""
     key = request.query.get("recording", "")
     found = None if shown.guests is None or not key else shown.guests.audience(key)
     return shown.audience if found is None else found
 
 
 def _is_from_here(request: web.Request) -> bool:
-    """Whether a request comes from this machine: by its loopback, or from the address that it went to."""
+    """Return whether a request comes from this machine: by its loopback, or from its own address."""
     transport = request.transport
     peer, own = (transport and transport.get_extra_info(name) for name in ("peername", "sockname"))
     if not peer or not own:
@@ -384,7 +384,7 @@ def _is_from_here(request: web.Request) -> bool:
 
 
 def _own_displays(request: web.Request) -> str:
-    """A page's name for displays of its own, from the address of its socket; empty when it shares the common ones."""
+    """Return a page's name for its own displays, from the address of its socket; empty for the common ones."""
     key = request.query.get("own", "")
     return key if _OWN_KEY.fullmatch(key) else ""
 
@@ -399,7 +399,7 @@ def _without_token() -> web.Response:
 
 
 def _refused(status: int, reason: str) -> web.Response:
-    """An answer that ends its connection."""
+    """Return an answer that ends its connection."""
     response = web.Response(status=status, text=f"{reason[0].upper()}{reason[1:]}.\n")
     response.force_close()
     return response
@@ -408,11 +408,11 @@ def _refused(status: int, reason: str) -> web.Response:
 async def _file_response(
     request: web.Request, path: Path, content_type: str, cache: str, *, packs: bool
 ) -> web.Response:
-    """A whole file, with an ETag that an edit changes; 304 where the browser has it already.
+    """Return a file, with an ETag that an edit changes; 304 if the browser has it already.
 
-    With `packs` it goes compressed where that makes it clearly smaller, and says how long it is unpacked.
+    With `packs` it is compressed if that makes it clearly smaller, with its uncompressed length in a header.
 
-    aiohttp's own FileResponse also looks for compressed files beside the one asked for, which nobody has checked.
+    aiohttp's own FileResponse also looks for compressed files beside the one asked for, which no check covers.
     """
     try:
         read = await asyncio.to_thread(_read, path, request.headers.get("If-None-Match", ""))
@@ -438,7 +438,7 @@ def _attached(name: str) -> str:
 
 
 async def _streamed(request: web.Request, path: Path) -> web.StreamResponse:
-    """A file to be saved, however long it is: a block of it is in memory at a time."""
+    """Return a file to be saved, however long it is: only a block of it is in memory at a time."""
     try:
         file = await asyncio.to_thread(path.open, "rb")
     except OSError:
@@ -469,12 +469,12 @@ class _FileRead:
     body: bytes | None
 
     def is_known_to(self, request: web.Request) -> bool:
-        """Whether a browser says that it has it."""
+        """Return whether a browser has this version."""
         return _is_among(self.tag, request.headers.get("If-None-Match", ""))
 
 
 def _read(path: Path, known: str, *, unpack: bool = False) -> _FileRead:
-    """A regular file, or what is packed in it; no content when its ETag is among those known, of an If-None-Match."""
+    """Read a regular file, or its compressed form; no content if the ETag is among those of an If-None-Match."""
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with open(descriptor, "rb") as file:  # noqa: PTH123 - a descriptor, not a path
         facts = os.fstat(descriptor)
@@ -491,21 +491,21 @@ def _is_among(tag: str, known: str) -> bool:
 
 
 def listen(host: str, port: int | None) -> socket.socket:
-    """A socket that listens.
+    """Return a listening socket.
 
     Args:
         host: a name or address of this machine.
-        port: 0 for any; None for `DEFAULT_PORT`, or the next free one when it is taken.
+        port: 0 for any; None for `DEFAULT_PORT`, or the next free one if it is taken.
 
     Raises:
-        LinkwrightError: VIEW101, the port asked for is in use; VIEW102, it cannot be listened on; VIEW103, the host
+        LinkwrightError: VIEW101, the requested port is in use; VIEW102, it cannot be listened on; VIEW103, the host
             is unknown.
     """
     try:
         family, _, _, _, address = socket.getaddrinfo(host, 0, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
     except (OSError, UnicodeError):
         hint = phrase("use 127.0.0.1, or 0.0.0.0 to be reached from other machines")
-        message = phrase("'{host}' is no name or address of this machine", host=host)
+        message = phrase("'{host}' is not a name or address of this machine", host=host)
         raise LinkwrightError(Diagnostic("VIEW103", message, hint=hint)) from None
     candidates = [port] if port is not None else [*range(DEFAULT_PORT, DEFAULT_PORT + _TRIES), 0]
     for candidate in candidates:
@@ -518,14 +518,14 @@ def listen(host: str, port: int | None) -> socket.socket:
 
 
 def url_of(listener: socket.socket) -> str:
-    """The address at which a browser on this machine reaches a listening socket."""
+    """Return the address at which a browser on this machine reaches a listening socket."""
     host, port = listener.getsockname()[:2]
     host = _WILDCARDS.get(host, host)
     return f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
 
 
 def is_open_to_others(listener: socket.socket) -> bool:
-    """Whether other machines can reach a listening socket."""
+    """Return whether other machines can reach a listening socket."""
     return not ipaddress.ip_address(listener.getsockname()[0].partition("%")[0]).is_loopback
 
 
@@ -547,7 +547,7 @@ def _listen_at(family: int, address: tuple[str | int, int]) -> socket.socket:
 
 def _cannot_listen(host: str, port: int, error: OSError) -> Diagnostic:
     if error.errno == errno.EADDRINUSE:
-        hint = phrase("choose another with '--port', or leave '--port' out to take the next free one")
+        hint = phrase("choose another with '--port', or omit '--port' to use the next free one")
         return Diagnostic("VIEW101", phrase("port {port} of '{host}' is in use", port=port, host=host), hint=hint)
     return Diagnostic(
         "VIEW102",
@@ -561,9 +561,9 @@ def _cannot_listen(host: str, port: int, error: OSError) -> Diagnostic:
 
 
 def keep_short(transport: asyncio.Transport) -> None:
-    """Keep the send buffer of a connection short, without bounding what is in flight.
+    """Keep the send buffer of a connection short, without bounding the data in flight.
 
-    What waits there can neither be replaced by newer data nor overtaken.
+    Data that waits there can neither be replaced by newer data nor overtaken.
 
     The system grows its send buffer to megabytes; over a slow line these are many seconds. Where it offers no other
     bound (Windows), its buffer stays as it is, and pages' acknowledgements alone keep the line free.

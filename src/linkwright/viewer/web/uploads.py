@@ -1,7 +1,7 @@
-"""Recordings that pages upload to be shown: their files come in blocks and go into a temporary folder.
+"""Recordings that pages upload: their files arrive in blocks and go into a temporary folder.
 
-A page says first what is to come and is told whether there is room. What it gives up, or what comes to a standstill, is
-removed. Whoever knows the token may give some; names are checked, and none leads out of the folder.
+A page announces the files first and learns whether there is room. Uploads that are cancelled or stall are removed.
+Every holder of the token may upload; names are checked, and none leads out of the folder.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from linkwright.viewer.web.audience import Audience
 
 PATIENCE = 60.0
-"""Seconds after which files that nobody goes on with are removed."""
+"""Seconds after which files of an upload that stalls are removed."""
 
 LEFT_FREE = 256_000_000
-"""Bytes of the disk that are left to others."""
+"""Bytes of the disk to leave free."""
 
 _MOST_AT_ONCE = 4
 _MOST_FILES = 1000
@@ -47,11 +47,11 @@ class Guests(Protocol):
         """Show a recording; returns its name for pages. `scratch`, if any, is removed when it is no longer shown.
 
         Raises:
-            LinkwrightError: it cannot be shown; `scratch` is still there.
+            LinkwrightError: it cannot be shown; `scratch` still exists.
         """
 
     def audience(self, key: str) -> Audience | None:
-        """The pages of a recording that is shown; None where there is none of that name."""
+        """Return the pages of a recording that is shown, or None if there is none of that name."""
 
     async def close(self) -> None:
         """Stop showing recordings."""
@@ -85,17 +85,17 @@ class _Upload:
 
     @property
     def target(self) -> Path:
-        """The path to be opened."""
+        """The path to open."""
         files = self.announced.files
         return self.folder / files[0].name if len(files) == 1 else self.folder
 
 
 class Uploads:
-    """The addresses to which pages send recordings.
+    """The addresses to which pages upload recordings.
 
     Args:
         guests: shows them.
-        left_free: bytes of the disk that are left to others.
+        left_free: bytes of the disk to leave free.
     """
 
     def __init__(self, guests: Guests, left_free: int = LEFT_FREE) -> None:
@@ -105,7 +105,7 @@ class Uploads:
         self._sweeping: asyncio.TimerHandle | None = None
 
     def close(self) -> None:
-        """Remove what was uploaded."""
+        """Remove all uploads."""
         if self._sweeping is not None:
             self._sweeping.cancel()
         for upload in self._uploads.values():
@@ -113,7 +113,7 @@ class Uploads:
         self._uploads.clear()
 
     async def show(self, request: web.Request, path: Path) -> web.Response:
-        """Show a recording that is on this machine, and stays there; returns the answer for the page that asks."""
+        """Show a recording of this machine, which is not removed; returns the answer for the page."""
         try:
             return web.json_response({"recording": await self._guests.open(path, None)})
         except LinkwrightError as error:
@@ -122,7 +122,7 @@ class Uploads:
     # --- requests ----------------------------------------------------------------------------------------------
 
     async def announce(self, request: web.Request) -> web.Response:
-        """Answer what is to come with a key for it, or with why there is no room."""
+        """Answer an announcement with a key for it, or with the reason if there is no room."""
         try:
             announced = msgspec.json.decode(await request.read(), type=_Announcement)
         except msgspec.DecodeError as error:
@@ -131,10 +131,10 @@ class Uploads:
         wrong = next((name for name in names if not _FILE.fullmatch(name)), None)
         if wrong is not None:
             return _refused(
-                request, phrase("'{name}' is no file of a recording: these are .mcap and .db3", name=wrong[:100])
+                request, phrase("'{name}' is not a file of a recording: these end in .mcap or .db3", name=wrong[:100])
             )
         if not names or len(names) != len(set(names)) or len(names) > _MOST_FILES:
-            return _refused(request, phrase("there is no recording in what was dropped: its files are .mcap or .db3"))
+            return _refused(request, phrase("the dropped files contain no recording: its files end in .mcap or .db3"))
         if (
             not _NAME.fullmatch(announced.name)
             or announced.name in _DOTS
@@ -143,7 +143,8 @@ class Uploads:
             return web.Response(status=400, text="A name without slashes, and sizes.\n")
         if len(self._uploads) >= _MOST_AT_ONCE:
             return _refused(
-                request, phrase("{count} other recordings are being sent: wait for one of them", count=_MOST_AT_ONCE)
+                request,
+                phrase("{count} other recordings are being uploaded: wait for one of them", count=_MOST_AT_ONCE),
             )
         scratch = scratch_folder()
         needed = sum(file.size for file in announced.files)
@@ -158,7 +159,7 @@ class Uploads:
         return web.json_response({"key": key})
 
     async def take(self, request: web.Request) -> web.Response:
-        """Take one of the files."""
+        """Receive one of the files."""
         upload = self._uploads.get(request.match_info["key"])
         number = int(request.match_info["number"])
         if upload is None or number >= len(upload.announced.files) or number in upload.whole or upload.busy:
@@ -170,9 +171,9 @@ class Uploads:
         except OSError as error:
             self._remove(request.match_info["key"])
             if request.transport is None:
-                return web.Response(status=400)  # the page has gone
+                return web.Response(status=400)  # the page has closed
             return _refused(
-                request, phrase("the recording could not be taken: {reason}", reason=foreign(error.strerror or error))
+                request, phrase("the recording could not be stored: {reason}", reason=foreign(error.strerror or error))
             )
         finally:
             upload.busy = False
@@ -182,10 +183,10 @@ class Uploads:
         return web.Response(status=204)
 
     async def open(self, request: web.Request) -> web.Response:
-        """Show a recording whose files have come."""
+        """Show a recording whose files have arrived."""
         upload = self._uploads.get(request.match_info["key"])
         if upload is None or len(upload.whole) != len(upload.announced.files):
-            raise web.HTTPNotFound(text="Nothing of that name is there.\n")
+            raise web.HTTPNotFound(text="There is no upload of that name.\n")
         upload.busy = True
         try:
             shown = await self._guests.open(upload.target, upload.scratch)
@@ -197,7 +198,7 @@ class Uploads:
         return web.json_response({"recording": shown})
 
     async def give_up(self, request: web.Request) -> web.Response:
-        """Remove what has come of a recording."""
+        """Remove the received part of a recording."""
         self._remove(request.match_info["key"])
         return web.Response(status=204)
 
@@ -245,13 +246,13 @@ def _refused(request: web.Request, message: Phrase) -> web.Response:
 
 
 def _problem(text: str) -> web.Response:
-    """The response with an error for the user. Its status is 200, since browsers log others on the console, too."""
+    """Return the response with an error for the user. Its status is 200, since browsers log other ones."""
     return web.json_response({"problem": text})
 
 
 def _no_room(needed: int, free: int) -> Phrase:
     return phrase(
-        "there is too little room for a recording of {needed} MB where the program runs: {free} MB are free",
+        "there is not enough space for a recording of {needed} MB on the program's machine: {free} MB are free",
         needed=needed // 1_000_000,
         free=free // 1_000_000,
     )

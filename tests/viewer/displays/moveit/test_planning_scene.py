@@ -147,7 +147,7 @@ async def test_objects_come_move_grow_and_go():
         left = await talker.say(scene(thing("b", operation=REMOVE), diff=True))
         assert list(left) == ["Scene Geometry/a"]
         await talker.say(scene(thing("nobody", operation=MOVE), diff=True))
-        assert w.status("PlanningScene")["nobody"] == ("error", "Object 'nobody' is to be moved and is not there")
+        assert w.status("PlanningScene")["nobody"] == ("error", "Object 'nobody' cannot be moved: it does not exist")
         assert await talker.say(scene(thing("", operation=REMOVE), diff=True)) == {}
         assert list(await talker.say(scene(thing("c")))) == ["Scene Geometry/c"]
         assert "nobody" not in w.status("PlanningScene")
@@ -279,10 +279,10 @@ async def test_bad_scenes_are_said_and_the_next_good_one_is_drawn():
         assert [name for name in shown if name.startswith("Scene Geometry")] == ["Scene Geometry/good"]
         status = w.status("PlanningScene")
         assert status["nan"] == ("error", "Contains invalid floating point values (nans or infs)")
-        assert status["short"] == ("error", "A primitive of type 1 needs 3 dimensions and has 2")
+        assert status["short"] == ("error", "A primitive of type 1 needs 3 dimensions, but has 2")
         assert status["kind"] == ("error", "Unknown type of primitive: 9")
         assert status["poses"] == ("error", "1 shapes of kind primitive and 2 poses for them")
-        assert status["mesh"] == ("error", "A triangle of a mesh has vertex 7, and there are 0")
+        assert status["mesh"] == ("error", "A triangle of a mesh refers to vertex 7, but there are 0")
         assert status["plane"] == ("error", "A plane has no normal")
         assert status["ball"] == ("error", "The robot has no link 'foot' for the attached object 'ball'")
         assert status["e"] == ("error", "The attached object 'e' has no shapes")

@@ -70,7 +70,7 @@ def test_booleans_and_bytes_are_numbers():
 
 @pytest.mark.parametrize("text", ["", ".x", "x.", "x..y", "x[", "x[]", "x[1]y", "1x", "x y"])
 def test_what_is_no_path(text):
-    with pytest.raises(FieldPathError, match="is no field"):
+    with pytest.raises(FieldPathError, match="is not a field"):
         FieldPath(text)
 
 
@@ -78,10 +78,10 @@ def test_what_is_no_path(text):
     ("path", "said"),
     [
         ("positon[0]", "did you mean 'position'"),
-        ("position", "say which element"),
-        ("header[0]", "'header' is no array"),
-        ("name[0]", "is no number"),
-        ("header", "is no number"),
+        ("position", "select an element"),
+        ("header[0]", "'header' is not an array"),
+        ("name[0]", "is not a number"),
+        ("header", "is not a number"),
         ("position[0].x", "has no fields"),
     ],
 )

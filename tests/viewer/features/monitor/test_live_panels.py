@@ -229,7 +229,7 @@ async def test_wrong_paths_are_told():
         await client.send("watch_series", series=series)
         first, second = (await client.until("series_states"))["states"]
         assert "did you mean 'data'" in first["error"]
-        assert "is no field" in second["error"]
+        assert "is not a field" in second["error"]
 
 
 async def test_a_topic_that_comes_later_is_plotted():
@@ -350,7 +350,7 @@ async def test_parameters_are_set_and_refused_with_the_reason():
         assert high["reason"]
         assert not (await put("fixed", "integer", "8"))["successful"]
         wrong = await put("big", "integer", "lots")
-        assert (wrong["successful"], wrong["reason"]) == (False, "'lots' is not a whole number")
+        assert (wrong["successful"], wrong["reason"]) == (False, "'lots' is not an integer")
         assert "64 bits" in (await put("big", "integer", str(2**64)))["reason"]
 
 

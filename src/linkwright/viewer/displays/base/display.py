@@ -1,4 +1,4 @@
-"""The base of all displays: an enable box, properties, status rows, content, and the events that it handles."""
+"""The base of all displays: a check box, properties, status rows, content, and the events that it handles."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class DisplayHost(Protocol):
         context: the viewer's node, files and pages.
         pages: the pages that see the display.
         frames: the frames now.
-        time: whether time stands still, and what leads it.
+        time: whether time is paused, and what it is synchronized with.
     """
 
     context: ViewerContext
@@ -46,7 +46,7 @@ class DisplayHost(Protocol):
     time: TimeControl
 
     def robot_changed(self, gone: set[str]) -> None:
-        """A display has another robot; `gone` are the frames that only the one before had."""
+        """Handle a display's new robot; `gone` are the frames that only the former one had."""
 
 
 Pose = NDArray[np.float64]
@@ -56,15 +56,15 @@ _RANK: dict[StatusLevel, int] = {"ok": 0, "warn": 1, "error": 2}
 
 
 def worst(rows: list[StatusRow]) -> StatusLevel:
-    """The level that a display's own row shows: the worst of its status rows."""
+    """Return the level of a display's own row: the worst of its status rows."""
     return max((row.level for row in rows), key=_RANK.__getitem__, default="ok")
 
 
 class ViewerDisplay:
     """A display of the Displays panel.
 
-    A class of display says its RViz class and its properties, and overrides what it must know of: start and stop,
-    values set, frames changed.
+    A subclass sets its RViz class and its properties, and overrides the methods of its events: start and stop,
+    new values, changed frames.
 
     Args:
         host: the visualization that it is part of.
@@ -76,9 +76,9 @@ class ViewerDisplay:
     SCHEMA: ClassVar[Schema] = ()
     SUPPORTED: ClassVar[bool] = True
     DRAWN_AS: ClassVar[str] = ""
-    """The RViz class whose drawing the page uses, for a display of a package that brings none; its own where empty."""
+    """The RViz class whose drawing the page uses, for a display of a package without its own; empty for its own."""
     TOPIC: ClassVar[Path] = ("Topic",)
-    """The property that takes the topic when a display is added for one."""
+    """The property that receives the topic when the display is added for a topic."""
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self.host = host
@@ -98,26 +98,26 @@ class ViewerDisplay:
 
     @classmethod
     def messages_shown(cls) -> tuple[str, ...]:
-        """The types of the topics that it can be added for."""
+        """Return the types of the topics that it can be added for."""
         message: str = getattr(cls, "MESSAGE", "")
         return (message,) if message else ()
 
     @classmethod
     def topic_value(cls, topic: str) -> str:
-        """The value of the property `TOPIC` that shows a topic."""
+        """Return the value of the property `TOPIC` that shows a topic."""
         return topic
 
     @property
     def enabled(self) -> bool:
-        """Whether it is drawn: its box and those of the groups around it are on."""
+        """Whether it is drawn: its check box and those of the groups around it are on."""
         return self.config.enabled
 
     def schema(self) -> Schema:
-        """The properties as they are now."""
+        """Return the current properties."""
         return self.SCHEMA
 
     def row(self) -> Display:
-        """The display as the page shows it."""
+        """Return the display's row for pages."""
         return Display(
             id=self.id,
             cls=self.config.cls,
@@ -132,10 +132,10 @@ class ViewerDisplay:
         )
 
     def set_property(self, path: Path, value: object) -> None:
-        """Take a value from a page, tell all pages, and act on it.
+        """Set a value from a page, send it to all pages, and apply it.
 
         Raises:
-            ValueError: when the property takes no such value.
+            ValueError: the property does not accept the value.
         """
         taken = self.properties.set(path, value)
         self.changed(path)
@@ -144,20 +144,20 @@ class ViewerDisplay:
         self.pages.publish(PropertyChanged(self.property_id(path), taken))
 
     def set_checked(self, value: bool) -> None:
-        """Take a new state of the enable box, and tell all pages; `enabled_changed` comes after."""
+        """Set the check box, and send it to all pages; `enabled_changed` is called later."""
         self.config.checked = value
         self.pages.publish(PropertyChanged(f"{self.id}/Enabled", value))
 
     def recall(self, memories: Sequence[Memory]) -> None:
-        """Restore what the file had for some properties, tell all pages, and act on it."""
+        """Restore the file's values of some properties, send them to all pages, and apply them."""
         for path in self.properties.recall(memories):
             self.changed(path)
-        self.properties.recall(memories)  # what was set together with a property was recalled with it
+        self.properties.recall(memories)  # `changed` may have set further properties, which are recalled too
         self.recalled()
         self.publish_properties()
 
     def property_id(self, path: Path) -> str:
-        """The id of one of its properties."""
+        """Return the id of one of its properties."""
         return self.properties.identity(path)
 
     def publish_properties(self) -> None:
@@ -165,7 +165,7 @@ class ViewerDisplay:
         self.pages.publish(DisplayProperties(self.id, self.properties.rows()))
 
     def set_status(self, rows: list[StatusRow]) -> None:
-        """Show status rows, none while the display is off; pages hear of it only when they differ."""
+        """Show status rows, none while the display is off; pages receive them only if they differ."""
         if not self.enabled:
             rows = []
         if rows != self.status:
@@ -176,42 +176,42 @@ class ViewerDisplay:
         return [FIXED_FRAME, *sorted(self.host.frames.names)]
 
     def start(self) -> None:
-        """Begin: subscribe, read files."""
+        """Start: subscribe, read files."""
 
     def stop(self) -> None:
-        """End for good."""
+        """Stop for good."""
 
     def changed(self, path: Path) -> None:
-        """A property has a new value."""
+        """Handle a property's new value."""
 
     def recalled(self) -> None:
-        """Values were restored and `changed` was called for each: update what depends on them."""
+        """Update derived state: values were restored and `changed` was called for each."""
 
     def enabled_changed(self) -> None:
-        """The display's enable box, or that of a group around it, was set."""
+        """Handle a change of the check box of the display, or of a group around it."""
         self.frames_changed()
 
     def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
-        """Displays were added, removed, moved or renamed; these there are now, each group before its content."""
+        """Handle a new arrangement: displays were added, removed, moved or renamed; each group precedes its content."""
 
     def frames_changed(self) -> None:
-        """Frames appeared, disappeared, or gained or lost their transform; or the Fixed Frame has changed."""
+        """Handle frames that appeared, disappeared, or gained or lost their transform; or another Fixed Frame."""
 
     def receive(self, message: Any) -> None:
-        """Handle a message about this display alone: how a mesh loaded, what was done to a marker."""
+        """Handle a page's message for this display, such as the result of loading a mesh or an action on a marker."""
 
     def time_changed(self) -> None:
-        """Time was paused or resumed, or follows another source."""
+        """Handle a pause, a resume, or another source of time."""
 
     def time_reset(self) -> None:
-        """Time was reset: forget earlier messages."""
+        """Handle a reset of time: forget earlier messages."""
 
     def messages(self) -> list[ServerMessage]:
-        """Messages for a page that opens now, besides the display's row."""
+        """Return messages for a page that opens now, besides the display's row."""
         return []
 
     def data(self) -> list[Payload]:
-        """Content for a page that opens now, so that it draws what the others do."""
+        """Return content for a page that opens now, so that it draws the same as the others."""
         return []
 
 
@@ -233,19 +233,19 @@ class DataDisplay(ViewerDisplay):
         stamp_ns: int = 0,
         shrink: Shrink | None = None,
     ) -> None:
-        """Send pages something to draw; see `pack_data`. It is kept for pages that open later.
+        """Send pages content to draw; see `pack_data`. It is stored for pages that open later.
 
-        With `shrink` pages whose line is slow are sent as much of it as the line carries.
+        With `shrink` pages with a slow line receive as much of it as the line carries.
         """
         pack = partial(pack_data, self.id, key=key, frame=frame, pose=pose, stamp=stamp_ns / 1e9)
         waits_under = f"data {self.id} {key}"
         packed = pack(content) if shrink is None else ScaledData(waits_under, content, shrink, pack)
         self.pages.send_data(waits_under, packed)
-        self._replaced(key)  # only now, because until then the new one has its place
+        self._replaced(key)  # after the new content has its place in the queues
         self._data[key] = packed
 
     def forget(self, key: str | None = None) -> None:
-        """Remove what was sent under a key from pages, or all of it."""
+        """Remove the data that was sent under a key from pages, or all data."""
         for each in self._data if key is None else (key,):
             self._replaced(each)
         if key is None:
@@ -255,7 +255,7 @@ class DataDisplay(ViewerDisplay):
         self.pages.publish(DisplayForgotten(self.id, key))
 
     def say(self, name: str, level: StatusLevel, text: str) -> None:
-        """Set a status row; a text that is a phrase is said in the language of each page."""
+        """Set a status row; a phrase is shown in the language of each page."""
         row = StatusRow(name, level, text)
         if self._rows.get(name) != row:
             self._rows[name] = row
@@ -270,7 +270,7 @@ class DataDisplay(ViewerDisplay):
             self.set_status(list(self._rows.values()))
 
     def data(self) -> list[Payload]:
-        """The content drawn now."""
+        """Return the content drawn now."""
         return list(self._data.values())
 
     def _replaced(self, key: str) -> None:

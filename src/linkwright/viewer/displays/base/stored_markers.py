@@ -1,4 +1,4 @@
-"""Displays that are drawn as markers: pages are sent new and changed markers, and the ids of removed ones."""
+"""Displays that are drawn as markers: pages receive new and changed markers, and the ids of removed ones."""
 
 from __future__ import annotations
 
@@ -43,6 +43,6 @@ class StoredMarkersDisplay(TopicDisplay):
             )
 
     def show_markers(self) -> None:
-        """Send what has changed: all of a message at once."""
+        """Send the changes: all of a message at once."""
         self.context.meshes.replace(self.id, self._meshes.folders)
         self.pages.send_data(self._store.key, self._store)

@@ -1,4 +1,4 @@
-"""Displays of what comes on a topic: the subscription, waiting for transforms, what pages are sent."""
+"""Displays of a topic's messages: the subscription, waiting for transforms, the data for pages."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from linkwright.viewer.protocol.message import DataContent
 
 
 class SideTopic:
-    """Listens to a topic that goes along with the display's own. While time is paused its messages wait.
+    """Subscribes to a topic beside the display's own. While time is paused its messages wait.
 
     Args:
         host: the display's host.
@@ -41,7 +41,7 @@ class SideTopic:
         self._held: deque[Any] = deque()
 
     def listen(self, topic: str, qos: QoSProfile) -> Phrase | None:
-        """Subscribe to a topic instead of the one before; returns RViz's words for why that failed, or None."""
+        """Subscribe to a topic instead of the former one; returns RViz's text for the failure, or None."""
         self.close()
         self._held = deque(maxlen=max(1, qos.depth))
         try:
@@ -71,7 +71,7 @@ class SideTopic:
 
 
 def camera_info_topic(image: str) -> str:
-    """The topic of an image's CameraInfo by ROS's convention: beside the image, whatever its transport."""
+    """Return the topic of an image's CameraInfo by ROS's convention: beside the image, whatever its transport."""
     for transport in ("/compressed", "/compressedDepth", "/theora"):
         image = image.removesuffix(transport)
     return image.rpartition("/")[0] + "/camera_info"
@@ -81,35 +81,35 @@ TOPIC = "Topic"
 TRANSFORM = "Transform"
 
 _FAILURE = "Failure"
-"""The status row of a message that a display failed at; RViz has none such."""
+"""The status row of a message that made a display fail; RViz has no such row."""
 
 _LATE = 1.0
-"""Seconds that transforms of the time of a message are waited for before it is an error: as a rule they come later."""
+"""Seconds to wait for a message's transforms before it is an error: usually they arrive later than the message."""
 
 _COUNT_PERIOD = 1.0
-"""Seconds between two updates of the row that counts messages or says why there are none."""
+"""Seconds between two updates of the row that counts messages or gives the reason why there are none."""
 
 _OFFERED_LESS = {
     "RELIABILITY": ("Reliability Policy", "Best Effort"),
     "DURABILITY": ("Durability Policy", "Volatile"),
 }
-"""Rows of a topic in which too much may be asked for, and the value that takes what every publisher offers."""
+"""Rows of a topic with which it may request too much, and the value that every publisher offers."""
 
 _OTHER_CLOCK = 5.0
-"""Seconds between a message's stamp and the time here from which on clocks are to blame, and not a slow computer."""
+"""Seconds between a message's stamp and the local time that indicate different clocks, not a slow computer."""
 
 _MOST_OTHERS = 3
-"""Topics with such messages that are named where nobody publishes the one that is shown: the likest first."""
+"""Topics of the same type that are named if the display's topic has no publisher: the most similar names first."""
 
 
 class TopicDisplay(DataDisplay, ABC):
     """A display of the messages of one type on one topic.
 
-    A subclass says `CLASS`, `MESSAGE` and its properties, among them a `topic_spec`, and overrides `take`. It listens
-    only while it is enabled, as in RViz.
+    A subclass sets `CLASS`, `MESSAGE` and its properties, among them a `topic_spec`, and overrides `take`. It
+    subscribes only while it is enabled, as in RViz.
 
     Attributes:
-        last: the message shown now, to show it anew when a property changes how.
+        last: the message shown now, to show it again when a property changes.
     """
 
     MESSAGE: ClassVar[str] = ""
@@ -118,16 +118,16 @@ class TopicDisplay(DataDisplay, ABC):
     SCHEMA: ClassVar[Schema] = (topic_spec(),)
 
     TOPIC_ROW: ClassVar[str] = TOPIC
-    """The status row that says whether messages come."""
+    """The status row about the arrival of messages."""
 
     TRANSFORMED: ClassVar[bool] = True
     """Whether messages wait until the frame in their header can be placed in the Fixed Frame at their time."""
 
     OCCASIONAL: ClassVar[bool] = False
-    """Whether messages come only on occasion, such as plans: that none came yet from a publisher is no warning."""
+    """Whether messages are rare, such as plans: if a publisher has sent none yet, that is not a warning."""
 
     FOLLOWS_TRANSFORMS: ClassVar[bool] = False
-    """Whether `transforms_came` is called though messages do not wait: the display places parts of them itself."""
+    """Whether `transforms_came` is called although messages do not wait: the display places parts of them itself."""
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
@@ -149,7 +149,7 @@ class TopicDisplay(DataDisplay, ABC):
 
     @abstractmethod
     def take(self, message: Any, pose: Pose | None) -> None:
-        """A message to show.
+        """Show a message.
 
         Args:
             message: a message of the type `MESSAGE`; it must not be changed.
@@ -157,24 +157,24 @@ class TopicDisplay(DataDisplay, ABC):
         """
 
     def reset(self) -> None:
-        """Forget everything shown: the topic or the Fixed Frame has changed, or time was reset."""
+        """Forget all content: the topic or the Fixed Frame has changed, or time was reset."""
         self.forget()
 
     def transforms_came(self) -> None:
-        """New transforms were received."""
+        """Handle new transforms."""
         self._try_waiting()
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """The frame of a message and its time in nanoseconds (0 for the latest): those of its header."""
+        """Return the frame of a message and its time in nanoseconds (0 for the latest), from its header."""
         stamp = message.header.stamp
         return message.header.frame_id, stamp.sec * 1_000_000_000 + stamp.nanosec
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Type, topic and quality of service of what it listens to; without a topic it does not."""
+        """Return the type, topic and quality of service to subscribe with; an empty topic means no subscription."""
         return self.MESSAGE, self.properties.text(TOPIC).strip(), qos_of(self.properties)
 
     def most_waiting(self) -> int:
-        """The number of messages that may wait for their transforms."""
+        """Return the number of messages that may wait for their transforms."""
         return int(self.properties.number(TOPIC, FILTER_SIZE))
 
     # --- what subclasses call ----------------------------------------------------------------------------------
@@ -187,22 +187,22 @@ class TopicDisplay(DataDisplay, ABC):
     # --- life --------------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Listen, if the display is enabled."""
+        """Subscribe, if the display is enabled."""
         self._fixed_frame = self.host.frames.fixed_frame
         if self.enabled:
             self._subscribe()
 
     def stop(self) -> None:
-        """Stop listening."""
+        """Unsubscribe."""
         self._unsubscribe()
 
     def changed(self, path: Path) -> None:
-        """Listen to another topic, or with another quality of service."""
+        """Subscribe to another topic, or with another quality of service."""
         if path[0] == TOPIC and path != (TOPIC, FILTER_SIZE):
             self._restart()
 
     def enabled_changed(self) -> None:
-        """Start or stop listening."""
+        """Subscribe or unsubscribe."""
         self._restart()
 
     def frames_changed(self) -> None:
@@ -214,20 +214,20 @@ class TopicDisplay(DataDisplay, ABC):
         self._try_waiting()
 
     def time_changed(self) -> None:
-        """Show what came while time stood still."""
+        """Show the messages that were received while time was paused."""
         self._try_waiting()
         while self._held and not self.host.time.paused:
             self._offer(self._held.popleft())
 
     def time_reset(self) -> None:
-        """Show nothing until messages come again."""
+        """Show nothing until new messages arrive."""
         self.last = None
         self._waiting.clear()
         self._held.clear()
         self.reset()
 
     def fixed_frame_changed(self) -> bool:
-        """Whether the Fixed Frame has changed since this was asked last."""
+        """Return whether the Fixed Frame has changed since the last call."""
         before, self._fixed_frame = self._fixed_frame, self.host.frames.fixed_frame
         return before != self._fixed_frame
 
@@ -246,7 +246,7 @@ class TopicDisplay(DataDisplay, ABC):
         if not topic:
             self.say(self.TOPIC_ROW, "error", phrase("Error subscribing: Empty topic name"))
             return
-        from linkwright.graph import SubscriptionEventCallbacks  # here: a robot alone has no topics
+        from linkwright.graph import SubscriptionEventCallbacks  # here, because the view of a robot has no topics
 
         try:
             self._subscription = self.context.node.create_subscription(
@@ -298,7 +298,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._tell_count()
 
     def _tell_count(self) -> None:
-        """Show how many messages came, or why there are none; repeated while there are none."""
+        """Show the number of messages, or why there are none; repeated while there are none."""
         if self._count > 0:
             seconds = time.monotonic() - self._since
             text = phrase("{count} messages received", count=self._count)
@@ -315,7 +315,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._tell_count_later()
 
     def _is_awaited(self) -> bool:
-        """Whether messages come only on occasion, and somebody is there to publish them."""
+        """Whether messages are rare and the topic has a publisher for them."""
         message, topic, _ = self.subscription()
         publishers = self.context.published.publishers(topic)
         return self.OCCASIONAL and self._incompatibility is None and any(kind == message for _, kind in publishers)
@@ -329,23 +329,23 @@ class TopicDisplay(DataDisplay, ABC):
             self._telling = asyncio.get_running_loop().call_later(_COUNT_PERIOD, tell)
 
     def _silence(self) -> Phrase:
-        """The reason why nothing is received, as far as the graph knows, and topics that have such messages."""
+        """Return the reason why no messages arrive, as far as the graph knows, and topics of the same type."""
         message, topic, _ = self.subscription()
         publishers = self.context.published.publishers(topic)
         types = {topic_type for _, topic_type in publishers}
         if types and message not in types:
             return phrase("the topic carries {types}, not {message}", types=joined(sorted(types)), message=message)
         if publishers:
-            return phrase("nothing came yet from {nodes}", nodes=joined(sorted({name for name, _ in publishers})))
+            return phrase("no message arrived yet from {nodes}", nodes=joined(sorted({name for name, _ in publishers})))
         there = self.context.published.of_type(message)
         if there:
-            from difflib import SequenceMatcher  # here, because most topics are there
+            from difflib import SequenceMatcher  # here, because most topics have a publisher
 
             there = sorted(there, key=lambda name: -SequenceMatcher(None, topic, name).ratio())[:_MOST_OTHERS]
             return phrase(
-                "nobody publishes the topic; there is {message} on {topics}", message=message, topics=joined(there)
+                "the topic has no publisher; there is {message} on {topics}", message=message, topics=joined(there)
             )
-        return phrase("nobody publishes the topic")
+        return phrase("the topic has no publisher")
 
     # --- messages ----------------------------------------------------------------------------------------------
 
@@ -397,7 +397,7 @@ class TopicDisplay(DataDisplay, ABC):
         return True
 
     def _could_not_place(self, reason: Phrase, stamp_ns: int, *, is_late: bool) -> None:
-        """Report that a message has no transform; if it is only late, once nothing could be placed for a while."""
+        """Report a message without a transform; if it is only late, after a while without placed messages."""
         if not is_late:
             self.say(TRANSFORM, "error", reason)
             return
@@ -406,20 +406,20 @@ class TopicDisplay(DataDisplay, ABC):
             self._late = asyncio.get_running_loop().call_later(_LATE, self._tell_late)
 
     def _with_clocks(self, reason: Phrase, stamp_ns: int) -> Phrase:
-        """The reason, with advice about clocks where the stamp of a message is far from the time here."""
+        """Return the reason, with advice about clocks if the message's stamp is far from the local time."""
         ahead = (stamp_ns - self.context.node.get_clock().now().nanoseconds) * 1e-9
         if abs(ahead) < _OTHER_CLOCK:
             return reason
         if ahead > 0:
             return phrase(
-                "The message is stamped {seconds:.0f} s after the time here: look at the clocks of both computers "
-                "and at use_sim_time of their nodes. {reason}",
+                "The message's stamp is {seconds:.0f} s after the local time: check the clocks of both "
+                "computers and use_sim_time of their nodes. {reason}",
                 seconds=ahead,
                 reason=reason,
             )
         return phrase(
-            "The message is stamped {seconds:.0f} s before the time here: look at the clocks of both computers "
-            "and at use_sim_time of their nodes. {reason}",
+            "The message's stamp is {seconds:.0f} s before the local time: check the clocks of both computers "
+            "and use_sim_time of their nodes. {reason}",
             seconds=-ahead,
             reason=reason,
         )
@@ -435,7 +435,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._late = None
 
     def _take(self, message: Any, pose: Pose | None) -> None:
-        """Show a message. An unexpected failure must not stop those that come after it."""
+        """Show a message. An unexpected failure must not stop the following ones."""
         self.last = message
         try:
             self.take(message, pose)
@@ -467,9 +467,9 @@ class _Shown:
 
 
 class RecentDisplay(TopicDisplay):
-    """Shows the content of each of the last messages, posed where its frame was at its time.
+    """Shows the content of each of the last messages, at its frame's pose at the message's time.
 
-    A subclass says how many with the property at `LENGTH` (0 for all of them); without one it is a single message.
+    A subclass names the property with their number in `LENGTH` (0 for all of them); without one it shows one message.
     """
 
     LENGTH: ClassVar[Path | None] = None
@@ -484,7 +484,7 @@ class RecentDisplay(TopicDisplay):
 
     @abstractmethod
     def content(self, message: Any) -> DataContent | None:
-        """The content of a message, in the frame of `frame_of`; None for nothing new."""
+        """Return the content of a message, in the frame of `frame_of`, or None to ignore it."""
 
     def take(self, message: Any, pose: Pose | None) -> None:
         """Show a message, and drop the oldest one."""
@@ -502,7 +502,7 @@ class RecentDisplay(TopicDisplay):
         self._send(self._shown[-1])
 
     def changed(self, path: Path) -> None:
-        """Show as many messages as are asked for."""
+        """Show as many messages as the property sets."""
         super().changed(path)
         if path == self.LENGTH:
             length = self._length()
@@ -513,21 +513,21 @@ class RecentDisplay(TopicDisplay):
                 self._send(shown)
 
     def reset(self) -> None:
-        """Forget all of them."""
+        """Forget all messages."""
         self._shown.clear()
         self._number = 0
         super().reset()
 
     def refuse(self, text: str) -> None:
-        """Show what is wrong with the last message."""
+        """Show the problem of the last message."""
         self.say(_MESSAGE, "error", text)
 
     def accept(self) -> None:
-        """Clear what the status said of the previous message."""
+        """Clear the problem of the previous message."""
         self.unsay(_MESSAGE)
 
     def is_finite(self, *numbers: ArrayLike) -> bool:
-        """Whether all are finite; the status says so if not."""
+        """Return whether all numbers are finite, and show in the status if they are not."""
         if all(np.isfinite(number).all() for number in numbers):
             self.accept()
             return True

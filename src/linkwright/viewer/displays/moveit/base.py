@@ -23,11 +23,11 @@ from linkwright.viewer.web.files import MeshIndex
 _URDF = "URDF"
 _JOINTS = "Joints"
 STATE = "State"
-"""The status row of what is wrong with a state of the robot."""
+"""The status row for problems with a state of the robot."""
 
 
 class MoveItDisplay(StoredMarkersDisplay):
-    """A display of MoveIt. A subclass draws in `draw`, which is called when the robot or a property is another."""
+    """A display of MoveIt. A subclass draws in `draw`, which is called when the robot or a property changes."""
 
     DRAWN_AS = "rviz_default_plugins/MarkerArray"
 
@@ -41,10 +41,10 @@ class MoveItDisplay(StoredMarkersDisplay):
     # --- what subclasses override ------------------------------------------------------------------------------
 
     def draw(self) -> None:
-        """Draw all anew with `put`, and call `drawn`."""
+        """Draw all markers again with `put`, and call `drawn`."""
 
     def description_topic(self) -> str:
-        """The topic of the robot's description."""
+        """Return the topic of the robot's description."""
         return self.properties.text(DESCRIPTION).strip()
 
     # --- what subclasses call ----------------------------------------------------------------------------------
@@ -61,12 +61,12 @@ class MoveItDisplay(StoredMarkersDisplay):
         self._groups[group] = now
 
     def drawn(self) -> None:
-        """Send what `put` has changed, and show in the status which frames cannot be placed."""
+        """Send the markers of `put`, and show in the status which frames cannot be placed."""
         self.show_markers()
         self._tell_frames()
 
     def say_unknown(self, joints: list[str]) -> None:
-        """Show in the status which joints of a state the robot does not have."""
+        """Show in the status the joints of a state that the robot does not have."""
         if joints:
             names, more = quoted_names(joints[:5]), len(joints) - 5
             text = phrase("The robot has no joint {names}", names=names)
@@ -79,26 +79,26 @@ class MoveItDisplay(StoredMarkersDisplay):
     # --- life --------------------------------------------------------------------------------------------------
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Type and topic of what it listens to."""
+        """Return the type and topic to subscribe to."""
         return self.MESSAGE, self.properties.text(*self.TOPIC).strip(), QoSProfile(depth=10)
 
     def start(self) -> None:
-        """Listen to the description, too."""
+        """Subscribe to the description, too."""
         super().start()
         self._follow()
 
     def stop(self) -> None:
-        """Stop listening."""
+        """Unsubscribe."""
         self._descriptions.close()
         super().stop()
 
     def enabled_changed(self) -> None:
-        """Listen only while it is enabled."""
+        """Subscribe only while it is enabled."""
         super().enabled_changed()
         self._follow()
 
     def changed(self, path: Path) -> None:
-        """Listen to another topic, follow another description, or draw anew."""
+        """Subscribe to another topic, follow another description, or draw again."""
         if path == self.TOPIC:
             self._restart()
             self._follow()
@@ -116,12 +116,12 @@ class MoveItDisplay(StoredMarkersDisplay):
         self._tell_frames()
 
     def time_changed(self) -> None:
-        """Show what came while time stood still."""
+        """Show the messages that were received while time was paused."""
         self._descriptions.go_on()
         super().time_changed()
 
     def reset(self) -> None:
-        """Forget what is drawn."""
+        """Forget all markers."""
         self._groups.clear()
         self._store.clear()
         self.show_markers()
@@ -165,7 +165,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         self.draw()
 
     def robot_changed(self) -> None:
-        """The robot was replaced; `draw` is called after."""
+        """Handle another robot; `draw` is called later."""
 
     def _tell_frames(self) -> None:
         frames = {shape.frame for shapes in self._groups.values() for shape in shapes.values()}

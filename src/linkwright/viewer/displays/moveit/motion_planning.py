@@ -1,4 +1,4 @@
-"""moveit_rviz_plugin/MotionPlanning, as far as it shows."""
+"""moveit_rviz_plugin/MotionPlanning, without planning."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ _REQUEST_SPEC = PropertySpec(
 
 
 class MotionPlanningDisplay(PlanningSceneDisplay):
-    """The planning scene, the motions that are planned in it, and where the last one begins and ends.
+    """The planning scene, the motions that are planned in it, and the first and last state of the last one.
 
-    Nothing is planned: what asks for plans in RViz's panel is kept in the file and has no rows.
+    It does not plan: properties for planning requests are kept in the file and have no rows.
     """
 
     CLASS = "moveit_rviz_plugin/MotionPlanning"
@@ -44,28 +44,28 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._motions = SideTopic(host, "moveit_msgs/msg/DisplayTrajectory", self._player.play)
 
     def schema(self) -> Schema:
-        """The properties of the scene and of motions."""
+        """Return the properties of the scene and of motions."""
         path = PropertySpec(PATH, "group", description="The motions.", children=path_specs(self.link_names))
         return (*super().schema(), _REQUEST_SPEC, path)
 
     def start(self) -> None:
-        """Listen to motions, too."""
+        """Subscribe to motions, too."""
         super().start()
         self._follow_motions()
 
     def stop(self) -> None:
-        """Stop listening and playing."""
+        """Unsubscribe, and stop playing."""
         self._motions.close()
         self._player.forget()
         super().stop()
 
     def enabled_changed(self) -> None:
-        """Listen only while it is enabled."""
+        """Subscribe only while it is enabled."""
         super().enabled_changed()
         self._follow_motions()
 
     def changed(self, path: Path) -> None:
-        """Listen to other motions; begin again when the motion is to be repeated from now on."""
+        """Subscribe to other motions; restart the motion if it loops from now on."""
         if path == (PATH, TRAJECTORY_TOPIC):
             self._player.forget()
             self._follow_motions()
@@ -73,7 +73,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._player.property_changed(path)
 
     def time_changed(self) -> None:
-        """Show what came while time stood still."""
+        """Show the messages that were received while time was paused."""
         super().time_changed()
         self._motions.go_on()
 

@@ -1,9 +1,8 @@
-"""Octrees as the library OctoMap writes them into octomap_msgs/msg/Octomap.
+"""Octrees as OctoMap's library writes them into octomap_msgs/msg/Octomap.
 
 Both forms go down from the root, a node before its children, and the first child first. The binary form has two bits
-for each child of an inner node: free, occupied, or an inner node itself. The full form has a float with the logarithm
-of the odds that a node is occupied, whatever else the class of the tree keeps of a node, and a byte that says which
-children there are.
+for each child of an inner node: free, occupied, or an inner node itself. The full form has a float with the log-odds
+that a node is occupied, further data of the tree's class, and a byte with a bit for each child that exists.
 """
 
 from __future__ import annotations
@@ -26,14 +25,14 @@ _FULL_NODES = {"OcTree": 4, "ColorOcTree": 7}
 """Bytes of a node, by the class of the tree."""
 
 _CLAMPED = {_FREE: 0.1192, _OCCUPIED: 0.971}
-"""The probabilities that the binary form stands for: OctoMap's clamping thresholds."""
+"""The probabilities that the binary form encodes: OctoMap's clamping thresholds."""
 
 MOST_CELLS = 1_000_000
 """The largest number of cells drawn."""
 
 
 class BadOctreeError(ValueError):
-    """The data is no octree; the text says why."""
+    """The data is not an octree; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,12 +50,12 @@ class Cells:
     probabilities: NDArray[np.float64]
 
     def chosen(self, mask: NDArray[np.bool_]) -> Cells:
-        """The cells where the mask is set."""
+        """Return the cells that a mask selects."""
         return Cells(self.centers[mask], self.sizes[mask], self.probabilities[mask])
 
 
 def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> Cells:
-    """The leaves of an octomap_msgs/msg/Octomap, free ones too.
+    """Return the leaves of an octomap_msgs/msg/Octomap, including free ones.
 
     Args:
         data: the data of the message.
@@ -65,7 +64,7 @@ def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> C
         resolution: metres.
 
     Raises:
-        BadOctreeError: the data ends too early or too late, or the class is not known.
+        BadOctreeError: the data ends too early or too late, or the class is unknown.
     """
     if not (math.isfinite(resolution) and resolution > 0.0):
         raise BadOctreeError(phrase("Invalid resolution of the octomap: {resolution}", resolution=resolution))
@@ -100,7 +99,7 @@ def _read_binary(data: bytes, resolution: float) -> Cells:
 
 
 def _leaves_of(inner: NDArray[np.int64], bits: NDArray[np.int64], resolution: float) -> Cells:
-    """The children of inner nodes, shape (N, 4), that are leaves, by the two bits of each."""
+    """Return the children of inner nodes, shape (N, 4), that are leaves, from the two bits of each."""
     states = bits[:, None] >> 2 * np.arange(8) & 3
     parents, children = np.nonzero((states == _FREE) | (states == _OCCUPIED))
     if len(parents) > MOST_CELLS:
@@ -136,7 +135,7 @@ def _read_full(data: bytes, kind: str, resolution: float) -> Cells:
 
 
 _Node = tuple[int, int, int, int]
-"""The centre of a node and its edge, both in halves of the smallest cells."""
+"""The centre of a node and its edge, both in half edges of the smallest cells."""
 
 _ROOT: _Node = (0, 0, 0, 2 << _DEPTH)
 

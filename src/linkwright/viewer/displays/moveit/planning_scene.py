@@ -37,9 +37,9 @@ _HELD = "Scene Robot holds"
 
 
 class PlanningSceneDisplay(MoveItDisplay):
-    """The robot of a planning scene, what it holds, and what is around it.
+    """The robot of a planning scene, its attached objects, and the objects around it.
 
-    Topics tell what changes, so that move_group is asked for all of the scene when the display begins, and when
+    Topics carry only changes, so the display requests the full scene from move_group when it starts, and when
     move_group appears later.
     """
 
@@ -56,31 +56,31 @@ class PlanningSceneDisplay(MoveItDisplay):
         self._told: set[str] = set()
 
     def schema(self) -> Schema:
-        """The properties, with a box for each link."""
+        """Return the properties, with a check box for each link."""
         return (NAMESPACE_SPEC, DESCRIPTION_SPEC, SCENE_TOPIC_SPEC, GEOMETRY_SPEC, scene_robot_spec(self.link_names))
 
     def description_topic(self) -> str:
-        """The topic in the namespace of move_group, if there is one."""
+        """Return the topic in the namespace of move_group, if there is one."""
         name, namespace = super().description_topic(), self.properties.text(NAMESPACE).strip("/ ")
         return f"/{namespace}/{name}" if namespace and name and not name.startswith("/") else name
 
     def start(self) -> None:
-        """Ask for the scene, too."""
+        """Request the scene, too."""
         super().start()
         self._ask()
 
     def stop(self) -> None:
-        """Stop listening and asking."""
+        """Unsubscribe, and cancel requests."""
         self._leave()
         super().stop()
 
     def enabled_changed(self) -> None:
-        """Ask for the scene again, which was forgotten."""
+        """Request the scene again, which was forgotten."""
         super().enabled_changed()
         self._ask()
 
     def changed(self, path: Path) -> None:
-        """Ask another move_group."""
+        """Request the scene of another move_group."""
         if path == (NAMESPACE,):
             self._restart()
             self._follow()
@@ -90,7 +90,7 @@ class PlanningSceneDisplay(MoveItDisplay):
             self._ask()
 
     def time_reset(self) -> None:
-        """Forget the scene and ask for it."""
+        """Forget the scene, and request it."""
         super().time_reset()
         self._ask()
 
@@ -102,13 +102,13 @@ class PlanningSceneDisplay(MoveItDisplay):
         super().reset()
 
     def robot_changed(self) -> None:
-        """Take the last state, which may have come before the description."""
+        """Apply the last state, which may have arrived before the description."""
         self.scene.state = JointPositions()
         if self._state is not None:
             self._take_state(self._state)
 
     def take(self, message: Any, pose: Pose | None) -> None:
-        """Take what has changed in the scene, or another one."""
+        """Apply changes of the scene, or another scene."""
         before = self.scene.name
         self.scene.apply(message)
         if self.scene.name != before:
@@ -194,7 +194,7 @@ class PlanningSceneDisplay(MoveItDisplay):
     # --- asking for the whole scene ----------------------------------------------------------------------------
 
     def _ask(self) -> None:
-        """Ask move_group for the scene now or as soon as it is there."""
+        """Request the scene from move_group now or as soon as it is available."""
         self._leave()
         if not self.enabled:
             return

@@ -23,7 +23,7 @@ TRAJECTORY_TOPIC = "Trajectory Topic"
 
 
 def fraction(name: str, default: float, description: str) -> PropertySpec:
-    """An opacity that has a name of its own."""
+    """Return the property of an opacity with a name of its own."""
     return PropertySpec(name, "float", default, description, minimum=0.0, maximum=1.0)
 
 
@@ -31,24 +31,24 @@ DESCRIPTION_SPEC = PropertySpec(
     DESCRIPTION,
     "string",
     "robot_description",
-    "The topic that carries the description of the robot, as std_msgs/msg/String.",
+    "The topic of the robot's description, std_msgs/msg/String.",
 )
 NAMESPACE_SPEC = PropertySpec(
-    NAMESPACE, "string", "", "The namespace of move_group, which is asked for the whole scene, and of the description."
+    NAMESPACE, "string", "", "The namespace of the description and of move_group, which gives the full scene."
 )
 SCENE_TOPIC_SPEC = PropertySpec(
     SCENE_TOPIC,
     "topic",
     "/monitored_planning_scene",
-    "The topic of scenes, and of what changes in them.",
+    "The topic of planning scenes and their changes.",
     messages=("moveit_msgs/msg/PlanningScene",),
 )
 GEOMETRY_SPEC = PropertySpec(
     GEOMETRY,
     "group",
-    description="What is around the robot.",
+    description="The objects around the robot.",
     children=(
-        PropertySpec("Scene Name", "string", "(noname)", "The name that the scene was given.", read_only=True),
+        PropertySpec("Scene Name", "string", "(noname)", "The name of the scene.", read_only=True),
         PropertySpec("Show Scene Geometry", "bool", True, "Draw the objects and the octomap."),
         fraction("Scene Alpha", 0.9, "Opacity of objects without a colour of their own, and of the octomap."),
         PropertySpec("Scene Color", "color", "#32e632", "Colour of objects that have none of their own."),
@@ -58,15 +58,15 @@ GEOMETRY_SPEC = PropertySpec(
     ),
 )
 ATTACHED = PropertySpec(
-    "Attached Body Color", "color", "#963296", "Colour of what the robot holds, where that has none of its own."
+    "Attached Body Color", "color", "#963296", "Colour of attached bodies that have none of their own."
 )
 
 
 def visibility(visual: str, collision: str) -> tuple[PropertySpec, ...]:
-    """The boxes for the visuals and the collisions of links."""
+    """Return the check boxes for the visuals and the collisions of links."""
     return (
-        PropertySpec(visual, "bool", True, "Draw what the robot looks like."),
-        PropertySpec(collision, "bool", False, "Draw the shapes that contacts are worked out with."),
+        PropertySpec(visual, "bool", True, "Draw the visual geometry."),
+        PropertySpec(collision, "bool", False, "Draw the collision geometry."),
     )
 
 
@@ -74,7 +74,7 @@ SHOWN = visibility("Show Robot Visual", "Show Robot Collision")
 
 
 def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
-    """The group of the robot in the scene."""
+    """Return the group of the robot in the scene."""
     return PropertySpec(
         ROBOT,
         "group",
@@ -84,7 +84,7 @@ def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
 
 
 def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
-    """The properties of playing a motion."""
+    """Return the properties for playing a motion."""
     return (
         PropertySpec(
             TRAJECTORY_TOPIC,
@@ -99,13 +99,15 @@ def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
             "State Display Time",
             "string",
             "3x",
-            "How long each state is shown: seconds, such as 0.05s; so many times faster than the motion, such as 3x; "
+            "How long each state is shown: seconds, such as 0.05s; a factor of the motion's speed, such as 3x; "
             "or REALTIME.",
         ),
-        PropertySpec("Loop Animation", "bool", False, "Begin again at the end."),
+        PropertySpec("Loop Animation", "bool", False, "Restart at the end."),
         PropertySpec("Show Trail", "bool", False, "Draw the robot in all its states."),
-        PropertySpec("Trail Step Size", "int", 1, "Each how manieth state the trail has.", minimum=1),
-        PropertySpec("Interrupt Display", "bool", False, "A new motion does not wait for the end of the one before."),
+        PropertySpec("Trail Step Size", "int", 1, "Draw every n-th state of the trail.", minimum=1),
+        PropertySpec(
+            "Interrupt Display", "bool", False, "Show a new motion without waiting for the end of the one before."
+        ),
         PropertySpec("Robot Color", "color", "#963296", "Colour of the robot that moves."),
         PropertySpec("Color Enabled", "bool", False, "Draw the robot that moves in that colour."),
         links_spec(links),
@@ -113,7 +115,7 @@ def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
 
 
 def links_spec(links: Sequence[str]) -> PropertySpec:
-    """The boxes of links with shapes."""
+    """Return the check boxes of links with shapes."""
     boxes = tuple(
         PropertySpec(name, "bool", True, "Draw this link.", children=(alpha("Opacity of this link."),))
         for name in links
@@ -124,20 +126,20 @@ def links_spec(links: Sequence[str]) -> PropertySpec:
 
 
 def rgb(text: str) -> tuple[float, float, float]:
-    """Red, green and blue, from 0 to 1, of a colour such as ``#32e632``."""
+    """Return red, green and blue, from 0 to 1, of a colour such as ``#32e632``."""
     red, green, blue = (int(text[start : start + 2], 16) / 255.0 for start in (1, 3, 5))
     return red, green, blue
 
 
 def rgba(message: object) -> Color:
-    """The components of a std_msgs/msg/ColorRGBA, and alpha."""
+    """Return the components of a std_msgs/msg/ColorRGBA, and alpha."""
     parts = (getattr(message, part) for part in "rgba")
     red, green, blue, opacity = (min(max(float(part), 0.0), 1.0) for part in parts)
     return red, green, blue, opacity
 
 
 def link_alphas(properties: PropertyStore, robot: PosableRobot, above: Path = ()) -> dict[str, float]:
-    """The opacity of each link, 0 for those that are switched off."""
+    """Return the opacity of each link, 0 for disabled ones."""
     found = {}
     for name in robot.shaped_links:
         if name != ALL_LINKS:
@@ -149,11 +151,11 @@ def link_alphas(properties: PropertyStore, robot: PosableRobot, above: Path = ()
 def look(
     properties: PropertyStore, robot: PosableRobot, namespace: str, above: Path = (), color: str | None = None
 ) -> Look:
-    """The look of a robot by the properties below a path.
+    """Return the look of a robot from the properties below a path.
 
     Args:
         properties: the display's properties.
-        robot: the robot whose links have boxes.
+        robot: the robot whose links have check boxes.
         namespace: the markers' namespace.
         above: the path of the group that has the properties.
         color: the colour of all links, such as ``#963296``; None for their own.

@@ -1,4 +1,4 @@
-"""A robot as markers in a state from a message: its joint positions place its links, and not tf."""
+"""A robot as markers in a state from a message: its joint positions place its links, not tf."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from linkwright.viewer.robot import SceneBuilder
 from linkwright.viewer.web.files import MeshIndex
 
 _RED: Color = (1.0, 0.0, 0.0, 1.0)
-"""RViz's of shapes without a colour."""
+"""RViz's colour of shapes without one."""
 
 
 @dataclass(slots=True)
@@ -39,20 +39,20 @@ class JointPositions:
     frame: str = ""
 
     def copy(self) -> JointPositions:
-        """A copy, to be changed."""
+        """Return a copy, for changes."""
         return JointPositions(dict(self.values), self.root_in_frame, self.frame)
 
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """Colours and opacity of a robot, and which links and shapes are drawn.
+    """Colours and opacity of a robot, and the links and shapes to draw.
 
     Attributes:
         namespace: the markers' namespace.
-        visual: draw what it looks like.
-        collision: draw the shapes that contacts are worked out with.
+        visual: draw the visual geometry.
+        collision: draw the collision geometry.
         alpha: opacity of all links.
-        alphas: opacity of some links, which is multiplied with that of all; links of none are left out.
+        alphas: opacity of some links, which is multiplied with that of all; links with 0 are left out.
         color: red, green and blue of all links; None for their own.
         links: the colours of some links.
         only: the links that are drawn; None for all.
@@ -69,7 +69,7 @@ class Look:
 
 
 class UnusableStateError(ValueError):
-    """A state of the robot cannot be shown; the text says why."""
+    """A state of the robot cannot be shown; the text gives the reason."""
 
 
 class PosableRobot:
@@ -82,7 +82,7 @@ class PosableRobot:
     Attributes:
         root: the name of its root link, which is that of its frame.
         shaped_links: the names of links with shapes, in alphabetic order.
-        problems: by link, what is wrong with the files that it names.
+        problems: by link, the problems with its files.
     """
 
     def __init__(self, robot: Robot, index: MeshIndex) -> None:
@@ -100,15 +100,15 @@ class PosableRobot:
         self.root = self._tree.link_names[0]
 
     def has_link(self, name: str) -> bool:
-        """Whether it has a link of this name."""
+        """Return whether it has a link of this name."""
         return name in self._links
 
     def has_joint(self, name: str) -> bool:
-        """Whether it has a joint of this name."""
+        """Return whether it has a joint of this name."""
         return name in self._joints
 
     def links_moved_by(self, joints: AbstractSet[str]) -> set[str]:
-        """The links whose poses depend on one of these joints."""
+        """Return the links whose poses depend on one of these joints."""
         pending = [self._children[name] for name in joints if name in self._children]
         found: set[str] = set()
         while pending:
@@ -122,7 +122,7 @@ class PosableRobot:
         """Write the joint positions of a moveit_msgs/msg/RobotState into a state.
 
         Returns:
-            The joints that it names and the robot does not have.
+            The joints of the message that the robot does not have.
 
         Raises:
             UnusableStateError: lists of different lengths, or numbers that are not finite.
@@ -140,7 +140,7 @@ class PosableRobot:
                 )
             )
         for name, transform in zip(several.joint_names, several.transforms, strict=True):
-            if name not in self._joints:  # the virtual joint of an SRDF, by which the root is in the world
+            if name not in self._joints:  # the virtual joint of an SRDF, which places the root in the world
                 self.set_root(state, several.header.frame_id, transform)
         return unknown
 
@@ -154,7 +154,7 @@ class PosableRobot:
         state.root_in_frame = (x, y, z, qx, qy, qz, qw)
 
     def set_joints(self, state: JointPositions, names: Any, positions: Any) -> list[str]:
-        """Write positions of joints into a state; as `set_state`."""
+        """Write positions of joints into a state; see `set_state`."""
         if len(names) != len(positions):
             raise UnusableStateError(
                 phrase(
@@ -174,7 +174,7 @@ class PosableRobot:
         return unknown
 
     def link_poses(self, state: JointPositions) -> dict[str, Transform]:
-        """The poses of the links in the frame of a state."""
+        """Return the poses of the links in the frame of a state."""
         matrices = self._tree.forward(state.values)
         turns = quaternion_from_matrix(matrices[:, :3, :3]).tolist()
         places = matrices[:, :3, 3].tolist()
@@ -184,11 +184,11 @@ class PosableRobot:
         }
 
     def frame_of(self, state: JointPositions) -> str:
-        """The frame that the poses of links are in."""
+        """Return the frame of the links' poses."""
         return state.frame or self.root
 
     def markers(self, state: JointPositions, look: Look) -> list[MarkerShape]:
-        """The markers of the robot in a state."""
+        """Return the markers of the robot in a state."""
         frame = self.frame_of(state)
         made: list[MarkerShape] = []
         for name, pose in self.link_poses(state).items():
@@ -219,7 +219,7 @@ class _PoseOf:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """What a marker is called, and where it is."""
+    """The namespace, name, frame and pose of a marker."""
 
     namespace: str
     name: str
@@ -259,7 +259,7 @@ def _in_link(shape: Shape) -> Transform:
 
 
 def _own_color(shape: Shape) -> Color:
-    """The colour of the description. It only tints a mesh's own materials, so that white leaves them."""
+    """Return the description's colour. It tints a mesh's own materials, so that white does not change them."""
     if shape.kind == "mesh" and not (shape.format or "").startswith("stl"):
         alpha = shape.color[3] if shape.color else 1.0
         return (1.0, 1.0, 1.0, alpha)

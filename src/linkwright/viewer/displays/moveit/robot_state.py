@@ -41,7 +41,7 @@ class RobotStateDisplay(MoveItDisplay):
         self._attached = Scene()
 
     def schema(self) -> Schema:
-        """The properties, with a box for each link."""
+        """Return the properties, with a check box for each link."""
         return (
             DESCRIPTION_SPEC,
             PropertySpec(_TOPIC, "topic", "display_robot_state", "The topic of states.", messages=(self.MESSAGE,)),

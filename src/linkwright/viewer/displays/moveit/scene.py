@@ -1,4 +1,4 @@
-"""A planning scene, kept up to date with what changes in it."""
+"""A planning scene that is kept up to date with changes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ OCTOMAP = "<octomap>"
 
 @dataclass(frozen=True, slots=True)
 class SceneObject:
-    """A moveit_msgs/msg/CollisionObject, with the names that it has there."""
+    """A moveit_msgs/msg/CollisionObject, with the same names."""
 
     id: str
     frame: str
@@ -39,23 +39,23 @@ class SceneObject:
 
     @classmethod
     def of(cls, message: Any) -> SceneObject:
-        """The object of a message."""
+        """Return the object of a message."""
         shapes: dict[str, Any] = {name: tuple(getattr(message, name)) for name in _SHAPES}
         return cls(message.id, message.header.frame_id.removeprefix("/"), message.pose, **shapes)
 
     def with_more(self, message: Any) -> SceneObject:
-        """The object with the shapes of a message added."""
+        """Return the object with the shapes of a message added."""
         shapes: dict[str, Any] = {name: (*getattr(self, name), *getattr(message, name)) for name in _SHAPES}
         return replace(self, **shapes)
 
     def moved(self, message: Any) -> SceneObject:
-        """The object at the pose of a message."""
+        """Return the object at the pose of a message."""
         poses: dict[str, Any] = {name: tuple(found) for name in _POSES if (found := getattr(message, name))}
         return replace(self, frame=message.header.frame_id.removeprefix("/"), pose=message.pose, **poses)
 
     @property
     def has_shapes(self) -> bool:
-        """Whether there is something to draw."""
+        """Whether it has shapes to draw."""
         return bool(self.primitives or self.meshes or self.planes)
 
 
@@ -73,11 +73,11 @@ class PlacedCells:
 
 
 class Scene:
-    """The objects around a robot, those that it holds, and its joint positions.
+    """The objects around a robot, the attached ones, and its joint positions.
 
     Attributes:
         name: the name of the scene.
-        is_whole: whether all of it is known, and not only what changed since somebody listened.
+        is_whole: whether the full scene is known, and not only the changes since the subscription.
         state: the robot's state.
         octomap: its cells, if there is one.
         problems: the problems, by their subject.
@@ -94,7 +94,7 @@ class Scene:
         self._colors: dict[str, Color] = {}
 
     def apply(self, message: Any) -> None:
-        """Apply a moveit_msgs/msg/PlanningScene, a whole scene or a difference, without the joints of the robot."""
+        """Apply a moveit_msgs/msg/PlanningScene, a full scene or a difference, without the joints of the robot."""
         if not message.is_diff:
             self._objects.clear()
             self._held.clear()
@@ -121,7 +121,7 @@ class Scene:
             self._attach(each)
 
     def object_markers(self, namespace: str, color: Color) -> list[MarkerShape]:
-        """The objects around the robot."""
+        """Return the markers of the objects around the robot."""
         made: list[MarkerShape] = []
         for each in self._objects.values():
             chosen = self._colors.get(each.id, color)
@@ -131,7 +131,7 @@ class Scene:
     def held_markers(
         self, robot: PosableRobot, state: JointPositions, namespace: str, color: Color
     ) -> list[MarkerShape]:
-        """The objects that the robot holds, in a state of it."""
+        """Return the markers of the attached objects, in a state of the robot."""
         links = robot.link_poses(state)
         made: list[MarkerShape] = []
         for link, each in self._held.values():
@@ -166,7 +166,7 @@ class Scene:
             self.problems.pop(name, None)
         elif operation == _MOVE:
             if known is None:
-                self.problems[name] = phrase("Object '{name}' is to be moved and is not there", name=name)
+                self.problems[name] = phrase("Object '{name}' cannot be moved: it does not exist", name=name)
             else:
                 self._objects[name] = known.moved(message)
         elif operation == _APPEND and known is not None:

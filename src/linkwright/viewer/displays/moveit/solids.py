@@ -24,21 +24,21 @@ Form = tuple[MarkerKind, Sequence[float], NDArray[np.float32]]
 _NO_POINTS = np.empty((0, 3), dtype=np.float32)
 
 _PLANE_EDGE = 10.0
-"""A plane has no end; a square of so many metres stands for it."""
+"""Edge of the square that represents a plane, which is infinite, in metres."""
 
 _ROUND = 24
 """Corners of the circle of a cone."""
 
 
 class BadObjectError(ValueError):
-    """A collision object cannot be drawn; the text says why."""
+    """A collision object cannot be drawn; the text gives the reason."""
 
 
 def object_markers(message: Any, namespace: str, color: Color, *, frame: str, base: Transform) -> list[MarkerShape]:
-    """The markers of a moveit_msgs/msg/CollisionObject.
+    """Return the markers of a moveit_msgs/msg/CollisionObject.
 
     Args:
-        message: the object. A pose that was not given is no translation and no rotation.
+        message: the object. A pose that is not set means no translation and no rotation.
         namespace: the markers' namespace.
         color: the colour of all its shapes.
         frame: the frame that the markers follow.
@@ -87,14 +87,14 @@ def _primitive(shape: Any) -> Form:
     if len(sizes) < count:
         raise BadObjectError(
             phrase(
-                "A primitive of type {type} needs {count} dimensions and has {sizes}",
+                "A primitive of type {type} needs {count} dimensions, but has {sizes}",
                 type=shape.type,
                 count=count,
                 sizes=len(sizes),
             )
         )
     if any(size < 0.0 for size in sizes):
-        raise BadObjectError(phrase("A dimension is below zero"))
+        raise BadObjectError(phrase("A dimension is negative"))
     return make(shape, sizes)
 
 
@@ -121,7 +121,7 @@ def _cone(_: Any, sizes: list[float]) -> Form:
 
 
 def _prism(shape: Any, sizes: list[float]) -> Form:
-    """A polygon extruded to a height, half of it below; corners go round it."""
+    """Return a polygon extruded to a height, half of it below; its corners are in order."""
     flat = [(point.x, point.y) for point in shape.polygon.points]
     if len(flat) < 3:
         raise BadObjectError(phrase("The polygon of a prism has {corners} corners", corners=len(flat)))
@@ -145,7 +145,7 @@ _PRIMITIVES: dict[int, tuple[Callable[[Any, list[float]], Form], int]] = {
     4: (_cone, 2),
     5: (_prism, 1),
 }
-"""By shape_msgs' numbers, with how many dimensions each needs."""
+"""By shape_msgs' numbers, with the number of dimensions of each."""
 
 
 def _mesh(mesh: Any) -> Form:
@@ -156,7 +156,7 @@ def _mesh(mesh: Any) -> Form:
     if places.max() >= len(vertices):
         raise BadObjectError(
             phrase(
-                "A triangle of a mesh has vertex {vertex}, and there are {vertices}",
+                "A triangle of a mesh refers to vertex {vertex}, but there are {vertices}",
                 vertex=places.max(),
                 vertices=len(vertices),
             )
@@ -165,7 +165,7 @@ def _mesh(mesh: Any) -> Form:
 
 
 def _plane(plane: Any) -> Form:
-    """A square about the point of a x + b y + c z + d = 0 that is nearest to the origin."""
+    """Return a square about the point of a x + b y + c z + d = 0 that is nearest to the origin."""
     normal, distance = np.array(plane.coef[:3], dtype=np.float64), float(plane.coef[3])
     length = float(np.linalg.norm(normal))
     if not math.isfinite(length) or length == 0.0:

@@ -23,7 +23,7 @@ _LOOP = "Loop Animation"
 _LEAST_WAIT = 0.005
 _MOST_WAYPOINTS = 100_000
 _MOST_IN_TRAIL = 200
-"""The largest number of states drawn at once; the steps of a trail grow until it has no more."""
+"""The largest number of states drawn at once; longer trails are drawn with larger steps."""
 
 READ_AS = "3x"
 """The value used for a State Display Time that cannot be read."""
@@ -31,7 +31,7 @@ READ_AS = "3x"
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """States that a robot goes through.
+    """The states of a robot's motion.
 
     Attributes:
         states: the first of them is that of the start.
@@ -47,7 +47,7 @@ class Motion:
 
 
 def read_motion(robot: PosableRobot, message: Any) -> Motion:
-    """The states of a moveit_msgs/msg/DisplayTrajectory.
+    """Return the states of a moveit_msgs/msg/DisplayTrajectory.
 
     Raises:
         UnusableStateError: it has no states, too many, or some that cannot be shown.
@@ -77,7 +77,7 @@ def read_motion(robot: PosableRobot, message: Any) -> Motion:
 
 
 def _set_root(robot: PosableRobot, state: JointPositions, trajectory: Any, point: Any) -> None:
-    """Set the root by a point of a trajectory_msgs/msg/MultiDOFJointTrajectory: joints unknown to the robot move it."""
+    """Set the root from a point of a trajectory_msgs/msg/MultiDOFJointTrajectory; unknown joints move it."""
     for name, transform in zip(trajectory.joint_names, point.transforms, strict=False):
         if not robot.has_joint(name):
             robot.set_root(state, trajectory.header.frame_id, transform)
@@ -88,7 +88,7 @@ def _seconds(duration: Any) -> float:
 
 
 def shown_for(text: str, duration: float) -> float:
-    """Seconds that a state is shown for.
+    """Return the seconds that a state is shown.
 
     Args:
         text: the State Display Time.
@@ -110,7 +110,7 @@ class MotionPlayer:
     Args:
         display: the display with the properties.
         above: the path of the group that has these properties.
-        show: called when another state is to be drawn, or none.
+        show: called when the state to draw changes.
     """
 
     def __init__(self, display: MoveItDisplay, above: Path, show: Callable[[], None]) -> None:
@@ -125,16 +125,16 @@ class MotionPlayer:
 
     @property
     def is_playing(self) -> bool:
-        """Whether a state will follow."""
+        """Whether further states follow."""
         return self._timer is not None
 
     @property
     def state(self) -> JointPositions | None:
-        """The state to be drawn, if the motion is not over."""
+        """The state to draw, or None after the end."""
         return self.motion.states[self._place] if self.motion and self.is_playing else None
 
     def play(self, message: Any) -> None:
-        """Play a moveit_msgs/msg/DisplayTrajectory, after what is being played unless that is to be interrupted."""
+        """Play a moveit_msgs/msg/DisplayTrajectory, after the present one unless that is to be interrupted."""
         if self.is_playing and not self._flag("Interrupt Display") and not self._flag(_LOOP):
             self._next = message
             return
@@ -142,17 +142,17 @@ class MotionPlayer:
         self._begin()
 
     def property_changed(self, path: Path) -> None:
-        """Play the last motion again when it is to be repeated from now on."""
+        """Play the last motion again if it loops from now on."""
         if path == (*self._above, _LOOP) and self._flag(_LOOP) and not self.is_playing:
             self.begin_again()
 
     def begin_again(self) -> None:
-        """Play the last motion from its start, as the robot was replaced."""
+        """Restart the last motion, because the robot was replaced."""
         if self._message is not None:
             self._begin()
 
     def forget(self) -> None:
-        """Play nothing."""
+        """Stop, and forget the motion."""
         self._stop()
         self._message = self._next = self.motion = None
 
@@ -239,7 +239,7 @@ class TrajectoryDisplay(MoveItDisplay):
         self._player = MotionPlayer(self, (), self.draw)
 
     def schema(self) -> Schema:
-        """The properties, with a box for each link."""
+        """Return the properties, with a check box for each link."""
         return (DESCRIPTION_SPEC, *path_specs(self.link_names))
 
     def take(self, message: Any, pose: Pose | None) -> None:
@@ -247,7 +247,7 @@ class TrajectoryDisplay(MoveItDisplay):
         self._player.play(message)
 
     def changed(self, path: Path) -> None:
-        """Draw anew; begin again when the motion is to be repeated from now on."""
+        """Draw again; restart the motion if it loops from now on."""
         super().changed(path)
         self._player.property_changed(path)
 
@@ -261,7 +261,7 @@ class TrajectoryDisplay(MoveItDisplay):
         super().reset()
 
     def stop(self) -> None:
-        """Stop listening and playing."""
+        """Unsubscribe, and stop playing."""
         self._player.forget()
         super().stop()
 

@@ -1,4 +1,4 @@
-"""The cells of octrees as markers, and the properties that say which cells and in what colours."""
+"""The cells of octrees as markers, and the properties that select cells and colours."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from linkwright.viewer.protocol.markers import MarkerShape
 _OCCUPIED, _FREE, _ALL = "Occupied Voxels", "Free Voxels", "All Voxels"
 _BY_HEIGHT, BY_PROBABILITY = "Z-Axis", "Cell Probability"
 _LIKELY = 0.5
-"""Cells that are more probably occupied than this are."""
+"""Cells that are occupied with a higher probability."""
 
 VOXEL_RENDERING = PropertySpec(
-    "Voxel Rendering", "enum", _OCCUPIED, "Which cells of the octomap are drawn.", options=(_OCCUPIED, _FREE, _ALL)
+    "Voxel Rendering", "enum", _OCCUPIED, "The cells of the octomap to draw.", options=(_OCCUPIED, _FREE, _ALL)
 )
 VOXEL_COLORING = PropertySpec(
     "Voxel Coloring",
     "enum",
     _BY_HEIGHT,
-    "Whether colours tell how high a cell is, or how probable it is that it is occupied.",
+    "Whether the colour of a cell shows its height or the probability that it is occupied.",
     options=(_BY_HEIGHT, BY_PROBABILITY),
 )
 
 
 def rendered(cells: Cells, rendering: str) -> Cells:
-    """The cells that a value of `VOXEL_RENDERING` asks for."""
+    """Return the cells that a value of `VOXEL_RENDERING` selects."""
     if rendering == _ALL:
         return cells
     return cells.chosen((cells.probabilities > _LIKELY) == (rendering == _OCCUPIED))
@@ -40,7 +40,7 @@ def rendered(cells: Cells, rendering: str) -> Cells:
 def octomap_markers(
     cells: Cells, namespace: str, *, frame: str, base: Transform, alpha: float, by_probability: bool
 ) -> list[MarkerShape]:
-    """Boxes for the cells of an octree, a marker for each of their sizes; hidden ones are left out.
+    """Return boxes for the cells of an octree, a marker for each of their sizes, without hidden ones.
 
     Args:
         cells: in the frame of the tree.
@@ -48,7 +48,7 @@ def octomap_markers(
         frame: the frame that they follow.
         base: the pose of the tree in it.
         alpha: opacity of all.
-        by_probability: colours tell how probable it is that a cell is occupied, and not how high it is.
+        by_probability: whether colours show the probability that a cell is occupied, not its height.
     """
     cells = cells.chosen(_is_seen(cells))
     if not len(cells.sizes):
@@ -90,7 +90,7 @@ _RAINBOW = np.array([colorsys.hsv_to_rgb(0.8 * (1.0 - step / 63.0), 1.0, 1.0) fo
 
 
 def _is_seen(cells: Cells) -> NDArray[np.bool_]:
-    """The cells that have a side without a neighbour of their own size, as a mask."""
+    """Return a mask of the cells with a side without a neighbour of their own size."""
     seen = np.ones(len(cells.sizes), dtype=np.bool_)
     for size in np.unique(cells.sizes):
         mask = cells.sizes == size
@@ -106,11 +106,11 @@ def _is_seen(cells: Cells) -> NDArray[np.bool_]:
 
 _BITS = 20
 _STEPS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2 * _BITS))
-"""The differences between the code of a place and those of its neighbours."""
+"""The differences between the code of a cell and those of its neighbours."""
 
 
 def _codes(places: NDArray[np.int64]) -> NDArray[np.int64]:
-    """A number for each place in the grid of cells of one size; the grid of a tree has 2^16 of them along an axis."""
+    """Return a code for each cell in the grid of cells of one size; a tree's grid has 2^16 of them along an axis."""
     shifted = places + (1 << (_BITS - 1))
     codes: NDArray[np.int64] = shifted[:, 0] << 2 * _BITS | shifted[:, 1] << _BITS | shifted[:, 2]
     return codes

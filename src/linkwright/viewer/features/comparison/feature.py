@@ -1,4 +1,4 @@
-"""Tells pages how two descriptions in one scene differ."""
+"""Sends pages the differences of two descriptions in one scene."""
 
 from __future__ import annotations
 
@@ -55,17 +55,17 @@ class ComparisonFeature(PageFeature):
         """Show pages the differences of two descriptions.
 
         Args:
-            pair: the two; their displays are those of `RvizConfig.for_model` and of `show_old`.
+            pair: the descriptions; their displays are those of `RvizConfig.for_model` and of `show_old`.
             node: publishes the old one and its transforms.
 
         Returns:
-            What takes each new text of the old one.
+            The function to call with each new text of the old one.
         """
         self._pair, self._old = pair, OldRobot(node, self.context.node)
         return self._old.publish
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """The differences, as told last."""
+        """Return the differences that pages received last."""
         message = self._message(manager)
         if message is None:
             return []
@@ -73,7 +73,7 @@ class ComparisonFeature(PageFeature):
         return [message]
 
     def robot_changed(self) -> None:
-        """Compare the robots that are shown now."""
+        """Compare the current robots."""
         if self._pair is None or self._old is None:
             return
         old, new = next(
@@ -93,7 +93,7 @@ class ComparisonFeature(PageFeature):
         self._tell(manager)
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Forget the messages that its pages were sent."""
+        """Forget the messages that its pages received."""
         self._told.pop(manager, None)
 
     def _tell(self, manager: VisualizationManager) -> None:
@@ -118,7 +118,7 @@ class ComparisonFeature(PageFeature):
 
 
 def without_paths(message: ComparedDescriptions) -> ComparedDescriptions:
-    """The comparison for readers without those files: places are texts, without folders above the current one."""
+    """Return the comparison for other readers: places are texts, without folders above the current one."""
     for compared_robot in (message.old, message.new):
         compared_robot.label = _shareable(compared_robot.label)
     for item in message.items:
@@ -133,7 +133,7 @@ def _shareable(name: str) -> str:
 
 
 def _displays(manager: VisualizationManager) -> tuple[RobotModelDisplay | None, RobotModelDisplay | None]:
-    """The displays of the old robot and of the new one."""
+    """Return the displays of the old robot and of the new one."""
     models = manager.robot_models()
     old = next((model for model in models if _topic_of(model) == TOPIC), None)
     return old, next((model for model in models if _topic_of(model) != TOPIC), None)
@@ -153,7 +153,7 @@ def _identity(display: RobotModelDisplay | None) -> str:
 
 
 def _marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[str, Mark], dict[str, Mark]]:
-    """The marks on links of the old robot and of the new one."""
+    """Return the marks on links of the old robot and of the new one."""
     of_old: dict[str, Mark] = {name: "removed" for name in old.links if name not in comparison.links}
     before = {after: name for name, after in comparison.links.items()}
     of_new: dict[str, Mark] = {name: "added" for name in new.links if name not in before}
@@ -170,7 +170,7 @@ def _marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[str, Ma
 
 
 def _links_of_same_shape(comparison: Comparison) -> dict[str, str]:
-    """Links of both, by their names in the old one, whose visuals and collisions are the same."""
+    """Return common links, by their names in the old one, whose visuals and collisions are the same."""
     other = {
         difference.name
         for difference in comparison.differences
@@ -198,10 +198,10 @@ def _item(difference: Difference, old: Robot, new: Robot, pair: Pair) -> Compare
 
 
 def _element(difference: Difference, old: Robot, new: Robot) -> tuple[Literal["link", "joint"], str, bool]:
-    """The link or joint that shows a difference: its kind, its name, and whether only the old robot has it."""
+    """Return the link or joint that shows a difference: its kind, its name, and whether only the old robot has it."""
     name = difference.name
     if difference.subject == "extension":
-        name = name.partition(" ")[2]  # such as that of the link that a <gazebo> refers to
+        name = name.partition(" ")[2]  # such as that of the link to which a <gazebo> refers
     for robot in (new, old):
         things: Mapping[str, Mapping[str, object]] = {"link": robot.links, "joint": robot.joints}
         if difference.subject != "joint" and name in things["link"]:

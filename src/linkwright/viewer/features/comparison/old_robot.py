@@ -1,4 +1,4 @@
-"""The older of two descriptions as a robot of the graph: its text, and its links at the poses of the new one's."""
+"""The older of two descriptions as a robot of the graph, with its links at the poses of the new one's."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ TOPIC = "/old/robot_description"
 class OldRobot:
     """Publishes a description, and transforms that give its joints the positions of another robot's.
 
-    What both have is where it is in the other one; joints that only the old one has stand at zero, or in the middle of
+    Joints that both have follow the other robot; joints that only the old one has are at zero, or in the middle of
     limits without zero.
 
     Args:
-        node: publishes; it need not be seen by other programs, whose robot this is not.
+        node: the node that publishes; other programs need not see it, because this robot is not theirs.
         listener: the node that receives the other robot's joint states.
     """
 
@@ -92,7 +92,7 @@ class OldRobot:
 
 
 def joints_that_follow(old: Robot, new: Robot, same: Mapping[str, str]) -> dict[str, str]:
-    """Joints of the old robot whose positions are those of joints of the new one, by name: both turn, or both slide."""
+    """Return the old robot's joints that follow joints of the new one, by name: both revolute, or both prismatic."""
     return {
         name: twin
         for name, twin in same.items()
@@ -102,7 +102,7 @@ def joints_that_follow(old: Robot, new: Robot, same: Mapping[str, str]) -> dict[
 
 
 def _positions_at_zero(robot: Robot, leaders: Mapping[str, str]) -> dict[str, float]:
-    """Positions of the joints that are given one: all that move, but for those that mimic one of these."""
+    """Return initial positions for all movable joints, except those that mimic one of these."""
     zeros = {joint.name: joint.zero for joint in layout_of(robot, JointSettings()).ranges.values()}
     moving = [joint for joint in robot.joints.values() if joint.type in MOVING_TYPES]
     given = {joint.name for joint in moving if joint.mimic is None or joint.name in leaders}
@@ -114,9 +114,9 @@ def _positions_at_zero(robot: Robot, leaders: Mapping[str, str]) -> dict[str, fl
 
 
 def _anchor(old: Robot, new: Robot, same: Mapping[str, str]) -> tuple[str, NDArray[np.float64]]:
-    """The frame of the new robot that the old one's root hangs on, and the root's pose in it.
+    """Return the new robot's frame to which the old root is attached, and the root's pose in it.
 
-    The link that both have and that is nearest to the old root is in one place; joints before it stand at zero.
+    The common link that is nearest to the old root coincides in both; the joints between have position zero.
     """
     below: dict[str, list[tuple[str, NDArray[np.float64]]]] = {}
     for joint in old.joints.values():

@@ -1,7 +1,7 @@
-"""Editing a robot in the page: the smallest edits of text are shown, and written into the files on request.
+"""Editing a robot in the page: shows the smallest edits of text, and writes them into the files on request.
 
-All pages share one history. What is asked is done one after the other, in a thread: an edit is proven by expanding the
-description again.
+All pages share one history. Requests are handled one after the other, in a thread: an edit is verified by expanding
+the description again.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _AXES = "xyz"
 
 
 class EditingFeature(PageFeature):
-    """Tells pages the editable parts, previews edits, and writes them."""
+    """Sends pages the editable parts, previews edits, and writes them."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -64,7 +64,7 @@ class EditingFeature(PageFeature):
             except (EditRefusedError, LinkwrightError) as error:
                 found = error.diagnostic if isinstance(error, EditRefusedError) else error.diagnostics[0]
                 self._refuse(page, message, found)
-            except Exception as error:  # noqa: BLE001  # a mistake of ours is no reason to edit no more
+            except Exception as error:  # noqa: BLE001  # editing must continue after an error of this program
                 self.context.node.get_logger().error(f"The robot cannot be edited: {type(error).__name__}: {error}")
                 self._refuse(page, message, Diagnostic("EDIT105", Phrase(f"{type(error).__name__}: {error}")))
 
@@ -100,7 +100,7 @@ class EditingFeature(PageFeature):
             raise EditRefusedError(Diagnostic("EDIT101", why_not or phrase("there is no robot")))
         for given in (message.xyz, message.rpy):
             if given is not None and len(given) != len(_AXES):
-                raise EditRefusedError(Diagnostic("EDIT102", phrase("these are no numbers that a robot can have")))
+                raise EditRefusedError(Diagnostic("EDIT102", phrase("these numbers are not valid for a robot")))
         plan = await asyncio.to_thread(_planned, known, message)
         self._plans[page] = message.number, plan
         page.send(editing.EditPreview(message.number, files_of(plan), list(plan.also), None))
@@ -113,7 +113,7 @@ class EditingFeature(PageFeature):
         return editing.EditableParts(message.display, message.link, told, parts)
 
     def _known(self, page: Page, display: str) -> tuple[Robot | None, Description | None]:
-        """The robot that a display shows, and how it was read where that is from a file of this machine."""
+        """Return the robot that a display shows, and how it was read if it is from a file of this machine."""
         found = next(
             (robot_model for robot_model in self.managers.of(page).robot_models() if robot_model.id == display), None
         )
@@ -131,7 +131,7 @@ class EditingFeature(PageFeature):
 
 
 def _planned(known: Description, message: editing.PreviewEdit) -> EditPlan:
-    """The plan of an edit, for the files as they are now."""
+    """Return the plan of an edit, for the files as they are now."""
     return plan_edit(read_again(known), request_of(message), Workspace(Path(known.name)).refusal)
 
 
@@ -144,11 +144,11 @@ def _why_not(robot: Robot | None, known: Description | None) -> Phrase | None:
         )
     if known is None or known.name.startswith("<"):
         return phrase(
-            "this description came as a text, and nobody here knows its file: open it with `linkwright view FILE`"
+            "this description arrived as a text, and its file is unknown: open it with `linkwright view FILE`"
         )
     return None
 
 
 def _elsewhere() -> Diagnostic:
-    message = phrase("files are written only for pages that are open on the machine that they lie on")
-    return Diagnostic("EDIT109", message, hint=phrase("open the page there, or through a tunnel of ssh"))
+    message = phrase("files are written only for pages that are open on the files' machine")
+    return Diagnostic("EDIT109", message, hint=phrase("open the page there, or through an SSH tunnel"))

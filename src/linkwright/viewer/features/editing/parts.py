@@ -1,4 +1,4 @@
-"""The editable parts of a robot, with their numbers and where they are written; and edits as lines of text."""
+"""The editable parts of a robot, with their values and places; and edits as lines of text."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _AROUND = 1
 
 
 def parts_of(robot: Robot, link_name: str) -> list[EditablePart]:
-    """The editable parts of a link: the joint above it, its axis, visuals, collisions and inertial."""
+    """Return the editable parts of a link: the joint above it, its axis, visuals, collisions and inertial."""
     link = robot.links.get(link_name)
     if link is None:
         return []
@@ -31,12 +31,12 @@ def parts_of(robot: Robot, link_name: str) -> list[EditablePart]:
 
 
 def request_of(message: PreviewEdit) -> EditRequest:
-    """The edit that a page requests."""
+    """Return the edit that a page requests."""
     return EditRequest(message.part, message.name, message.index, message.xyz, message.rpy, message.together)
 
 
 def files_of(plan: EditPlan) -> list[EditedFile]:
-    """The changes of an edit, as lines that begin with ``-``, ``+`` or a blank, and those that say where they are."""
+    """Return the changes of an edit, as lines that start with ``-``, ``+`` or a blank, and lines with their places."""
     return [EditedFile(path, list(_diff(plan.before[path], text))) for path, text in plan.texts.items()]
 
 
@@ -65,13 +65,13 @@ def _of_inertial(link: str, inertial: Inertial) -> EditablePart:
 
 
 def _numbers(origin: Pose) -> tuple[list[float], list[float]]:
-    """Position and angles, those as they are written where they are."""
+    """Return position and angles, as they are written if they are."""
     rpy = origin.rpy if origin.quaternion is None else rpy_from_quaternion(origin.quaternion)
     return list(origin.xyz), list(rpy)
 
 
 def _written(owner: Element | None, tag: str) -> tuple[str, str, int]:
-    """The text of an element as its file has it, the file and the line; the owner's place where there is none."""
+    """Return the text of an element in its file, the file and the line; without a text, the owner's place."""
     element = None if owner is None else owner.first(tag)
     place = element or owner
     span = None if place is None else place.span()

@@ -1,1 +1,1 @@
-"""Robots as files for others: one HTML page that needs no server, and glTF."""
+"""Exports of robots: one HTML page that needs no server, and glTF."""

@@ -23,7 +23,7 @@ class Format:
 
     Attributes:
         content_type: its MIME type.
-        write: makes a file.
+        write: returns the file's content.
     """
 
     content_type: str
@@ -46,19 +46,19 @@ FORMATS = {
     "html": Format("text/html; charset=utf-8", _html),
     "glb": Format("model/gltf-binary", _glb),
 }
-"""By the ending of the file."""
+"""By the extension of the file."""
 
 
 def format_of(name: str) -> Format | None:
-    """The format that the ending of a file's name says."""
+    """Return the format for the extension of a file's name."""
     return FORMATS.get(name.rpartition(".")[2].lower()) if "." in name else None
 
 
 def export_snapshot(snapshot: Snapshot, ending: str) -> bytes:
-    """The file.
+    """Return the file's content.
 
     Raises:
-        LinkwrightError: it cannot be made; the diagnostic says why.
+        LinkwrightError: it cannot be made.
     """
     return FORMATS[ending].write(snapshot)
 
@@ -71,7 +71,7 @@ class ExportFeature(PageFeature):
         self._working: dict[Page, asyncio.Task[None]] = {}
 
     def receive(self, page: Page, message: AskExport) -> None:
-        """Begin to make a file; one at a time for each page."""
+        """Start an export; one at a time for each page."""
         if message.format not in FORMATS or page in self._working:
             return
         task = asyncio.get_running_loop().create_task(self._make(page, message))
@@ -93,7 +93,7 @@ class ExportFeature(PageFeature):
         except Exception as error:  # noqa: BLE001  # a fault of ours must not leave the page waiting
             self.context.node.get_logger().error(
                 f"The export failed:\n{traceback.format_exc()}"
-            )  # no logger of logging
+            )  # not the standard library's logger
             page.send(ExportFailed(f"{type(error).__name__}: {error}"))
             return
         name = re.sub(r"[^\w.-]+", "_", snapshot.name).strip("._") or "robot"

@@ -1,4 +1,4 @@
-"""A robot as glTF 2.0 binary file: a document, and the arrays and images that it speaks of."""
+"""A robot as glTF 2.0 binary file: a document, and its arrays and images."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _REPEAT, _LINEAR, _LINEAR_MIPMAPS = 10497, 9729, 9987
 
 
 class GltfFile:
-    """A glTF that grows; everything added is known by its index.
+    """A glTF that grows; indices identify its parts.
 
     Args:
         generator: the program that makes it.
@@ -46,13 +46,13 @@ class GltfFile:
         self._generator = generator
 
     def add(self, kind: str, **content: Any) -> int:
-        """Add to one of the document's lists (``nodes``, ``meshes``, ``materials``, ...); what is None is left out."""
+        """Add to one of the document's lists (``nodes``, ``meshes``, ``materials``, ...), without values of None."""
         entries = self._parts.setdefault(kind, [])
         entries.append({name: value for name, value in content.items() if value is not None})
         return len(entries) - 1
 
     def entry(self, kind: str, index: int) -> dict[str, Any]:
-        """An entry that was added, to be changed."""
+        """Return an entry that was added, for changes."""
         return self._parts[kind][index]
 
     def vertices(self, values: NDArray[Any], *, bounded: bool = False) -> int:
@@ -90,7 +90,7 @@ class GltfFile:
         return self.add("textures", source=image, sampler=0)
 
     def binary(self, roots: list[int]) -> bytes:
-        """The file (.glb), showing these nodes."""
+        """Return the file (.glb), which shows these nodes."""
         document: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": self._generator},
             "scene": 0,
@@ -124,9 +124,9 @@ _Y_UP = [-sqrt(0.5), 0.0, 0.0, sqrt(0.5)]
 
 
 def glb_of(snapshot: Snapshot) -> bytes:
-    """The visuals of a robot in its pose of the moment, as a .glb file.
+    """Return the visuals of a robot in its current pose, as a .glb file.
 
-    Colours are those that the page shows; glTF counts them linearly.
+    Colours are those of the page, converted to glTF's linear values.
 
     Raises:
         LinkwrightError: VIEW204, a mesh cannot be read; INR104, VIEW205, a library for it is not installed.
@@ -218,7 +218,7 @@ class _RobotWriter:
         try:
             path = self._files.path(url)
         except FileRefusedError:
-            raise _unreadable(link, urlsplit(url).path, phrase("it is not there, or may not be read")) from None
+            raise _unreadable(link, urlsplit(url).path, phrase("it does not exist, or may not be read")) from None
         try:
             return read_parts(path, resolver=_Neighbours(self._files, url))
         except BadMeshError as error:
@@ -241,13 +241,13 @@ class _RobotWriter:
     # --- materials ---------------------------------------------------------------------------------------------
 
     def _texture(self, shape: Shape) -> bytes | None:
-        """The URDF's texture, as a file that glTF takes."""
+        """Return the URDF's texture, as a file that glTF supports."""
         if shape.texture is None:
             return None
         try:
             return _as_png(self._files.path(shape.texture))
         except (FileRefusedError, OSError, ValueError):
-            return None  # the page too draws the shape without it
+            return None  # the page draws the shape without it, too
 
     def _material(self, look: _Look) -> int:
         if look not in self._materials:
@@ -272,14 +272,14 @@ class _RobotWriter:
 
 
 class _Neighbours:
-    """Gives trimesh the files beside a mesh, under the rules by which pages are served."""
+    """Gives trimesh the files beside a mesh, under the rules by which pages read files."""
 
     def __init__(self, files: FileSet, url: str) -> None:
         self._files = files
         self._folder = urlsplit(url).path.rpartition("/")[0]
 
     def get(self, name: str) -> bytes:
-        """A file by its name in the mesh."""
+        """Return a file by its name in the mesh."""
         try:
             return self._files.path(f"{self._folder}/{name.strip().removeprefix('./')}").read_bytes()
         except FileRefusedError as error:
@@ -288,12 +288,12 @@ class _Neighbours:
     __getitem__ = get
 
     def keys(self) -> list[str]:
-        """No names: trimesh asks for files by `get` alone."""
+        """Return no names: trimesh reads files only by `get`."""
         return []
 
 
 def _look(shape: Shape, part: MeshPart, texture: bytes | None) -> _Look:
-    """A part with a material of its own keeps it; any other takes the URDF's. How opaque it is says the URDF alone."""
+    """Return the look of a part: its own material, else the URDF's. The URDF alone sets the opacity."""
     is_mesh = shape.kind == "mesh"
     alpha = shape.color[3] if shape.color else 1.0
     own = part.own
@@ -307,7 +307,7 @@ def _look(shape: Shape, part: MeshPart, texture: bytes | None) -> _Look:
 
 
 def _as_png(path: Path) -> bytes:
-    """An image file as PNG or JPEG."""
+    """Return an image file as PNG or JPEG."""
     data = path.read_bytes()
     if data.startswith((b"\x89PNG", b"\xff\xd8\xff")):
         return data
@@ -323,7 +323,7 @@ def _as_png(path: Path) -> bytes:
 
 
 def _linear(colors: Any) -> Any:
-    """Colours as they are seen (sRGB) in glTF's linear numbers; alpha stays."""
+    """Return sRGB colours in glTF's linear values; alpha stays."""
     seen = np.asarray(colors, dtype=np.float64)
     linear = np.where(seen <= 0.04045, seen / 12.92, ((seen + 0.055) / 1.055) ** 2.4)
     linear[..., 3] = seen[..., 3]

@@ -1,4 +1,4 @@
-"""A robot as one HTML file: scripts, styles, meshes and textures are all in it, and nothing is fetched."""
+"""A robot as one HTML file with all scripts, styles, meshes and textures; it fetches nothing."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _PAGE = """\
 
 
 def html_of(snapshot: Snapshot) -> bytes:
-    """The page of a snapshot.
+    """Return the page of a snapshot.
 
     Raises:
         LinkwrightError: VIEW202, the page of this installation was not built.
@@ -66,14 +66,14 @@ def html_of(snapshot: Snapshot) -> bytes:
 
 
 def _script(folder: Path) -> str:
-    packed = folder / "export.js.gz"  # `npm run build` alone leaves it unpacked
+    packed = folder / "export.js.gz"  # `npm run build` alone does not pack it
     if packed.is_file():
         return gzip.decompress(packed.read_bytes()).decode()
     return (folder / "export.js").read_text(encoding="utf-8")
 
 
 def _policy(script: str) -> str:
-    """Only this one script runs; images and meshes come from the page itself."""
+    """Return a policy that runs only this one script; images and meshes are in the page itself."""
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return (
         f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; img-src data: blob:; "
@@ -82,7 +82,7 @@ def _policy(script: str) -> str:
 
 
 def _recorded(snapshot: Snapshot, program: str) -> str:
-    """The messages of a server to a new page, as JSON that can stand in HTML."""
+    """Return the messages of a server to a new page, as JSON that can be embedded in HTML."""
     robots = [message for message in snapshot.messages if isinstance(message, RobotScene)]
     files = FileSet(snapshot.meshes).collect([*addresses(robots), *snapshot.marker_meshes])
     messages = without_secrets(",".join(encode(message) for message in snapshot.messages))

@@ -14,7 +14,7 @@ _RINGS = 16
 
 
 def box(size: Sequence[float]) -> Triangles:
-    """Around the origin."""
+    """Return a box around the origin."""
     positions, normals, coordinates = [], [], []
     for axis in range(3):
         for side in (1.0, -1.0):
@@ -30,7 +30,7 @@ def box(size: Sequence[float]) -> Triangles:
 
 
 def cylinder(radius: float, length: float) -> Triangles:
-    """Along z, around the origin, with caps."""
+    """Return a cylinder along z, around the origin, with caps."""
     half = length / 2
     profile = [(0.0, half, 0, 1), (radius, half, 0, 1), (radius, half, 1, 0), (radius, -half, 1, 0)]
     profile += [(radius, -half, 0, -1), (0.0, -half, 0, -1)]
@@ -38,14 +38,14 @@ def cylinder(radius: float, length: float) -> Triangles:
 
 
 def sphere(radius: float) -> Triangles:
-    """Around the origin."""
+    """Return a sphere around the origin."""
     angles = np.linspace(np.pi / 2, -np.pi / 2, _RINGS + 1)
     cosines, sines = np.cos(angles), np.sin(angles)
     return _turned(np.stack([radius * cosines, radius * sines, cosines, sines], axis=1))
 
 
 def capsule(radius: float, length: float) -> Triangles:
-    """A cylinder along z, around the origin, with half spheres beyond its ends."""
+    """Return a cylinder along z, around the origin, with half spheres beyond its ends."""
     angles = np.linspace(np.pi / 2, -np.pi / 2, _RINGS + 1)
     angles = np.insert(angles, _RINGS // 2, 0.0)
     shift = np.where(np.arange(_RINGS + 2) <= _RINGS // 2, length / 2, -length / 2)
@@ -54,7 +54,7 @@ def capsule(radius: float, length: float) -> Triangles:
 
 
 def _turned(profile: Array) -> Triangles:
-    """The surface that a profile from top to bottom sweeps around z; its rows are r, z and the normal's r, z."""
+    """Return the surface that a profile from top to bottom sweeps around z; its rows are r, z and the normal's r, z."""
     around = np.linspace(0.0, 2 * np.pi, _SIDES + 1)
     cosines, sines = np.cos(around), np.sin(around)
     rows, columns = len(profile), _SIDES + 1

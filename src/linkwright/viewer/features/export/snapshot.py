@@ -1,4 +1,4 @@
-"""Snapshots of what a viewer shows at one moment, with the files needed for drawing it, for pages without a server."""
+"""Snapshots of a viewer's scene at one moment, with the files needed to draw it, for pages without a server."""
 
 from __future__ import annotations
 
@@ -50,11 +50,11 @@ Pose = NDArray[np.float64]
 
 
 def positions_now(robot: Robot, poses: Mapping[str, Pose]) -> dict[str, float]:
-    """Positions (rad or m) of the revolute, continuous and prismatic joints whose links can be placed.
+    """Return positions (rad or m) of the revolute, continuous and prismatic joints whose links can be placed.
 
     Args:
         robot: the description.
-        poses: link -> where it is, all in one frame.
+        poses: link -> its pose, all in one frame.
     """
     positions = {}
     for joint in robot.joints.values():
@@ -85,7 +85,7 @@ def _position(joint: Joint, parent: Pose, child: Pose) -> float:
 
 
 def _within(joint: Joint, angle: float) -> float:
-    """The angle, or one a full turn away where that is within the limits."""
+    """Return the angle, or the equivalent one within the limits."""
     if joint.type == "continuous" or joint.limit is None:
         return angle
     for turned in (angle, angle + 2.0 * pi, angle - 2.0 * pi):
@@ -101,7 +101,7 @@ _MATERIAL_MAP = re.compile(r"^[ \t]*(?:map_\w+|bump|norm|disp)[ \t]+(.+?)[ \t]*\
 
 
 def addresses(scenes: Iterable[RobotScene]) -> list[str]:
-    """The addresses of the meshes and textures that robots name, each once."""
+    """Return the addresses of the meshes and textures that robots name, each once."""
     links = chain.from_iterable(scene.links for scene in scenes)
     shapes = chain.from_iterable((*link.visuals, *link.collisions) for link in links)
     named = chain.from_iterable((shape.url, shape.texture) for shape in shapes)
@@ -109,7 +109,7 @@ def addresses(scenes: Iterable[RobotScene]) -> list[str]:
 
 
 class FileSet:
-    """Files by the path of their address, under the same rules by which pages are served.
+    """Files by the path of their address, under the rules by which pages read files.
 
     Args:
         meshes: the folders that may be read.
@@ -119,10 +119,10 @@ class FileSet:
         self._meshes = meshes
 
     def path(self, address: str) -> Path:
-        """The file at an address.
+        """Return the file at an address.
 
         Raises:
-            FileRefusedError: it may not be read, or is not there.
+            FileRefusedError: it may not be read, or does not exist.
         """
         found = _ADDRESS.fullmatch(urlsplit(address).path)
         if found is None:
@@ -130,7 +130,7 @@ class FileSet:
         return self._meshes.file(found[1], unquote(found[2]))
 
     def collect(self, wanted: Iterable[str]) -> dict[str, bytes]:
-        """The contents by the path of their address, with the files that meshes name; what is not there is left out."""
+        """Return contents by the path of their address, with the files that meshes name; missing ones are left out."""
         contents: dict[str, bytes] = {}
         waiting = [urlsplit(address).path for address in wanted]
         while waiting:
@@ -148,14 +148,14 @@ class FileSet:
 
 
 def named_files(ending: str, data: bytes) -> list[str]:
-    """Names of other files in a mesh or material file, as they stand in it, relative to its folder."""
+    """Return the names of other files in a mesh or material file, as written there, relative to its folder."""
     names: list[str] = []
     if ending == ".dae":
         names = _COLLADA_IMAGE.findall(data.decode("utf-8", "replace"))
     elif ending == ".obj":
         names = _MATERIAL_FILE.findall(data.decode("utf-8", "replace"))
     elif ending == ".mtl":
-        # Options and their numbers may stand before a name, which may hold spaces only without them.
+        # Options and their numbers may precede a name, which may contain spaces only without them.
         lines = _MATERIAL_MAP.findall(data.decode("utf-8", "replace"))
         names = [line.split()[-1] if line.startswith("-") else line for line in lines]
     elif ending == ".gltf":
@@ -169,10 +169,10 @@ def named_files(ending: str, data: bytes) -> list[str]:
 
 
 _TAKEN = (DisplayProperties, FrameTable, Hello, SavedViews, ViewClasses, ViewState)
-"""Messages that go along as they are: nothing of the machine that the program runs on is in them."""
+"""Messages that are included unchanged: they contain nothing about the program's machine."""
 
 _PATHS = frozenset({"Description File"})
-"""Properties that are paths of that machine."""
+"""Properties that are paths of the program's machine."""
 
 
 @dataclass(frozen=True)
@@ -189,9 +189,9 @@ class Snapshot:
         meshes: finds the files that `scene` names.
         problems: the findings on shapes that cannot be drawn.
         marker_meshes: addresses of the meshes that markers show.
-        outside: the files in no package, nor below the folder of the description, whose contents are part of it.
-        awaits_size: whether grid and axes are to have the size of the robot, which a page that draws it knows.
-        spacing: from a link's frame to that of its parent, for most links, m; None where that is not known.
+        outside: the included files that are neither in a package nor below the description's folder.
+        awaits_size: whether grid and axes should get the size of the robot, which a page measures.
+        spacing: the usual distance of a link's frame from its parent's, m; None if unknown.
     """
 
     name: str
@@ -209,12 +209,12 @@ class Snapshot:
 
 
 def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View | None = None) -> Snapshot:
-    """A snapshot of a configuration as it is seen now.
+    """Return a snapshot of a configuration as it is shown now.
 
     Args:
         viewer: the viewer that shows it.
-        manager: the configuration that is seen.
-        view: the camera; None for where a page that opens has it.
+        manager: the configuration that it shows.
+        view: the camera; None for that of a new page.
 
     Raises:
         LinkwrightError: VIEW201, there is no robot.
@@ -241,7 +241,7 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
 
 
 def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) -> list[Path]:
-    """The files of a description that whoever gets the export may not be meant to see.
+    """Return the files of a description that recipients of the export may not be meant to see.
 
     Includes, ``load_yaml`` and ``file://`` reach any file of the machine, as under ROS.
 
@@ -251,10 +251,10 @@ def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) 
         meshes: the folders that these may be read from.
 
     Returns:
-        Those that are in no package, and not below the folder of the main file.
+        Those that are neither in a package nor below the folder of the main file.
     """
     files = FileSet(meshes)
-    found = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # of which some have `..` in them
+    found = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # some paths have `..` in them
     for address in addresses([scene]):
         with suppress(FileRefusedError):
             found[files.path(address)] = None
@@ -267,10 +267,10 @@ def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) 
 def take_snapshot(
     model: RobotModelDisplay, told: Sequence[ServerMessage], payloads: Sequence[Payload], meshes: MeshFolders
 ) -> Snapshot:
-    """The part of the messages to a new page that it needs to run without a server.
+    """Return the part of the messages to a new page that it needs to run without a server.
 
     Args:
-        model: shows the robot whose joints can be moved.
+        model: the display of the robot whose joints can be moved.
         told: the messages to a page that opens.
         payloads: the binary frames to it.
         meshes: the folders that it may read from.
@@ -311,7 +311,7 @@ def _problems(model: RobotModelDisplay) -> list[Diagnostic]:
     return [
         Diagnostic(
             "VIEW203",
-            phrase("of link '{link}' something is left out: {text}", link=link, text=foreign(text)),
+            phrase("link '{link}' is incomplete: {text}", link=link, text=foreign(text)),
             severity=Severity.WARNING,
         )
         for link, texts in model.file_problems.items()
@@ -320,13 +320,13 @@ def _problems(model: RobotModelDisplay) -> list[Diagnostic]:
 
 
 def no_robot() -> LinkwrightError:
-    """The error where there is nothing to export (VIEW201)."""
+    """Return the error for an export without a robot (VIEW201)."""
     hint = phrase("wait until the robot is drawn, or enable its RobotModel display")
     return LinkwrightError(Diagnostic("VIEW201", phrase("there is no robot to export"), hint=hint))
 
 
 def _whole(payload: Payload) -> bytes | str | None:
-    """The complete content, as for a page that has none of it."""
+    """Return the complete content, as for a new page."""
     if isinstance(payload, ScaledData):
         return payload.whole
     return payload if isinstance(payload, (bytes, str)) else payload.since(0)[0]
@@ -348,7 +348,7 @@ def _poses(table: FrameTable, frames: Sequence[bytes]) -> dict[str, NDArray[np.f
 
 
 def _anonymous(tree: Tree) -> Tree:
-    """The displays without their status and without paths, which tell of this machine."""
+    """Return the displays without their status and without paths, which reveal details of this machine."""
     displays: list[Display] = [
         replace(display, status=[], level="ok", properties=_without_paths(display.properties))
         for display in tree.displays
@@ -364,14 +364,14 @@ def _without_paths(properties: Sequence[Property]) -> list[Property]:
 
 
 def _controls(robot: Robot) -> list[JointControl]:
-    """A slider for each joint that moves, as joint_state_publisher_gui has them."""
+    """Return a slider for each movable joint, as in joint_state_publisher_gui."""
     layout = layout_of(robot, JointSettings())
     controls = []
     for joint in layout.ranges.values():
         if joint.lower == joint.upper:
             continue
         follows = layout.dependent.get(joint.name)
-        kind = cast("Any", joint.kind)  # the joints that move are of these three kinds
+        kind = cast("Any", joint.kind)  # movable joints are of these three kinds
         control = JointControl(joint.name, kind, joint.lower, joint.upper, joint.zero)
         if follows is not None:
             control = replace(control, mimic=follows.parent, multiplier=follows.factor, offset=follows.offset)

@@ -1,4 +1,4 @@
-"""A world that is edited: its text, earlier texts, and the file that it is saved into."""
+"""A world that is edited: its text, earlier texts, and its file."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NAMELESS = "world.sdf"
 _LONGEST_STEM = 56
 """Characters, of which a file system may count four bytes each."""
 _MOST_UNDO_STEPS = 200
-"""The largest number of steps of undo."""
+"""The largest number of undo steps."""
 _PROGRAM_FOLDER = Path(__file__).parents[3]
 """The folder of the program's own files, which users cannot overwrite."""
 
@@ -31,7 +31,7 @@ class EditedWorld:
 
     Args:
         text: the text of the world.
-        path: the file from whose folder its addresses start; it need not be there.
+        path: the file whose folder relative addresses start from; it need not exist.
         packages: the finder of packages, and so of models.
         content: the content of the file that it is saved into, `path`; None for a world without one.
 
@@ -58,9 +58,9 @@ class EditedWorld:
 
     @classmethod
     def of_file(cls, path: Path, packages: PackageFinder) -> EditedWorld:
-        """The world of a file.
+        """Return the world of a file.
 
-        One that xacro makes, and one that comes with the program, have no file to be saved into.
+        A world made by xacro, and one of the program's own, have no file to be saved into.
 
         Raises:
             LinkwrightError: it cannot be read or expanded.
@@ -77,7 +77,7 @@ class EditedWorld:
 
     @classmethod
     def of_text(cls, text: str, packages: PackageFinder) -> EditedWorld:
-        """A world that is in no file, such as that of a simulator elsewhere.
+        """Return a world without a file, such as that of a simulator on another machine.
 
         Raises:
             LinkwrightError: it is not XML.
@@ -87,36 +87,36 @@ class EditedWorld:
 
     @property
     def file(self) -> Path | None:
-        """The file that it is saved into; None where the user has to name one."""
+        """The file that it is saved into; None if the user has to name one."""
         return None if self._content is None else self.path
 
     @property
     def unsaved(self) -> bool:
-        """Whether the text is not that of the file."""
+        """Whether the text differs from the file."""
         return self.world.text != self._saved
 
     @property
     def can_undo(self) -> bool:
-        """Whether there is a change to be taken back."""
+        """Whether there is an edit to undo."""
         return bool(self._before)
 
     @property
     def can_redo(self) -> bool:
-        """Whether a change was taken back."""
+        """Whether there is an edit to redo."""
         return bool(self._after)
 
     @property
     def is_outdated(self) -> bool:
-        """Whether the file says something else than when it was read or saved."""
+        """Whether the file has changed since it was read or saved."""
         if self._content is None:
             return False
         try:
             return self.path.read_bytes() != self._content
         except OSError:
-            return False  # there is none, or it cannot be read: what is here is all there is
+            return False  # there is none, or it cannot be read: only the text here exists
 
     def reserve(self, names: Iterable[str]) -> None:
-        """Keep new models and lights from taking these names, unless the world has them itself."""
+        """Keep new models and lights from taking these names, unless the world itself has them."""
         world = self.world
         self.world = WorldText(world.text, world.path, world.finder, frozenset(names) - world.entities.keys())
 
@@ -124,7 +124,7 @@ class EditedWorld:
         """Change the world, in one step of undo.
 
         Raises:
-            EditError: it cannot be changed so.
+            EditError: the change is not possible.
         """
         changed = change(self.world)
         if changed.text != self.world.text:
@@ -151,7 +151,7 @@ class EditedWorld:
             name: another file, absolute, from ``~`` or from the folder of the world; None for its own.
 
         Raises:
-            EditError: it is not saved; the text says why.
+            EditError: it is not saved; the text gives the reason.
         """
         target = self.path if name is None else self._named(name)
         if target == self.path and self._content is not None:
@@ -160,7 +160,7 @@ class EditedWorld:
                     phrase("'{path}' was changed by another program: save as another file", path=str(target))
                 )
         elif name is None:
-            raise EditError(phrase("this world has no file of its own: say as which it is saved"))
+            raise EditError(phrase("this world has no file of its own: name the file to save it as"))
         elif os.path.lexists(target):
             raise EditError(phrase("there is a file '{path}' already", path=str(target)))
         content = self._encoded
@@ -174,21 +174,19 @@ class EditedWorld:
             self.world = WorldText(self.world.text, target, self.world.finder, self.world.reserved)
 
     def keep(self, folder: Path) -> Diagnostic:
-        """Write a text that is not saved into a folder, in place of earlier texts of the same world.
+        """Write an unsaved text into a folder, in place of earlier texts of the same world.
 
         Returns:
             Where it is (RVIZ301), or that it is lost (RVIZ104).
         """
-        mark = hashlib.sha256(os.fsencode(self.path)).hexdigest()[:8]  # of two files of one name
+        mark = hashlib.sha256(os.fsencode(self.path)).hexdigest()[:8]  # distinguishes files of the same name
         kept = folder / f"{self.path.stem[:_LONGEST_STEM]}-{mark}{self.path.suffix}"
         try:
             folder.mkdir(parents=True, exist_ok=True)
             write_whole_file(kept, self._encoded)
         except OSError as error:
             return Diagnostic("RVIZ104", _not_written(kept, error))
-        message = phrase(
-            "changes of the world '{path}' that were not saved are kept in '{kept}'", path=self.path, kept=kept
-        )
+        message = phrase("unsaved changes of the world '{path}' are stored in '{kept}'", path=self.path, kept=kept)
         return Diagnostic("RVIZ301", message, severity=Severity.WARNING)
 
     @property
@@ -196,17 +194,17 @@ class EditedWorld:
         return self._mark + self.world.text.encode(self._encoding, "xmlcharrefreplace")
 
     def _named(self, name: str) -> Path:
-        """The file that the user names.
+        """Return the file that the user names.
 
         Raises:
             EditError: it is not the name of a world.
         """
         try:
             path = Path(os.path.normpath(self.path.absolute().parent / Path(name.strip()).expanduser()))
-        except (ValueError, RuntimeError):  # the latter where there is no such user
+        except (ValueError, RuntimeError):  # the latter if there is no such user
             path = Path()
         if "\0" in name or not is_world(path.name) or path.suffix == _XACRO:
-            raise EditError(phrase("'{name}' is no name of a world: let it end in .world or .sdf", name=name))
+            raise EditError(phrase("'{name}' is not a name for a world: it must end in .world or .sdf", name=name))
         return path
 
 

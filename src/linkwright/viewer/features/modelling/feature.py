@@ -1,7 +1,7 @@
 """Modelling a world in the page: pages edit its text, and the simulation loads it.
 
-The text is that of the file that the simulator's parameter ``world`` names; where there is none, or another world is in
-it, the text is what the simulator tells about its world. All pages edit one text, one thing after the other.
+The text is that of the file in the simulator's parameter ``world``; if there is none, or another world is in
+it, the text is the description that the simulator publishes. All pages edit one text, one thing after the other.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ _DESCRIPTION = "/world_description"
 _LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _EMPTY, _LOAD = "std_srvs/srv/Empty", "simulation_interfaces/srv/LoadWorld"
 _PATIENCE = 30.0
-"""Seconds that an answer of the simulation, or its description, is waited for."""
+"""Seconds to wait for an answer of the simulation, or its description."""
 
 
 class ModellingFeature(PageFeature):
-    """Tells pages the models and lights of the world, and edits it on their requests."""
+    """Sends pages the models and lights of the world, and edits it on their requests."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -53,7 +53,7 @@ class ModellingFeature(PageFeature):
         self._worker: asyncio.Task[None] | None = None
 
     def opening(self) -> list[ServerMessage]:
-        """Whether the world can be edited, and what stands in it where somebody edits it."""
+        """Return whether the world can be edited and, while a user edits it, its content."""
         if not self._listening:
             self._listening = True
             self.context.graph_changes.listen(self._review)
@@ -67,13 +67,13 @@ class ModellingFeature(PageFeature):
             self.context.graph_changes.ignore(self._review)
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Keep the text of a world that is not saved."""
+        """Store the text of an unsaved world."""
         if self._edited is None or not self._edited.unsaved:
             return []
         return [self._edited.keep(recovery_folder())]
 
     def close(self) -> None:
-        """End for good."""
+        """Stop for good."""
         self.context.graph_changes.ignore(self._review)
         self._services.close()
         if self._worker is not None:
@@ -85,7 +85,7 @@ class ModellingFeature(PageFeature):
         if self._worker is None:
             self._worker = asyncio.get_running_loop().create_task(self._work())
 
-    # --- what pages are told -----------------------------------------------------------------------------------
+    # --- messages to pages -------------------------------------------------------------------------------------
 
     def _is_available(self) -> bool:
         """Whether there is a simulation whose world is known."""
@@ -115,7 +115,7 @@ class ModellingFeature(PageFeature):
     # --- what they ask for -------------------------------------------------------------------------------------
 
     async def _work(self) -> None:
-        """Carry out the queued requests one after the other: reading a large world takes a while."""
+        """Handle the queued requests one after the other: reading a large world takes a while."""
         from linkwright.sdf.editing import EditError
 
         while True:
@@ -127,7 +127,7 @@ class ModellingFeature(PageFeature):
             except LinkwrightError as error:
                 found = error.diagnostics[0]
                 refuse(page, found.placed_message)
-            except Exception as error:  # noqa: BLE001  # a mistake of ours is no reason to edit no more
+            except Exception as error:  # noqa: BLE001  # editing must continue after an error of this program
                 self.context.node.get_logger().error(f"The world cannot be edited: {type(error).__name__}: {error}")
                 refuse(page, f"{type(error).__name__}: {error}")
 
@@ -162,7 +162,7 @@ class ModellingFeature(PageFeature):
         self._tell()
 
     async def _world(self) -> EditedWorld:
-        """The world that is edited, read again where its file was changed and nothing here is unsaved."""
+        """Return the edited world, read again if its file has changed and it has no unsaved edits."""
         from linkwright.viewer.features.modelling.edited_world import EditedWorld
 
         edited, packages = self._edited, self.context.finder
@@ -173,11 +173,11 @@ class ModellingFeature(PageFeature):
                 self._edited = fresh
         elif edited is None:
             self._edited = await self._read()
-        assert self._edited is not None, "one of these is so"
+        assert self._edited is not None, "one of the branches sets it"
         return self._edited
 
     async def _read(self) -> EditedWorld:
-        """The simulated world, from its file if that can be found, else from the simulator's description."""
+        """Return the simulated world, from its file if that can be found, else from the simulator's description."""
         from linkwright.sdf.editing import EditError
         from linkwright.sdf.resources import ResourceFinder
         from linkwright.viewer.features.modelling.edited_world import EditedWorld
@@ -187,7 +187,7 @@ class ModellingFeature(PageFeature):
         name = await self._file_told()
         path = await asyncio.to_thread(ResourceFinder(packages).world, name) if name else None
         if path is not None:
-            with suppress(EditError, LinkwrightError):  # it may be another one, on another machine
+            with suppress(EditError, LinkwrightError):  # the file may differ on another machine
                 found = await asyncio.to_thread(EditedWorld.of_file, path.absolute(), packages)
                 if found.world.world.name == told.world.world.name:
                     await asyncio.to_thread(found.reserve, told.world.entities)
@@ -195,7 +195,7 @@ class ModellingFeature(PageFeature):
         return told
 
     async def _file_told(self) -> str:
-        """The value of the simulator's parameter ``world``; empty where there is none."""
+        """Return the value of the simulator's parameter ``world``; empty if there is none."""
         node = self.context.node
         publishers = node.get_publishers_info_by_topic(_DESCRIPTION)
         if not publishers:
@@ -219,10 +219,10 @@ class ModellingFeature(PageFeature):
             node.destroy_client(client)
 
     async def _described(self) -> str:
-        """The description that the simulator publishes.
+        """Return the description that the simulator publishes.
 
         Raises:
-            EditError: it tells nothing.
+            EditError: it publishes none.
         """
         from linkwright.sdf.editing import EditError
 
@@ -237,7 +237,7 @@ class ModellingFeature(PageFeature):
         try:
             return await asyncio.wait_for(told, _PATIENCE if self._is_available() else 0)
         except asyncio.TimeoutError:
-            raise EditError(phrase("there is no world to edit: no simulation tells about its own")) from None
+            raise EditError(phrase("there is no world to edit: no simulation publishes one")) from None
         finally:
             node.destroy_subscription(subscription)
 
@@ -264,7 +264,7 @@ class ModellingFeature(PageFeature):
 
 
 def _edit(edited: EditedWorld, message: PageMessage) -> Callable[[], None]:
-    """Apply the request of a page to a world; slow, for a thread."""
+    """Apply a page's request to a world; slow, for a thread."""
     from linkwright.viewer.features.modelling.things import changed
 
     if isinstance(message, UndoWorld):

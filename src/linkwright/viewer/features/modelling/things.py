@@ -1,4 +1,4 @@
-"""The messages of pages that edit a world, and those that tell pages of it."""
+"""The messages between pages that edit a world and the server."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from linkwright.viewer.protocol.modelling import (
 
 
 def things_of(world: WorldText) -> list[WorldThing]:
-    """The models and lights of a world."""
+    """Return the models and lights of a world."""
     return [_thing(thing) for thing in world.entities.values()]
 
 
@@ -56,17 +56,17 @@ def _thing(thing: Entity) -> WorldThing:
 
 
 def choices(packages: PackageFinder) -> ModelChoices:
-    """The models on the search path."""
+    """Return the models on the search path."""
     found = ResourceFinder(packages).models()
     names = sorted(name for name, folder in found.items() if not isinstance(model_file(folder), Missing))
     return ModelChoices([ModelChoice(name, f"model://{name}") for name in names])
 
 
 def changed(world: WorldText, message: PageMessage) -> WorldText:
-    """A world after the edit of a page.
+    """Return a world after the edit of a page.
 
     Raises:
-        EditError: it cannot be.
+        EditError: the edit is not possible.
     """
     match message:
         case AddThing("model", address, pose, _):

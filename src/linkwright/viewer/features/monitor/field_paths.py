@@ -1,8 +1,8 @@
 """Paths to a number in a message: ``position[2]``, ``position[elbow]``, ``twist.twist.linear.x``.
 
 Names select fields of nested messages. Brackets select an element of an array, by its index or by the name that
-the message gives it. A value's name is the one at its place in a list of names beside it (``name`` of a JointState,
-``joint_names`` of a JointTrajectory and its points); a nested message's name is in itself (``name`` of a
+the message gives it. A value's name is the one with the same index in a list of names beside it (``name`` of a
+JointState, ``joint_names`` of a JointTrajectory and its points); a nested message's name is in itself (``name`` of a
 DiagnosticStatus, ``child_frame_id`` of a TransformStamped). Booleans count as 0 and 1; times and durations are seconds.
 """
 
@@ -22,17 +22,17 @@ NAME_LISTS = ("name", "names", "joint_names")
 """Fields that name the elements of the arrays beside them, or of those of messages below."""
 
 NAME_FIELDS = ("name", "child_frame_id")
-"""Fields in which a message that is an element of an array tells its own name."""
+"""Fields with the name of a message that is an element of an array."""
 
 SECONDS = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
-"""Messages that are numbers: seconds."""
+"""Messages that represent a number of seconds."""
 
 _STEP = re.compile(r"([A-Za-z_]\w*)((?:\[[^\[\]]+\])*)")
 _NANO = 1e-9
 
 
 class FieldPathError(ValueError):
-    """A path is not valid, or does not lead to a number of the message type; the text says why."""
+    """A path is not valid, or does not lead to a number of the message type; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,14 +58,14 @@ class FieldPath:
         while True:
             found = _STEP.match(text, at)
             if found is None:
-                raise FieldPathError(f"'{text}' is no field; write such as 'position[0]' or 'twist.linear.x'")
+                raise FieldPathError(f"'{text}' is not a field; write a path such as 'position[0]' or 'twist.linear.x'")
             keys = re.findall(r"\[([^\]]+)\]", found[2])
             self._steps.append(_Step(found[1], tuple(int(key) if key.isdecimal() else key for key in keys)))
             at = found.end()
             if at == len(text):
                 return
             if text[at] != ".":
-                raise FieldPathError(f"'{text}' is no field; there must be a dot before '{text[at:]}'")
+                raise FieldPathError(f"'{text}' is not a field; there must be a dot before '{text[at:]}'")
             at += 1
 
     def check(self, message_class: type[Message]) -> None:
@@ -88,10 +88,10 @@ class FieldPath:
             cls = None if kind.primitive is not None else get_message(kind.base)
         assert kind is not None
         if not is_number(kind):
-            raise FieldPathError(f"'{self.text}' is no number but a {kind.base}")
+            raise FieldPathError(f"'{self.text}' is not a number but a {kind.base}")
 
     def value(self, message: Any) -> float | None:
-        """The number in a message; None when the message has no such element."""
+        """Return the number in a message, or None if the message has no such element."""
         owners = []
         found = message
         for step in self._steps:
@@ -108,21 +108,21 @@ class FieldPath:
     def _check_keys(step: _Step, kind: FieldType) -> None:
         is_array = kind.container is not Container.ONE
         if is_array and len(step.keys) != 1:
-            raise FieldPathError(f"'{step.name}' is an array; say which element, such as '{step.name}[0]'")
+            raise FieldPathError(f"'{step.name}' is an array; select an element, such as '{step.name}[0]'")
         if not is_array and step.keys:
-            raise FieldPathError(f"'{step.name}' is no array")
+            raise FieldPathError(f"'{step.name}' is not an array")
         if kind.container is Container.ARRAY and isinstance(step.keys[0], int) and step.keys[0] >= (kind.size or 0):
             raise FieldPathError(f"'{step.name}' has {kind.size} elements")
 
 
 def is_number(kind: FieldType) -> bool:
-    """Whether a value, or an element, of a field is a number."""
+    """Return whether a value, or an element, of a field is a number."""
     primitive = kind.primitive
     return kind.base in SECONDS if primitive is None else primitive.python is not str
 
 
 def element_names(owners: Sequence[Any], values: Any) -> Sequence[str] | None:
-    """The names of an array's elements; None where there are none.
+    """Return the names of an array's elements, or None if there are none.
 
     Args:
         owners: the messages on the way to the array, the one that has it last.
@@ -154,15 +154,15 @@ def _number(value: Any) -> float:
 
 _MOST_FIELDS = 500
 _MOST_ELEMENTS = 64
-"""The largest number of an array's elements offered; others can be named by hand."""
+"""The largest number of an array's elements offered; users can type others."""
 
 
 def plot_fields(message_class: type[Message], message: Message | None = None) -> list[PlotField]:
-    """The numbers of a type of messages, in the order of its fields.
+    """Return the paths of the numbers in a message type, in the order of its fields.
 
     Args:
         message_class: the type.
-        message: one of it, which tells how many elements its arrays have and what they are called; without one an
+        message: an example, which has the lengths and element names of its arrays; without one an
             array of any length is offered with its first element.
     """
     found: list[PlotField] = []
@@ -207,5 +207,5 @@ def _value(field: Field, value: Any, path: str, owners: Sequence[Any]) -> Iterat
 
 
 def _is_awkward(name: str) -> bool:
-    """Whether a name cannot be written in brackets."""
+    """Return whether a name cannot be written in brackets."""
     return not name or name.isdecimal() or "[" in name or "]" in name

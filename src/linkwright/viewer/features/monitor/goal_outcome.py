@@ -1,4 +1,4 @@
-"""Telling pages that a goal of navigation failed, and why: from the states of goals and the log of their server."""
+"""Reports failed navigation goals to pages, with the reason: from the goals' states and their server's log."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ STATUS_TOPIC = "/navigate_to_pose/_action/status"
 _ACTIVE, _ABORTED = (1, 2, 3), 6
 """Numbers of action_msgs/msg/GoalStatus."""
 _STATES = 10
-"""Messages that may wait: a goal may fail at once, and that it was active must be seen."""
+"""Messages that may wait: a goal may fail at once, and its active state must not be missed."""
 _ERROR = 40
 """The level of errors in rcl_interfaces/msg/Log."""
 _LOG_DELAY = 0.3
-"""Seconds that the reason may be later than the state: they are on two topics."""
+"""Seconds by which the reason may arrive later than the state: they are on two topics."""
 
 
 class GoalOutcomeFeature(PageFeature):
-    """Tells pages when a goal of ``navigate_to_pose`` is aborted; listens while there are pages.
+    """Notifies pages when a goal of ``navigate_to_pose`` is aborted; subscribes while there are pages.
 
     The reason is the last error that the node of the action has logged since the goal was accepted.
     """
@@ -39,7 +39,7 @@ class GoalOutcomeFeature(PageFeature):
         self._due: asyncio.TimerHandle | None = None
 
     def opening(self) -> list[ServerMessage]:
-        """The outcome of the last goal."""
+        """Return the outcome of the last goal."""
         if not self._subscriptions:
             lasting = QoSProfile(depth=_STATES, durability=DurabilityPolicy.TRANSIENT_LOCAL)
             self._subscriptions = [

@@ -19,11 +19,11 @@ _MOST_WAITING = 1000
 """Records that wait for one page; of more only the newest are sent."""
 
 _KEPT = 1000
-"""Records of the past for a page that begins to watch."""
+"""Past records for a page that starts to watch."""
 
 
 class _Reader:
-    """The records that wait for one page. The message with them is made when its turn in the outbox comes."""
+    """The records that wait for one page. Their message is made when its turn in the outbox comes."""
 
     key = "log_lines"
 
@@ -41,7 +41,7 @@ class _Reader:
         self._waiting.append(line)
 
     def since(self, seen: int) -> tuple[str | None, int]:
-        """The message with all records that wait; see `Changes`."""
+        """Return the message with all records that wait; see `Changes`."""
         if not self._waiting:
             return None, seen
         message = LogLines(list(self._waiting), self._missed)
@@ -51,7 +51,7 @@ class _Reader:
 
 
 class LogFeature(PageFeature):
-    """Sends pages the records of ``/rosout``; keeps the last ones while there are pages."""
+    """Sends pages the records of ``/rosout``; stores the last ones while there are pages."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -62,13 +62,13 @@ class LogFeature(PageFeature):
         self._turn = Paced(self._send, _PERIOD)
 
     def opening(self) -> list[ServerMessage]:
-        """Begin to keep records."""
+        """Begin to store records."""
         if self._tap is None:
             self._tap = TopicTap(self.context, _TOPIC, self._take)
         return []
 
     def receive(self, page: Page, message: WatchLog) -> None:
-        """Start or stop sending records to a page; those that come meanwhile are sent when it starts again."""
+        """Start or stop sending records to a page; records of a pause are sent at the next start."""
         if not message.watched:
             self._watching.discard(page)
             return
@@ -78,14 +78,14 @@ class LogFeature(PageFeature):
         self._turn.ask()
 
     def page_gone(self, page: Page) -> None:
-        """Forget the page; leave the topic after the last one."""
+        """Forget the page; unsubscribe after the last one."""
         self._watching.discard(page)
         self._readers.pop(page, None)
         if len(self.context.pages) == 0:
             self.close()
 
     def close(self) -> None:
-        """Leave the topic."""
+        """Unsubscribe."""
         self._readers.clear()
         self._watching.clear()
         self._past.clear()

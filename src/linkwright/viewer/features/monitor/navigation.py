@@ -30,7 +30,7 @@ from linkwright.viewer.protocol.navigation import (
 from linkwright.viewer.web.audience import Page
 
 _PERIOD = 1.0
-"""Seconds between two questions to a lifecycle manager."""
+"""Seconds between two requests to a lifecycle manager."""
 
 _ACTION = "navigate_to_pose/_action"
 _MANAGERS = ("navigation", "localization")
@@ -40,7 +40,7 @@ _COMMANDS: dict[NavigationCommand, tuple[int, tuple[str, ...]]] = {
     "resume": (2, ("localization", "navigation")),
     "reset": (3, ("navigation", "localization")),
 }
-"""The numbers of nav2_msgs/srv/ManageLifecycleNodes, and the order in which managers get them."""
+"""The numbers of nav2_msgs/srv/ManageLifecycleNodes, and the order of the managers."""
 
 _GOALS: dict[int, GoalState] = {
     1: "active",
@@ -54,7 +54,7 @@ _GOALS: dict[int, GoalState] = {
 
 
 class NavigationFeature(PageFeature):
-    """Listens to nav2, and asks it, while a page shows the panel."""
+    """Monitors nav2 while a page shows the panel."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -62,7 +62,7 @@ class NavigationFeature(PageFeature):
         self._watch: _Watch | None = None
 
     def receive(self, page: Page, message: WatchNavigation | CommandNavigation) -> None:
-        """Start or stop telling a page, or pass a command on."""
+        """Start or stop sending the state to a page, or carry out a command."""
         if isinstance(message, CommandNavigation):
             if self._watch is not None and page in self._pages:
                 self._watch.command(message.command)
@@ -75,14 +75,14 @@ class NavigationFeature(PageFeature):
             self.page_gone(page)
 
     def page_gone(self, page: Page) -> None:
-        """Stop telling the page."""
+        """Stop sending to the page."""
         self._pages.discard(page)
         if not self._pages and self._watch is not None:
             self._watch.close()
             self._watch = None
 
     def close(self) -> None:
-        """Stop telling pages."""
+        """Stop sending to pages."""
         for page in tuple(self._pages):
             self.page_gone(page)
 
@@ -92,7 +92,7 @@ class NavigationFeature(PageFeature):
 
 
 class _Watch:
-    """The state of nav2, as it was heard and asked.
+    """The state of nav2, from its topics and services.
 
     Attributes:
         state: for pages.
@@ -122,13 +122,13 @@ class _Watch:
         self._ask()
 
     def command(self, command: NavigationCommand) -> None:
-        """Carry out the command of a button; one after the other."""
+        """Carry out the command of a button; one at a time."""
         if self._work is None or self._work.done():
             self._change(busy=True, problem="")
             self._work = asyncio.get_running_loop().create_task(self._do(command))
 
     def close(self) -> None:
-        """Stop asking and listening."""
+        """Stop monitoring."""
         if self._next is not None:
             self._next.cancel()
         if self._work is not None:
@@ -207,12 +207,12 @@ class _Watch:
                 client = self._manage[name]
                 answer = await self._call(client, command=number)
                 if answer is None or not answer.success:
-                    problem = phrase("lifecycle_manager_{name} could not do that; its log says why", name=name)
+                    problem = phrase("lifecycle_manager_{name} could not do that; its log has the reason", name=name)
                     break
         self._change(busy=False, problem="" if problem is None else str(problem))
 
     async def _call(self, client: Client[Any, Any], **fields: Any) -> Any:
-        """The response of a service; None where its server has gone meanwhile."""
+        """Return the response of a service, or None if its server has gone meanwhile."""
         future = client.call_async(client.srv_type.Request(**fields))
         while not await answered(self._node, future, _PERIOD):
             if not client.service_is_ready():
@@ -221,12 +221,12 @@ class _Watch:
         return future.result()
 
     async def _cancel_goals(self) -> Phrase | None:
-        """Cancel all goals: those of a request that names none and no time."""
+        """Cancel all goals, with a request that has neither an id nor a time."""
         if not self._cancel.service_is_ready():
             return phrase("there is no action '{name}'", name="navigate_to_pose")
         answer = await self._call(self._cancel)
         if answer is None:
-            return phrase("the goal could not be cancelled: nobody answers")
+            return phrase("the goal could not be cancelled: there is no answer")
         if answer.return_code != 0:
             return phrase("the goal could not be cancelled: code {code}", code=answer.return_code)
         return None

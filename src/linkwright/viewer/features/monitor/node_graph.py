@@ -46,7 +46,7 @@ class NodeGraphFeature(PageFeature):
 
 
 def node_graph(graph: GraphQueries) -> NodeGraph:
-    """The nodes and topics as they are; nodes of one name count as one, as everywhere in ROS."""
+    """Return the current nodes and topics; nodes of one name count as one, as everywhere in ROS."""
     topics: dict[str, GraphTopic] = {}
     for endpoint in graph.endpoints():
         if endpoint.kind not in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):

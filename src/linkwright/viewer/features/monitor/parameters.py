@@ -32,7 +32,7 @@ _KINDS: dict[ParameterType, ParameterKind] = {kind: cast("ParameterKind", kind.n
 _TYPES = {text: kind for kind, text in _KINDS.items()}
 _ARTICLES = {
     "bool": phrase("true or false"),
-    "integer": phrase("a whole number"),
+    "integer": phrase("an integer"),
     "double": phrase("a number"),
     "byte": phrase("a byte, 0 to 255"),
 }
@@ -41,7 +41,7 @@ _LONGS = range(-(2**63), 2**63)
 
 
 def parameter_row(descriptor: Any, value: Any) -> ParameterRow:
-    """The row of the page for a parameter.
+    """Return the page's row for a parameter.
 
     Args:
         descriptor: rcl_interfaces/msg/ParameterDescriptor.
@@ -67,7 +67,7 @@ def parameter_row(descriptor: Any, value: Any) -> ParameterRow:
 
 
 def value_texts(value: Any) -> tuple[ParameterKind, list[str]]:
-    """The kind of a value (rcl_interfaces/msg/ParameterValue), and a text for each of its elements."""
+    """Return the kind of a value (rcl_interfaces/msg/ParameterValue), and a text for each of its elements."""
     plain = plain_value(value)
     kind = ParameterType(value.type)
     if kind is ParameterType.NOT_SET:
@@ -76,10 +76,10 @@ def value_texts(value: Any) -> tuple[ParameterKind, list[str]]:
 
 
 def parameter_of(wanted: SetParameter) -> Parameter:
-    """The parameter that a page wants to have set.
+    """Return the parameter that a page asks to set.
 
     Raises:
-        ValueError: a text stands for no value of the kind; the text says which.
+        ValueError: a text is not a value of the kind; the message quotes it.
     """
     kind = _TYPES[wanted.kind]
     if kind is ParameterType.NOT_SET:
@@ -126,7 +126,7 @@ class RemoteNode:
     Args:
         node: the node that makes the clients.
         name: full name of the node whose parameters these are.
-        tell: called with all parameters when they are known, and on every change.
+        tell: called with all parameters at the start, and on every change.
     """
 
     def __init__(self, node: Node, name: str, tell: Callable[[NodeParameters], None]) -> None:
@@ -139,14 +139,14 @@ class RemoteNode:
         self._turn = Paced(self._tell_rows, _TELL_PERIOD)
 
     def close(self) -> None:
-        """Stop asking."""
+        """Stop requests."""
         self._turn.cancel()
         for task in self._tasks:
             task.cancel()
         self._client.destroy()
 
     def refresh(self) -> None:
-        """Ask for everything again."""
+        """Request all parameters again."""
         self._run(self._refresh())
 
     def take(self, event: Any) -> None:
@@ -167,7 +167,7 @@ class RemoteNode:
         self._run(self._set(wanted, answer))
 
     def dump(self, answer: Callable[[ParameterDump], None]) -> None:
-        """Answer a parameter file with all the parameters."""
+        """Answer with a parameter file with all the parameters."""
         self._run(self._dump(answer))
 
     def _run(self, work: Any) -> None:
@@ -242,7 +242,7 @@ class ParametersFeature(PageFeature):
         self._events: TopicTap | None = None
 
     def receive(self, page: Page, message: WatchParameters | SetParameter | DumpParameters) -> None:
-        """Carry out a request; a node's parameters are set and dumped by whoever watches them."""
+        """Handle a request; a node's parameters are set and dumped by the pages that watch them."""
         if isinstance(message, WatchParameters):
             self._watch(page, message)
             return
@@ -260,7 +260,7 @@ class ParametersFeature(PageFeature):
             self._keep()
 
     def close(self) -> None:
-        """End everything."""
+        """Stop for good."""
         self._wishes.clear()
         self._keep()
 
@@ -283,7 +283,7 @@ class ParametersFeature(PageFeature):
             page.send(known.known)
 
     def _keep(self) -> None:
-        """Close clients and subscriptions that no page needs, and open those that one does."""
+        """Close clients and subscriptions that no page needs, and open those that a page does."""
         wishes = self._wishes.values()
         wanted = {wish.node for wish in wishes if wish.node is not None}
         for name in self._nodes.keys() - wanted:
@@ -320,7 +320,7 @@ class ParametersFeature(PageFeature):
                     back.refresh()
 
     def _returned(self, wish: _Wish, listed: ParameterNodes) -> RemoteNode | None:
-        """The node that the page watches, if it has come (again) since the last list."""
+        """Return the node that the page watches, if it has appeared (again) since the last list."""
         if wish.told is None or wish.node is None or wish.node in wish.told.nodes or wish.node not in listed.nodes:
             return None
         return self._nodes[wish.node]

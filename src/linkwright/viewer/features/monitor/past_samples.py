@@ -1,4 +1,4 @@
-"""Samples for plots of messages as they were recorded."""
+"""Plot samples from recorded messages."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 _NANO = 1e-9
 
 _MOST_READ = 3000
-"""Messages that are read; of more, evenly spread ones: reading one takes some ten microseconds."""
+"""Most messages to read; of more, evenly spread ones: reading one takes some ten microseconds."""
 
 
 def sample_of(path: FieldPath, message: Any, received_ns: int) -> tuple[float, float, float] | None:
-    """A sample: when it was received and the stamp of the header (NaN for none), seconds, and the number of a field.
+    """Return a sample: receive time and the stamp of the header (NaN for none), seconds, and the number of a field.
 
-    None where the message has no such field.
+    None if the message has no such field.
     """
     value = path.value(message)
     if value is None:
@@ -34,7 +34,7 @@ def sample_of(path: FieldPath, message: Any, received_ns: int) -> tuple[float, f
 
 
 def past_samples(path: FieldPath, cls: Any, messages: Sequence[Recorded]) -> NDArray[np.float64]:
-    """Samples of recorded messages of a class: array, shape (3, M), as `sample_of` has them in its rows."""
+    """Return samples of recorded messages of a class: array, shape (3, M), whose columns are as in `sample_of`."""
     step = -(-len(messages) // _MOST_READ) or 1
     read = [sample_of(path, deserialize(data, cls), stamp_ns) for _, stamp_ns, data in messages[::-1][::step]]
     return np.array([each for each in reversed(read) if each is not None], dtype=np.float64).reshape(-1, 3).T

@@ -37,7 +37,7 @@ _MOST_WAITING = 4096
 
 
 class SampleQueue:
-    """Gathers samples until they are taken. It never becomes long: what is too much is thinned out."""
+    """Collects samples until they are taken. Too many are thinned out, so that it stays short."""
 
     def __init__(self) -> None:
         self._received: list[float] = []
@@ -48,7 +48,7 @@ class SampleQueue:
         return len(self._values)
 
     def add(self, received: float, stamp: float, value: float) -> None:
-        """Add a sample: when it was received and the stamp of its header (NaN for none), seconds, and the value."""
+        """Add a sample: receive time and the stamp of its header (NaN for none), seconds, and the value."""
         self._received.append(received)
         self._stamps.append(stamp)
         self._values.append(value)
@@ -57,7 +57,7 @@ class SampleQueue:
             self._received, self._stamps, self._values = kept
 
     def take(self) -> NDArray[np.float64]:
-        """All of them, thinned out to what a frame may hold: array, shape (3, M); the queue is empty then."""
+        """Return all of them, thinned out to fit a frame: array, shape (3, M); the queue is empty then."""
         taken = thinned(self._array(), MOST_SENT)
         self._received, self._stamps, self._values = [], [], []
         return taken
@@ -67,7 +67,7 @@ class SampleQueue:
 
 
 def thinned(samples: NDArray[Any], most: int) -> NDArray[Any]:
-    """A subset of the samples of limited size whose plot looks the same.
+    """Return a subset of the samples of limited size whose plot looks the same.
 
     Of each of equal shares in a row the least and the greatest value stay, in their order.
 
@@ -92,13 +92,13 @@ def thinned(samples: NDArray[Any], most: int) -> NDArray[Any]:
 _PERIOD = 1 / 30
 
 _MOST_PAST = 2048
-"""Samples of a series of the time before the one that is shown: two for each column of pixels."""
+"""Samples of a series from before the time that is shown: two for each column of pixels."""
 
 _MOST_PAST_BYTES = 64 << 20
 """The most bytes of messages that are read for past samples."""
 
 _QUIET = 0.1
-"""Seconds without another jump of time, before the past is read: while the timeline is dragged there are many."""
+"""Seconds without another jump of time before the past is read: dragging the timeline makes many jumps."""
 
 _LONGEST_PAST = 600.0
 """Seconds of the past that a page may ask for."""
@@ -115,22 +115,22 @@ class _Series:
     past: NDArray[np.float64] | None = None
 
     def has_samples(self) -> bool:
-        """Whether there is something to send."""
+        """Whether there are samples to send."""
         return self.past is not None or len(self.queue) > 0
 
     def take(self) -> NDArray[np.float64]:
-        """The samples to be sent: array, shape (3, M). Those of the past come first, and the page begins anew there."""
+        """Return the samples to send: array, shape (3, M). Those of the past come first; the page restarts there."""
         waiting, past, self.past = self.queue.take(), self.past, None
         return waiting if past is None else np.hstack([past, waiting])
 
     def forget(self) -> None:
-        """Drop queued samples: they are of another time than the one that is shown."""
+        """Drop queued samples: they belong to another time than the one shown."""
         self.past = None
         self.queue.take()
 
 
 class _Channel:
-    """A topic with all the series that take numbers from it."""
+    """A topic with all the series that plot its numbers."""
 
     def __init__(self, context: ViewerContext, topic: str, came: Callable[[], None]) -> None:
         self._came = came
@@ -153,7 +153,7 @@ class _Channel:
         self._came()
 
     def _check(self, series: _Series) -> None:
-        """Check whether the path leads to a number of the topic's messages."""
+        """Return whether the path leads to a number of the topic's messages."""
         if series.path is None:
             return
         error = self.tap.error
@@ -178,7 +178,7 @@ class _Channel:
         self._came()
 
     def take_past(self, seconds: Callable[[_Series], float], timeline: TimelineFeature) -> None:
-        """Give the series that wait for it their samples before the time that is shown."""
+        """Give the waiting series their samples from before the time that is shown."""
         cls = self.tap.message_class
         feeding = [series for series in self.series if series.error is None and series.path is not None]
         if cls is None or not feeding:
@@ -189,13 +189,13 @@ class _Channel:
             assert series.path is not None
             samples = past_samples(series.path, cls, messages)
             if samples.shape[1] > 0:
-                series.forget()  # what waits is among them
+                series.forget()  # the waiting samples are among them
                 series.past = thinned(samples, _MOST_PAST)
         self._came()
 
 
 class _Plots:
-    """The series of a page. The frame with its samples is made when its turn in the outbox comes."""
+    """The series of a page. The frame with their samples is made when its turn in the outbox comes."""
 
     key = "samples"
 
@@ -205,17 +205,17 @@ class _Plots:
         self.told: list[SeriesState] = []
 
     def has_samples(self) -> bool:
-        """Whether there is something to send."""
+        """Whether there are samples to send."""
         return any(series.has_samples() for series in self.series.values())
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """The frame with all samples that wait; see `Changes`."""
+        """Return the frame with all samples that wait; see `Changes`."""
         ready = [(identity, series.take()) for identity, series in self.series.items() if series.has_samples()]
         return pack_samples(ready) if ready else None, seen
 
 
 class PlotsFeature(PageFeature):
-    """Sends pages the numbers that they plot; a topic is subscribed to while a page has a series of it."""
+    """Sends pages the numbers that they plot; subscribes to a topic while a page has a series of it."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -270,7 +270,7 @@ class PlotsFeature(PageFeature):
             plots.told = []
             self._turn.ask()
 
-    # --- what was before the time that is shown ----------------------------------------------------------------
+    # --- samples before the time that is shown -----------------------------------------------------------------
 
     def _jumped(self) -> None:
         for plots in self._pages.values():
@@ -330,7 +330,7 @@ class PlotsFeature(PageFeature):
     # --- what can be plotted -----------------------------------------------------------------------------------
 
     def _ask(self, page: Page, topic: str) -> None:
-        """Answer with the fields that can be plotted, and again once a message tells the lengths of arrays."""
+        """Answer with the fields that can be plotted, and again once a message has the lengths of arrays."""
 
         def take(message: Any, _: MessageInfo) -> None:
             page.send(TopicFields(topic, message.TYPE_NAME, plot_fields(type(message), message), None))
@@ -347,7 +347,7 @@ class PlotsFeature(PageFeature):
         return TopicFields(tap.topic, cls.TYPE_NAME, plot_fields(cls), None)
 
     def _class_without_publishers(self, tap: TopicTap) -> Any:
-        """The class of a topic that only has subscribers so far; None when they do not tell."""
+        """Return the class of a topic that only has subscribers so far, or None if they do not agree."""
         from linkwright.messages import get_message
 
         types = self.context.node.graph.topics().get(tap.topic, [])

@@ -13,7 +13,7 @@ from linkwright.viewer.protocol.monitor import AimTeleop, Drive, TeleopState, Te
 from linkwright.viewer.web.audience import Page
 
 _SILENCE = 0.4
-"""Seconds without a word from a page that drives, after which the robot is stopped."""
+"""Seconds without a velocity from a page that drives, after which the robot is stopped."""
 
 
 class TeleopFeature(PageFeature):
@@ -24,7 +24,7 @@ class TeleopFeature(PageFeature):
         self._pads: dict[Page, _Pad] = {}
 
     def receive(self, page: Page, message: AimTeleop | Drive) -> None:
-        """Aim a page's pad, or publish a velocity."""
+        """Set the target of a page's pad, or publish a velocity."""
         if isinstance(message, Drive):
             pad = self._pads.get(page)
             if pad is not None:
@@ -36,7 +36,7 @@ class TeleopFeature(PageFeature):
             self.context.graph_changes.listen(self._review)
 
     def page_gone(self, page: Page) -> None:
-        """Stop what the page drives."""
+        """Stop the robot that the page drives."""
         pad = self._pads.pop(page, None)
         if pad is not None:
             pad.close()
@@ -44,7 +44,7 @@ class TeleopFeature(PageFeature):
             self.context.graph_changes.ignore(self._review)
 
     def close(self) -> None:
-        """Stop everything."""
+        """Stop all robots."""
         for page in tuple(self._pads):
             self.page_gone(page)
 
@@ -66,7 +66,7 @@ class _Pad:
         self.review()
 
     def drive(self, velocity: Drive) -> None:
-        """Publish a velocity, and stop unless another comes soon."""
+        """Publish a velocity, and stop unless another one follows soon."""
         if self._topic is None or len(velocity.linear) != 3 or len(velocity.angular) != 3:
             return
         self._cancel()
@@ -75,13 +75,13 @@ class _Pad:
             self._silent = asyncio.get_running_loop().call_later(_SILENCE, self._stop)
 
     def close(self) -> None:
-        """Stop, and leave the topic."""
+        """Stop, and destroy the publisher."""
         self._stop()
         if self._topic is not None:
             self._topic.close()
 
     def review(self) -> None:
-        """Adopt the type of the topic's subscribers, and count them. A pad that drives keeps its own type."""
+        """Adopt the type of the topic's subscribers, and count them. A pad in use keeps its type."""
         target = self._target
         try:
             if self._topic is None:
@@ -99,7 +99,7 @@ class _Pad:
         self._say(TeleopState(topic.name, topic.type_name.rpartition("/")[2], listeners, None))
 
     def _stop(self) -> None:
-        """Publish zero, if something else was published last."""
+        """Publish zero, unless it was published last."""
         if self._silent is not None:
             self._cancel()
             if self._topic is not None:

@@ -1,4 +1,4 @@
-"""A subscription to any topic, with the type and the quality of service of its publishers, whenever they come."""
+"""A subscription to any topic, with the type and the quality of service of its publishers."""
 
 from __future__ import annotations
 
@@ -59,13 +59,13 @@ _DEPTH = 500
 class TopicTap:
     """Receives a topic until it is closed.
 
-    The topic need not exist yet. As ``ros2 topic echo`` does, it asks for the strongest quality of service that all
-    publishers offer; should one come later that offers less, it subscribes anew.
+    The topic need not exist yet. As ``ros2 topic echo`` does, it requests the strongest quality of service that all
+    publishers offer; if a later publisher offers less, it subscribes again.
 
     Args:
         context: the context of the subscribing node, whose remappings do not apply: topics are named as in the graph.
         topic: absolute name.
-        take: called with each message, or its bytes, and what is known of it.
+        take: called with each message, or its bytes, and the message info.
         raw: whether `take` gets CDR bytes.
         changed: called when `error` or `message_class` has another value.
     """
@@ -81,7 +81,7 @@ class TopicTap:
     ) -> None:
         self.topic = topic
         self.error: str | None = None
-        """Why nothing can be received; None also while there is nobody who publishes."""
+        """Why nothing can be received; None also while there is no publisher."""
         self.message_class: Any = None
         """The class of the messages; None while it is not known."""
         self._node = context.node
@@ -95,7 +95,7 @@ class TopicTap:
         self._review()
 
     def close(self) -> None:
-        """Leave the topic."""
+        """Unsubscribe."""
         self._changes.ignore(self._look)
         self._leave()
 
@@ -113,7 +113,7 @@ class TopicTap:
         ]
         types = sorted({publisher.type_name for publisher in publishers})
         if not types:
-            return  # what was known of publishers that have gone holds until others come
+            return  # the last known type stays valid until there are new publishers
         if len(types) > 1:
             self.error = f"the topic carries more than one type: {', '.join(types)}"
             self._leave()

@@ -27,7 +27,7 @@ from linkwright.viewer.protocol.monitor import (
 from linkwright.viewer.web.audience import Page
 
 _MOST_ROWS = 1500
-"""In one message; what is beyond is left out."""
+"""Rows of one message; further rows are left out."""
 _MOST_ELEMENTS = 64
 _SHOWN_ELEMENTS = 8
 """The number of an array's elements shown in its own row."""
@@ -35,7 +35,7 @@ _LONGEST_TEXT = 400
 
 
 def message_tree(message: Message) -> list[MessageField]:
-    """The fields of a message, in their order."""
+    """Return the fields of a message, in their order."""
     return _Tree().fields(message)
 
 
@@ -94,7 +94,7 @@ _MESSAGES_PERIOD = 0.2
 _WINDOW_MESSAGES = 2000
 _WINDOW_NS = 5_000_000_000
 _LEAST_MEASURED_NS = 500_000_000
-"""The least time that a topic is measured before its figures are sent: messages may come in bursts."""
+"""The least time that a topic is measured before its figures are sent: messages may arrive in bursts."""
 
 _NANO = 1e-9
 
@@ -108,11 +108,11 @@ class _Wish:
     opened: frozenset[str] = frozenset()
     told: TopicList | None = None
     due: set[str] = field(default_factory=set)
-    """Opened topics of which there is news for this page."""
+    """Opened topics with news for this page."""
 
 
 class _Gauge:
-    """Measures a topic, and keeps its last message as bytes: it is decoded only when somebody looks at it."""
+    """Measures a topic, and stores its last message as bytes: it is decoded only when a page shows it."""
 
     def __init__(self, feature: TopicsFeature, context: ViewerContext, topic: str) -> None:
         self._feature = feature
@@ -122,7 +122,7 @@ class _Gauge:
         self.tap = TopicTap(context, topic, self._take, raw=True, changed=feature.measure_soon)
 
     def message(self) -> TopicMessage | None:
-        """The last message; None before there is one, or when its bytes cannot be decoded."""
+        """The last message; None before there is one, or if its bytes cannot be decoded."""
         from linkwright.messages import deserialize
 
         if self.last is None or self.tap.message_class is None:
@@ -147,7 +147,7 @@ class _Gauge:
 
 
 class TopicsFeature(PageFeature):
-    """Lists topics, and measures those that a page asks for; there are no other subscriptions."""
+    """Lists topics, and measures those that a page requests; it has no other subscriptions."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -157,7 +157,7 @@ class TopicsFeature(PageFeature):
         self._messages = Paced(self._send_messages, _MESSAGES_PERIOD)
 
     def receive(self, page: Page, message: WatchTopics) -> None:
-        """Replace what a page lists, measures and opens."""
+        """Replace the topics that a page lists, measures and opens."""
         before = self._wishes.get(page, _Wish())
         opened = frozenset(message.opened)
         wish = _Wish(message.listed, frozenset(message.measured), opened, before.told if message.listed else None)
@@ -185,11 +185,11 @@ class TopicsFeature(PageFeature):
                 self._messages.ask()
 
     def measure_soon(self) -> None:
-        """Send something about a topic with the next figures."""
+        """Send the figures of a topic with the next ones."""
         self._figures.ask()
 
     def _keep(self, page: Page | None = None) -> None:
-        """Open the subscriptions that pages need and close all others; tell the page that has new wishes."""
+        """Open the subscriptions that pages need and close all others; answer the page with new requests."""
         wishes = self._wishes.values()
         wanted = set[str]().union(*(wish.measured | wish.opened for wish in wishes))
         for topic in self._gauges.keys() - wanted:

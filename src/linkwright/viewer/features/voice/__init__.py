@@ -1,1 +1,1 @@
-"""The Voice panel: the microphones of pages, and what is heard and answered."""
+"""The Voice panel: the microphones of pages, recognized commands and answers."""

@@ -1,4 +1,4 @@
-"""Publishes the sound of pages' microphones as audio_common_msgs, and tells them what is heard and answered."""
+"""Publishes the sound of pages' microphones as audio_common_msgs, and sends them recognized commands and answers."""
 
 from __future__ import annotations
 
@@ -38,20 +38,20 @@ _LISTEN = "/voice/listen"
 _TEXT_INPUT = "/voice/text_input"
 _DEPTH = 10
 _LONGEST_TEXT = 500
-"""Characters of a command; what is longer is cut."""
+"""Characters of a command; longer ones are truncated."""
 
 
 class VoiceFeature(PageFeature):
-    """Publishes the speech of one page at a time, and tells those that watch what was understood.
+    """Publishes the speech of one page at a time, and sends recognized commands to the pages that watch.
 
-    The topics of sound are there while a page has its microphone open, the others while a page watches.
+    The topics of sound exist while a page has its microphone open, the others while a page watches.
     """
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._node = self.context.node
         self._watchers: dict[Page, VoiceState | None] = {}
-        """With what each was told last."""
+        """With the last state sent to each."""
         self._subscriptions: list[Subscription[Any]] = []
         self._text_input: Publisher[Any] | None = None
         self._floor = Floor()
@@ -61,17 +61,17 @@ class VoiceFeature(PageFeature):
         self._listen: Publisher[Any] | None = None
         self._holder: Page | None = None
         self._told = 0
-        """How many nodes the button's state was published to."""
+        """The number of subscribers that have received the button's state."""
         self._said = 0
         self._proposes = False
         self._words = WordBook()
 
     def opening(self) -> list[ServerMessage]:
-        """Whether there is a node to talk to; others may answer too, such as one that seeks objects."""
+        """Return whether there is a node to talk to; others may answer too, such as one that seeks objects."""
         return [VoiceNode(self._node.count_publishers(_SAID["command"]) > 0)]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Publish sound or a text, note who talks, or start or stop telling a page."""
+        """Publish sound or a text, set the talking page, or start or stop sending to a page."""
         if isinstance(message, SoundBlock):
             self._hear(page, message)
         elif isinstance(message, Talk):
@@ -92,7 +92,7 @@ class VoiceFeature(PageFeature):
         self._watch(page, watched=False)
 
     def close(self) -> None:
-        """Leave the topics."""
+        """Destroy the publishers and subscriptions."""
         for page in {*self._watchers, *self._budgets}:
             self.page_gone(page)
 
@@ -124,7 +124,7 @@ class VoiceFeature(PageFeature):
         self._review()
 
     def _pass_on(self) -> None:
-        """Publish whether a button is held; another page's press begins anew."""
+        """Publish whether a button is held; another page's press starts a new command."""
         holder = self._floor.holder
         if holder is self._holder or self._listen is None:
             return
@@ -139,9 +139,9 @@ class VoiceFeature(PageFeature):
         publisher.publish(publisher.msg_type(data=held))
 
     def _listeners_changed(self, event: QoSPublisherMatchedInfo) -> None:
-        """Tell who came after the button was pressed: other processes match only some time after a publisher is made.
+        """Publish for subscribers that appear after the button was pressed: other processes match with some delay.
 
-        The topic is not latched, as who publishes on it by hand does not latch it either.
+        The topic is not latched, because manual publishers do not latch it either.
         """
         if event.current_count > self._told and self._holder is not None and self._listen is not None:
             self._publish_held(self._listen, held=True)
@@ -154,13 +154,13 @@ class VoiceFeature(PageFeature):
         if not budget.spend(block.samples.size / RATE, block.lost):
             self._cut.add(page)
             self._talk(page, Talk("off"))
-        elif self._words.hear(page, block.samples):  # it is an example of a word
+        elif self._words.hear(page, block.samples):  # the sound is an example of a word
             if self._audio is not None:
                 self._audio.restart()
         elif page is self._floor.talker and self._audio is not None:
             self._audio.publish(block.samples, block.lost)
 
-    # --- what pages are told -----------------------------------------------------------------------------------
+    # --- messages to pages -------------------------------------------------------------------------------------
 
     def _watch(self, page: Page, *, watched: bool) -> None:
         if not watched:
@@ -198,7 +198,7 @@ class VoiceFeature(PageFeature):
         self._review()
 
     def _review(self) -> None:
-        """Tell the pages that watch what has changed."""
+        """Send the pages that watch the changed state."""
         if not self._watchers:
             return
         graph = self._node.graph

@@ -1,4 +1,4 @@
-"""The floor: the page that talks among several, and the bounds of its sound."""
+"""The page that talks among several, and the bounds of its sound."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from linkwright.viewer.protocol.voice import TalkMode
 from linkwright.viewer.web.audience import Page
 
 _LEAD = 10.0
-"""Seconds of sound that may come at once, as after a line was stuck."""
+"""Seconds of sound that may arrive at once, as after a stalled connection."""
 
 _CLOCK_TOLERANCE = 1.05
 """The factor by which the clock of a page's microphone may be faster than ours."""
 
 
 class Floor:
-    """The pages that have a microphone open; one of them talks: who holds the button, in the order of holding."""
+    """The pages that have a microphone open. The one that holds the button longest talks."""
 
     def __init__(self) -> None:
         self._modes: dict[Page, TalkMode] = {}
@@ -24,7 +24,7 @@ class Floor:
         return bool(self._modes)
 
     def set(self, page: Page, mode: TalkMode) -> None:
-        """Change what a page does with its microphone; it comes after those that do the same already."""
+        """Set a page's mode of its microphone; it is queued after those with the same mode."""
         if self._modes.get(page) == mode:
             return
         self._modes.pop(page, None)
@@ -38,7 +38,7 @@ class Floor:
 
     @property
     def talker(self) -> Page | None:
-        """The page whose sound is meant."""
+        """The page whose sound is published."""
         return self.holder or self._first("open")
 
     def _first(self, mode: TalkMode) -> Page | None:
@@ -48,7 +48,7 @@ class Floor:
 class SoundBudget:
     """The sound that a page may send, and the loss that it may report: as much of each as time passes.
 
-    The two are apart because what was lost may be in what is sent, as silence.
+    The two are counted separately because lost sound may be sent as silence.
 
     Args:
         clock: seconds.
@@ -60,7 +60,7 @@ class SoundBudget:
         self._sound = self._lost = _LEAD
 
     def spend(self, sound: float, lost: float) -> bool:
-        """Whether so many seconds are within the bounds."""
+        """Return whether so many seconds are within the bounds."""
         now = self._clock()
         gained = (now - self._at) * _CLOCK_TOLERANCE
         self._at = now

@@ -1,4 +1,4 @@
-"""Enrolling words: what a page records becomes an example of a word in the user's file."""
+"""Enrolling words: a page's recording becomes an example of a word in the user's file."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from linkwright.viewer.protocol.voice_words import (
 from linkwright.viewer.web.audience import Page
 
 _LONGEST = 8 * RATE
-"""Samples of a recording that are kept."""
+"""Samples of a recording that are stored."""
 
 
 class Recording:
@@ -44,19 +44,19 @@ class Recording:
         self._length = 0
 
     def add(self, samples: Samples) -> None:
-        """Append the next block; what is too long is cut off at the end."""
+        """Append the next block; a recording that is too long is cut off at the end."""
         if self._length < _LONGEST:
             self._blocks.append(samples)
             self._length += samples.size
 
     @property
     def samples(self) -> Samples:
-        """All of it."""
+        """All samples."""
         return np.concatenate([np.zeros(0, np.int16), *self._blocks])
 
 
 class WordBook:
-    """The user's file of words, and the pages that see it. Read anew before each change: others write it, too."""
+    """The user's file of words, and its pages. It is read again before each change, because other programs write it."""
 
     def __init__(self) -> None:
         self._watchers: set[Page] = set()
@@ -85,14 +85,14 @@ class WordBook:
                 self._send_file(page)
 
     def hear(self, page: Page, samples: Samples) -> bool:
-        """Take sound of a page that records a word; returns whether it does."""
+        """Add sound of a page that records a word; returns whether it does."""
         recording = self._recordings.get(page)
         if recording is not None:
             recording.add(samples)
         return recording is not None
 
     def page_gone(self, page: Page) -> None:
-        """Forget a page, and what it was recording."""
+        """Forget a page, and its recording."""
         self._watchers.discard(page)
         self._recordings.pop(page, None)
 
@@ -118,7 +118,7 @@ class WordBook:
             )
 
     def _change(self, page: Page, change: Callable[[Words], object]) -> bool:
-        """Change the file, and send it to all pages; or tell the page why that failed."""
+        """Change the file, and send it to all pages; or send the page the reason why that failed."""
         try:
             words = _read()
             change(words)
@@ -146,11 +146,11 @@ class WordBook:
         try:
             page.send(VoiceWordsFile(words_path().read_text(encoding="utf-8")))
         except (OSError, UnicodeDecodeError):
-            self._tell(page)  # which says what is wrong, or that there are no words
+            self._tell(page)  # which reports the error, or that there are no words
 
 
 def _read() -> Words:
-    """The words of the user's file; none where there is no file.
+    """Return the words of the user's file, which may not exist.
 
     Raises:
         LinkwrightError: VOICE202 or VOICE203.
@@ -188,5 +188,5 @@ def _merge(words: Words, text: str) -> None:
 
 
 def _text(error: LinkwrightError) -> str:
-    """The error, in the language of the terminal."""
+    """Return the error as text, in the language of the terminal."""
     return str(next(iter(translated(error.diagnostics))).message)
