@@ -44,7 +44,7 @@ def unpack(frame: bytes) -> Content:
 
 def contents(display: Any) -> list[Content]:
     """What a page that opens now would be sent of a display."""
-    return [unpack(getattr(frame, "whole", frame)) for frame in display.data()]
+    return [unpack(getattr(frame, "full_frame", frame)) for frame in display.data()]
 
 
 def shown_markers(display: Any) -> dict[str, dict[str, Any]]:

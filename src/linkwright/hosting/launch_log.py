@@ -221,17 +221,17 @@ Line = Callable[[str, str, str], str]
 """Formats a line from a level, a logger's name and a text."""
 
 
-def line_format(wanted: str | None, named: dict[str, str]) -> Line:
+def line_format(chosen: str | None, named: dict[str, str]) -> Line:
     """Return a function that formats lines.
 
     Args:
-        wanted: a name of `named`, or a format with the fields of Python's log records in braces; None for the default.
+        chosen: a name of `named`, or a format with the fields of Python's log records in braces; None for the default.
         named: formats by name.
 
     Returns:
         The function. For a format that cannot be filled, it uses the default one.
     """
-    template = named.get(wanted or "default", wanted or "")
+    template = named.get(chosen or "default", chosen or "")
 
     def line(level: str, name: str, text: str) -> str:
         created = time.time()

@@ -50,7 +50,7 @@ class Network:
 
     def join_soon(self, *, with_viewer: bool) -> None:
         """Join after a delay, once; does nothing without a graph, or if joining is switched off."""
-        if self._graph is None or self._handle is not None or not self._is_wanted():
+        if self._graph is None or self._handle is not None or not self._is_enabled():
             return
         loop = asyncio.get_running_loop()
         self._handle = loop.call_later(_DELAY_SECONDS if with_viewer else 0.0, self._join)
@@ -61,7 +61,7 @@ class Network:
             self._handle.cancel()
         self._graph = None
 
-    def _is_wanted(self) -> bool:
+    def _is_enabled(self) -> bool:
         return self._session.options.network and os.environ.get(_SWITCH) != "0"
 
     def _join(self) -> None:
@@ -100,8 +100,8 @@ class SharedNames:
         self._show = show
         self._loop = asyncio.get_running_loop()
         self._names: frozenset[str] = frozenset()
-        self._told: frozenset[str] = frozenset()
-        self._telling: asyncio.TimerHandle | None = None
+        self._reported: frozenset[str] = frozenset()
+        self._report_timer: asyncio.TimerHandle | None = None
         self.findings: list[Diagnostic] = []
         """The findings for the page: one as long as names are shared, else none."""
 
@@ -112,17 +112,17 @@ class SharedNames:
 
     def close(self) -> None:
         """Cancel a pending warning."""
-        if self._telling is not None:
-            self._telling.cancel()
+        if self._report_timer is not None:
+            self._report_timer.cancel()
 
     def _gather(self, names: frozenset[str]) -> None:
         self._names = names
-        if self._telling is None:
-            self._telling = self._loop.call_later(_GATHER_SECONDS, self._tell)
+        if self._report_timer is None:
+            self._report_timer = self._loop.call_later(_GATHER_SECONDS, self._report)
 
-    def _tell(self) -> None:
-        self._telling = None
-        new, self._told = self._names - self._told, self._names
+    def _report(self) -> None:
+        self._report_timer = None
+        new, self._reported = self._names - self._reported, self._names
         if new:
             (finding,) = translated([self._finding(new)])
             self._log.caution("launch", f"{finding.message}; {finding.hint}")

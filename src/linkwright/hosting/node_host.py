@@ -191,15 +191,15 @@ class NodeHost:
             self._not_started(plan, error)
             return
         self._running[plan.process_name] = plan, running
-        self._take_in(plan.process_name, running, plan.parameters)
+        self._register(plan.process_name, running, plan.parameters)
         if isinstance(running, ComponentContainer):
             running.loading = lambda: self._speak_as(plan.process_name)
-            running.on_loaded.append(lambda each, given: self._take_in(plan.process_name, each, given.parameters))
+            running.on_loaded.append(lambda loaded, given: self._register(plan.process_name, loaded, given.parameters))
         session.node_started(plan)
         if isinstance(running, FinishingNode):
             running.finished.add_done_callback(lambda done: self._finished(plan, running, done))
 
-    def _take_in(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
+    def _register(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
         self._process_of_logger[running.node.get_logger().name] = process_name
         self._bind_descriptions(process_name, running, parameters)
         follow_files(running, self._session, lambda: self.launcher_node)

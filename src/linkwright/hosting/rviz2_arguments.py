@@ -72,8 +72,8 @@ def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagno
     waiting = iter(arguments)
     for argument in waiting:
         if argument == "--ros-args":
-            for each in waiting:  # names and remappings of a node; the viewer keeps those of the file
-                if each == "--":
+            for option in waiting:  # names and remappings of a node; the viewer keeps those of the file
+                if option == "--":
                     break
         elif argument in _CONFIG or argument in _FIXED_FRAME:
             value = next(waiting, None)

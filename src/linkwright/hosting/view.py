@@ -207,9 +207,9 @@ class ModelView:
     def _plan_others(self) -> None:
         """Have the nodes started that show the model."""
         self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
-        self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._take_viewer)
+        self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._set_viewer)
 
-    def _take_viewer(self, viewer: Viewer) -> None:
+    def _set_viewer(self, viewer: Viewer) -> None:
         self._viewer = viewer
         self._show_form()
 
@@ -240,9 +240,9 @@ class ModelView:
 
         if self._viewer is not None:
             feature = self._viewer.add_feature(ArgumentsFeature)
-            feature.ask(self._form or NOTHING_ASKED, self._take_arguments)
+            feature.ask(self._form or NOTHING_ASKED, self._set_arguments)
 
-    def _take_arguments(self, values: dict[str, str]) -> None:
+    def _set_arguments(self, values: dict[str, str]) -> None:
         self._publish_anew(XacroCall(self._call.path, tuple(values.items())))
 
     def _look_at_root(self) -> None:

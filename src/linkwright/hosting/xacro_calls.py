@@ -96,10 +96,10 @@ class Descriptions:
         call = WorldCall(world.path.absolute())
         self._read_ns[call] = world.read_ns
         self._known |= {_essence(diagnostic) for diagnostic in world.diagnostics}
-        self._take_world(call, world)
+        self._set_world(call, world)
         return call
 
-    def _take_world(self, call: WorldCall, world: LoadedWorld) -> None:
+    def _set_world(self, call: WorldCall, world: LoadedWorld) -> None:
         self._files[call], self._worlds[call] = world.files, world
         self._meshes.pop(call, None)
 
@@ -148,7 +148,7 @@ class Descriptions:
         The text is None if there is no robot.
         """
         if isinstance(call, WorldCall):
-            self._take_world(call, description)
+            self._set_world(call, description)
             return str(call.path), self._new(description.diagnostics)
         text = self.remember(call, description)
         return (None if description.robot is None else text), description.diagnostics

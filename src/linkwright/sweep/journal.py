@@ -59,8 +59,8 @@ class Journal:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             self._file = self.path.open("wb", buffering=0)
         try:
-            for each in known:
-                self._write(each)
+            for entry in known:
+                self._write(entry)
         except LinkwrightError:
             self._file.close()
             raise
@@ -96,7 +96,7 @@ class Journal:
 
     def _read(self) -> None:
         lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
-        entries = [each for each in map(_parsed, lines) if each is not None]
+        entries = [parsed for parsed in map(_parsed, lines) if parsed is not None]
         if not entries or entries[0] != self._head:
             message = phrase("the unfinished sweep '{path}' has other runs", path=display_path(self.path))
             hint = phrase("give the same scenario, values and seeds, or remove that file to start again")

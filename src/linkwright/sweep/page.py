@@ -52,25 +52,28 @@ def summary(table: Table, name: str, command: str, planned: int) -> str:
         planned: the number of planned runs.
     """
     failed = table.failed
-    told: list[Phrase] = [counted("{count} run", "{count} runs", len(table))]
+    counts: list[Phrase] = [counted("{count} run", "{count} runs", len(table))]
     if len(table) < planned:
-        told.append(phrase("{count} are still to be done", count=planned - len(table)))
-    lead = ", ".join(map(localized, told))
+        counts.append(phrase("{count} are still to be done", count=planned - len(table)))
+    lead = ", ".join(map(localized, counts))
     if failed:
         lead += f', <span class="bad">{localized(phrase("{count} failed", count=len(failed)))}</span>'
     parts = [f"<h1>{escape(name)}</h1>", f'<p class="lead">{lead}</p>', _failures(table, command)]
     numbers = [result for result in table.results if _finite(table, result)]
     if numbers:
-        parts += [f"<h2>{_said(phrase('Results'))}</h2>", _statistics(table, numbers)]
+        parts += [f"<h2>{_escaped(phrase('Results'))}</h2>", _statistics(table, numbers)]
         parts.append(
             '<div class="cards">'
             f"{''.join(_card(number, histogram(_of(table, number), number)) for number in numbers)}</div>"
         )
-    for each in _varied(table):
-        cards = "".join(_against(table, each, result) for result in numbers)
+    for parameter in _varied(table):
+        cards = "".join(_against(table, parameter, result) for result in numbers)
         if cards:
-            parts += [f"<h2>{_said(phrase('Against {name}', name=each))}</h2>", f'<div class="cards">{cards}</div>']
-    parts += [f"<h2>{_said(phrase('Rows'))}</h2>", _rows(table)]
+            parts += [
+                f"<h2>{_escaped(phrase('Against {name}', name=parameter))}</h2>",
+                f'<div class="cards">{cards}</div>',
+            ]
+    parts += [f"<h2>{_escaped(phrase('Rows'))}</h2>", _rows(table)]
     return (
         f'<!doctype html>\n<html lang="{language()}"><head><meta charset="utf-8"><meta name="viewport" '
         f'content="width=device-width"><title>{escape(name)}</title><style>{_STYLE}</style></head>'
@@ -78,14 +81,14 @@ def summary(table: Table, name: str, command: str, planned: int) -> str:
     )
 
 
-def _said(text: Phrase) -> str:
+def _escaped(text: Phrase) -> str:
     return escape(localized(text))
 
 
 def _finite(table: Table, name: str) -> list[int]:
     """Return the places of the rows in which a result is a number; True and False count as 1 and 0."""
     values = table.columns[name]
-    return [place for place, each in enumerate(values) if isinstance(each, int | float) and isfinite(each)]
+    return [place for place, value in enumerate(values) if isinstance(value, int | float) and isfinite(value)]
 
 
 def _of(table: Table, name: str) -> list[float]:
@@ -129,7 +132,7 @@ def _failures(table: Table, command: str) -> str:
         row = str(table.columns["row"][place])
         lines.append([row, str(table.columns["error"][place]), f"{command} --rerun {row}"])
     heads = [phrase("row"), phrase("error"), phrase("run it again with")]
-    title = f"<h2>{_said(phrase('Failed runs'))}</h2>"
+    title = f"<h2>{_escaped(phrase('Failed runs'))}</h2>"
     return title + _html_table([localized(head) for head in heads], lines, text=(1, 2))
 
 
@@ -139,7 +142,7 @@ def _rows(table: Table) -> str:
     lines = [[_shown(table.columns[name][place]) for name in names] for place in range(shown)]
     more = ""
     if shown < len(table):
-        more = f"<p>{_said(phrase('{count} more are in the table', count=len(table) - shown))}</p>"
+        more = f"<p>{_escaped(phrase('{count} more are in the table', count=len(table) - shown))}</p>"
     return _html_table(names, lines, text=(len(names) - 1,), targets=True) + more
 
 
@@ -155,8 +158,8 @@ def _html_table(
     rows = []
     for line in lines:
         cells = "".join(
-            f'<td class="text">{escape(each)}</td>' if place in text else f"<td>{escape(each)}</td>"
-            for place, each in enumerate(line)
+            f'<td class="text">{escape(cell)}</td>' if place in text else f"<td>{escape(cell)}</td>"
+            for place, cell in enumerate(line)
         )
         rows.append(f'<tr id="row-{line[0]}">{cells}</tr>' if targets else f"<tr>{cells}</tr>")
     head = "".join(f"<th>{escape(head)}</th>" for head in heads)

@@ -93,10 +93,10 @@ def scatter(
     upwards = Axis.of_numbers(values, _HEIGHT - _BOTTOM, _TOP)
     chosen = range(0, len(values), -(-len(values) // _MOST_POINTS))
     points = "".join(
-        f'<a href="#row-{rows[each]}"><circle class="point" cx="{across(places[each]):.1f}" '
-        f'cy="{upwards(values[each]):.1f}" r="{_RADIUS}"><title>{rows[each]}: '
-        f"{escape(str(across_values[each]))}, {values[each]:.6g}</title></circle></a>"
-        for each in chosen
+        f'<a href="#row-{rows[index]}"><circle class="point" cx="{across(places[index]):.1f}" '
+        f'cy="{upwards(values[index]):.1f}" r="{_RADIUS}"><title>{rows[index]}: '
+        f"{escape(str(across_values[index]))}, {values[index]:.6g}</title></circle></a>"
+        for index in chosen
     )
     return _drawing(across, upwards, label, _means(places, values, across, upwards) + points, across_label)
 
@@ -109,7 +109,7 @@ def _means(places: Sequence[float], values: Sequence[float], across: Axis, upwar
     if len(groups) < 2 or len(groups) > len(values) / 2:
         return ""
     line = " ".join(
-        f"{across(place):.1f},{upwards(sum(each) / len(each)):.1f}" for place, each in sorted(groups.items())
+        f"{across(place):.1f},{upwards(sum(group) / len(group)):.1f}" for place, group in sorted(groups.items())
     )
     return f'<polyline class="mean" points="{line}"/>'
 

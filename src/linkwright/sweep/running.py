@@ -73,8 +73,8 @@ def results_of(scenario: Scenario, run: Run) -> dict[str, Result]:
     """
     random.seed(run.seed)
     np.random.seed(run.seed % _SEEDS)
-    told = {SEED: run.seed} if scenario.takes_seed else {}
-    returned = scenario.function(**run.parameters, **told)
+    seed = {SEED: run.seed} if scenario.takes_seed else {}
+    returned = scenario.function(**run.parameters, **seed)
     if not isinstance(returned, Mapping):
         raise BadResultError(f"the scenario must return a dict, not {type(returned).__name__}")
     taken = {*COLUMNS, *run.parameters}

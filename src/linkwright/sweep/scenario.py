@@ -110,9 +110,9 @@ def load_scenario(path: Path) -> Scenario:
             more than one; SWEEP104 its parameters are not those of the function; SWEEP105 the values are not valid.
     """
     module = _loaded(path)
-    found = [each for each in vars(module).values() if callable(each) and hasattr(each, _DECLARED)]
+    found = [candidate for candidate in vars(module).values() if callable(candidate) and hasattr(candidate, _DECLARED)]
     if len(found) != 1:
-        lines = [_span(path, each.__code__.co_firstlineno) for each in found]
+        lines = [_span(path, candidate.__code__.co_firstlineno) for candidate in found]
         message = (
             phrase("there are {count} scenarios in '{path}'", count=len(found), path=display_path(path))
             if found
@@ -169,8 +169,10 @@ def _check_names(function: Callable[..., object], parameters: Mapping[str, objec
     kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
     needed = [
         name
-        for name, each in taken.items()
-        if each.default is each.empty and each.kind in (*kinds, inspect.Parameter.POSITIONAL_ONLY) and name != SEED
+        for name, declared in taken.items()
+        if declared.default is declared.empty
+        and declared.kind in (*kinds, inspect.Parameter.POSITIONAL_ONLY)
+        and name != SEED
     ]
     takes_all = any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in taken.values())
     unknown = [name for name in parameters if not takes_all and (name not in taken or taken[name].kind not in kinds)]
@@ -248,8 +250,8 @@ def described(error: BaseException) -> str:
     if isinstance(error, LinkwrightError):
         first = error.diagnostics[0]
         return f"{first.code} {first.span}: {first.message}" if first.span else f"{first.code} {first.message}"
-    said = " ".join(str(error).split())
-    return f"{type(error).__name__}: {said}" if said else type(error).__name__
+    message = " ".join(str(error).split())
+    return f"{type(error).__name__}: {message}" if message else type(error).__name__
 
 
 def _span(path: Path, line: int) -> Span:

@@ -78,7 +78,7 @@ def _csv(table: Table) -> bytes:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table.columns)
-    writer.writerows([_cell(each) for each in row] for row in zip(*table.columns.values(), strict=True))
+    writer.writerows([_cell(value) for value in row] for row in zip(*table.columns.values(), strict=True))
     return text.getvalue().encode()
 
 

@@ -46,7 +46,7 @@ def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -
         while waiting or busy:
             while waiting and len(busy) < workers:
                 worker = idle.pop() if idle else _Worker(path)
-                worker.take(waiting.popleft())
+                worker.start_run(waiting.popleft())
                 busy[worker.connection] = worker
             for ready in wait(list(busy)):
                 worker = busy.pop(ready)  # type: ignore[call-overload]  # connections only were waited for
@@ -80,7 +80,7 @@ class _Worker:
             self._process.start()
         theirs.close()
 
-    def take(self, run: Run) -> None:
+    def start_run(self, run: Run) -> None:
         """Have it make a run."""
         self.run = run
         with suppress(OSError):  # it has died; the caller that waits for the outcome finds out

@@ -88,8 +88,8 @@ class Recording:
             reliability=ReliabilityPolicy.BEST_EFFORT,
             durability=DurabilityPolicy.TRANSIENT_LOCAL if keeps else DurabilityPolicy.VOLATILE,
         )
-        self._subscription = self._node.create_subscription(msg_type, self.topic, self._keep, qos)
+        self._subscription = self._node.create_subscription(msg_type, self.topic, self._receive, qos)
 
-    def _keep(self, message: Any, info: MessageInfo) -> None:
+    def _receive(self, message: Any, info: MessageInfo) -> None:
         self.messages.append(message)
         self.times.append(self._graph.timebase.steady_ns() / 1e9)

@@ -16,13 +16,13 @@ _MOST = 64
 """The most worlds and robots that are kept; a sweep over arguments makes one for each value."""
 
 
-class _Kept(NamedTuple):
+class _CacheEntry(NamedTuple):
     value: Any
     states: tuple[object, ...]
     files: tuple[Path, ...]
 
 
-_kept: dict[tuple[object, ...], _Kept] = {}
+_cache: dict[tuple[object, ...], _CacheEntry] = {}
 
 
 def read_world(name: str) -> LoadedWorld:
@@ -62,14 +62,14 @@ def read_model(path: Path, arguments: Mapping[str, str]) -> Model:
 
 
 def _read_once(key: tuple[object, ...], read: Callable[[], tuple[Any, tuple[Path, ...]]]) -> Any:
-    kept = _kept.pop(key, None)
-    if kept is None or kept.states != tuple(map(_state, kept.files)):
+    entry = _cache.pop(key, None)
+    if entry is None or entry.states != tuple(map(_state, entry.files)):
         value, files = read()
-        kept = _Kept(value, tuple(map(_state, files)), files)
-    _kept[key] = kept
-    if len(_kept) > _MOST:
-        del _kept[next(iter(_kept))]
-    return kept.value
+        entry = _CacheEntry(value, tuple(map(_state, files)), files)
+    _cache[key] = entry
+    if len(_cache) > _MOST:
+        del _cache[next(iter(_cache))]
+    return entry.value
 
 
 def _state(path: Path) -> object:

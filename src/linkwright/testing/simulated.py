@@ -112,9 +112,9 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         if self._model is not None:
             self._server.spawn(self._model, self._model.name, self._pose)
         if self._description is not None:
-            said = {"robot_description": self._description, "use_sim_time": True}
-            RobotStatePublisher(self.graph, NodeOptions(parameters=said))
-        self._tell_time()
+            parameters = {"robot_description": self._description, "use_sim_time": True}
+            RobotStatePublisher(self.graph, NodeOptions(parameters=parameters))
+        self._publish_time()
 
     @property
     def server(self) -> SimulationServer:
@@ -193,7 +193,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
                 passed = simulation.time - before
             self._left -= passed
             await self.clock.advance(passed / NANOSECONDS, is_settled=True)
-            self._tell_time()
+            self._publish_time()
             server.exchange.deliver()
             await self.graph.settle()
         self._raise()
@@ -205,10 +205,10 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         """
         self.server.reset()
         self._left = 0
-        self._tell_time()
+        self._publish_time()
         await self.settle()
 
-    def _tell_time(self) -> None:
+    def _publish_time(self) -> None:
         self._clock_topic.publish(get_message(_CLOCK)(clock=Time(*divmod(self.simulation.time, NANOSECONDS))))
 
 

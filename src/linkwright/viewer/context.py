@@ -58,9 +58,9 @@ class GraphChanges:
 
     def _wait(self) -> None:
         if self._due is None and self._listeners:
-            self._due = self._loop.call_later(_QUIET, self._tell)
+            self._due = self._loop.call_later(_QUIET, self._notify)
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         self._due = None
         for changed in tuple(self._listeners):
             if changed in self._listeners:

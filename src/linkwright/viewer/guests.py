@@ -120,7 +120,7 @@ class GuestRecordings:
         if len(self._guests) < _MOST:
             return
         until = asyncio.get_running_loop().time() - _LEFT
-        left = {key: each.left for key, each in self._guests.items() if not len(each.viewer.audience)}
+        left = {key: guest.left for key, guest in self._guests.items() if not len(guest.viewer.audience)}
         first = min(left, key=left.__getitem__, default=None)
         if first is not None and left[first] < until:
             await _end(self._guests.pop(first))

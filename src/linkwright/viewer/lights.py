@@ -48,7 +48,7 @@ def _light(light: Light, link: str | None, pose: Transform) -> LightScene:
         link=link,
         position=list(pose[:3]),
         direction=[x / length, y / length, z / length] if length > 0.0 else list(_DOWN),
-        color=[light.intensity * each for each in light.diffuse[:3]],
+        color=[light.intensity * part for part in light.diffuse[:3]],
         shadows=light.cast_shadows,
     )
     if light.type != "directional":

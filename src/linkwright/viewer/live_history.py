@@ -47,7 +47,7 @@ class LiveHistory:
     def __init__(self, context: ViewerContext, most_bytes: int, failed: Callable[[LinkwrightError], object]) -> None:
         self._context = context
         self._handle = context.node.handle
-        self._keepers: dict[str, Subscription[Any]] = {}
+        self._recorded: dict[str, Subscription[Any]] = {}
         self._known: set[Subscription[Any]] = set()
         self._went_back = False
         self.live = True
@@ -58,7 +58,7 @@ class LiveHistory:
         self._now_ns = self._handle.timebase.now_ns
         self._lock = threading.RLock()
         self._fresh: list[tuple[str, int, Any]] = []
-        self._kept: History | None = None
+        self._stored: History | None = None
         self._handle.intake = self._intake
 
     @property
@@ -86,15 +86,15 @@ class LiveHistory:
     def span_ns(self) -> tuple[int, int]:
         """The times of the oldest and the newest message, nanoseconds since the epoch; now, if there is none."""
         with self._lock:
-            if self._kept is not None:
-                return self._kept.start_ns, self._kept.end_ns
+            if self._stored is not None:
+                return self._stored.start_ns, self._stored.end_ns
             now = self._now_ns()
             return self._fresh[0][1] if self._fresh else now, now
 
     @property
     def size(self) -> int:
         """The bytes that it takes, without the newest messages."""
-        return 0 if self._kept is None else self._kept.size
+        return 0 if self._stored is None else self._stored.size
 
     def freeze(self) -> None:
         """Pause the display while messages are still stored."""
@@ -126,7 +126,7 @@ class LiveHistory:
 
         graph = self._context.node.graph
         found = {}
-        for name, keeper in list(self._keepers.items()):
+        for name, keeper in list(self._recorded.items()):
             offered = [endpoint.qos_profile for endpoint in graph.get_publishers_info_by_topic(name)]
             found[name] = KeptTopic(keeper.type_name, tuple(offered or [keeper.qos_profile]))
         return found
@@ -148,7 +148,7 @@ class LiveHistory:
             return messages
         reset = last_reset_ns(messages)
         if reset is not None:
-            lasting = [name for name, each in topics.items() if _is_latched(each)]
+            lasting = [name for name, topic in topics.items() if _is_latched(topic)]
             before = [(name, reset, data) for name, _, data in self.history.state_at(lasting, reset - 1)]
             messages = [*before, *(message for message in messages if message[1] >= reset)]
         return in_simulated_time(messages)
@@ -173,8 +173,8 @@ class LiveHistory:
         """Stop storing messages."""
         self._handle.intake = None
         self._context.graph_changes.ignore(self._review)
-        if self._kept is not None:
-            self._kept.close()
+        if self._stored is not None:
+            self._stored.close()
         if self.has_playback:
             self.playback.close()
 
@@ -203,9 +203,9 @@ class LiveHistory:
     def _intake(self, subscription: Subscription[Any], message: Any) -> bool:
         """Store a message, once for all subscriptions of its topic; returns whether to deliver it. Thread-safe."""
         topic = subscription.name
-        keeper = self._keepers.get(topic)
+        keeper = self._recorded.get(topic)
         if keeper is None or keeper.destroyed:
-            keeper = self._keepers[topic] = subscription
+            keeper = self._recorded[topic] = subscription
         if keeper is not subscription:
             return self.live
         if type(message) is Detailed:
@@ -218,23 +218,23 @@ class LiveHistory:
 
     def _written(self) -> History:
         """Return the history with the newest messages appended; these never change, so that this can wait."""
-        if self._kept is None:
+        if self._stored is None:
             from linkwright.bag.history import History
 
-            self._kept = History(self.most_bytes, self._now_ns)
-        history, fresh = self._kept, self._fresh
+            self._stored = History(self.most_bytes, self._now_ns)
+        history, fresh = self._stored, self._fresh
         self._fresh = []
         for topic, at_ns, message in fresh:
-            keep = partial(self._keep, history, topic, at_ns, message, thins=self.live)
+            keep = partial(self._store, history, topic, at_ns, message, thins=self.live)
             run_logged(self._handle.logger, f"keeping a message of '{topic}'", keep)
         return history
 
-    def _keep(self, history: History, topic: str, at_ns: int, message: Any, *, thins: bool) -> None:
+    def _store(self, history: History, topic: str, at_ns: int, message: Any, *, thins: bool) -> None:
         """Store a message; with `thins`, briefly if it repeats those before: playback needs each of these."""
         from linkwright.bag.stillness import content_of
 
         data = bytes(message) if isinstance(message, _BYTES) else serialize(message)
-        history.add(topic, data, at_ns, content_of(self._keepers[topic].type_name, data) if thins else None)
+        history.add(topic, data, at_ns, content_of(self._recorded[topic].type_name, data) if thins else None)
 
     def _subscriptions(self) -> list[Subscription[Any]]:
         return list(self._context.node.subscriptions)

@@ -38,7 +38,7 @@ def snapshot_of_model(
         finder: finds its meshes.
         old: the description to compare with; None for none.
     """
-    return asyncio.run(_take(text, robot, library, finder, old))
+    return asyncio.run(_snapshot(text, robot, library, finder, old))
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class OldDescription:
     text: str
 
 
-async def _take(
+async def _snapshot(
     text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder, old: OldDescription | None
 ) -> Snapshot:
     graph = Graph(on_log=lambda _: None)

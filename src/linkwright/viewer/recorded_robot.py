@@ -88,10 +88,10 @@ class PlacedRobot:
 
     def wanted(self) -> frozenset[str]:
         """Return the topics with subscriptions, and the sources of the robot's transforms if these have some."""
-        wanted = self._recording.wanted()
+        topics = self._recording.wanted()
         if self._moving.get_subscription_count():
-            wanted |= {each for each in (self._description, self._joint_states) if each is not None}
-        return wanted
+            topics |= {topic for topic in (self._description, self._joint_states) if topic is not None}
+        return topics
 
     def tell_time(self, stamp_ns: int) -> None:
         """Publish a time on ``/clock``."""

@@ -98,8 +98,8 @@ def _add(config: RvizConfig, kind: str, topic: BagTopic, *, checked: bool) -> No
     display.section.put(("Topic", "Value"), topic.name, string=True)
     if any(offer.reliability is ReliabilityPolicy.BEST_EFFORT for offer in offers):
         display.section.put(("Topic", "Reliability Policy"), "Best Effort", string=True)
-    kept = bool(offers) and all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
-    display.section.put(("Topic", "Durability Policy"), "Transient Local" if kept else "Volatile", string=True)
+    is_latched = bool(offers) and all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
+    display.section.put(("Topic", "Durability Policy"), "Transient Local" if is_latched else "Volatile", string=True)
     config.insert(display)
     display.checked = checked
 

@@ -28,8 +28,8 @@ def size_of(robot: Robot) -> ModelSize | None:
     frames = dict(zip(tree.link_names, map(_placement, tree.forward({})), strict=True))
     boxes = [Bounds(frame.position, frame.position) for frame in frames.values()]
     boxes += [box.moved(frames[name]) for name in frames for box in _simple_shapes(robot, name)]
-    whole = union(boxes)
-    if whole is None or not isfinite(whole.diagonal) or whole.diagonal < _APART:
+    bounds = union(boxes)
+    if bounds is None or not isfinite(bounds.diagonal) or bounds.diagonal < _APART:
         return None
     steps = [
         dist(frames[joint.child].position, frames[joint.parent].position)
@@ -37,7 +37,7 @@ def size_of(robot: Robot) -> ModelSize | None:
         if joint.child in frames and joint.parent in frames
     ]
     apart = [step for step in steps if step > _APART]
-    return ModelSize(whole.diagonal, float(np.median(apart)) if apart else whole.diagonal)
+    return ModelSize(bounds.diagonal, float(np.median(apart)) if apart else bounds.diagonal)
 
 
 def _simple_shapes(robot: Robot, link: str) -> Iterator[Bounds]:

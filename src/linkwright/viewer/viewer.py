@@ -115,10 +115,10 @@ class Viewer:
         self._features: list[PageFeature] = []
         self._is_started = False
         self.managers = Managers(self.context, config, self)
-        self._node.add_post_set_parameters_callback(self._take_parameters)
+        self._node.add_post_set_parameters_callback(self._set_parameters)
         self.live: LiveHistory | None = None
         for feature in make_features(self):
-            self._take_in(feature)
+            self._add(feature)
 
     # --- life --------------------------------------------------------------------------------------------------
 
@@ -175,8 +175,8 @@ class Viewer:
 
     def keep_unsaved(self) -> list[Diagnostic]:
         """Store unsaved edits of pages, before the program ends; returns the findings about it."""
-        kept = keep_unsaved(manager.config for manager in self.managers.all() if manager.history.unsaved)
-        return [*kept, *(notice for feature in self._features for notice in feature.keep_unsaved())]
+        notices = keep_unsaved(manager.config for manager in self.managers.all() if manager.history.unsaved)
+        return [*notices, *(notice for feature in self._features for notice in feature.keep_unsaved())]
 
     @property
     def url(self) -> str:
@@ -240,12 +240,12 @@ class Viewer:
         found = next((feature for feature in self._features if type(feature) is cls), None)
         if found is None:
             found = cls(self)
-            self._take_in(found, receives)
+            self._add(found, receives)
             if self._is_started:
                 found.start()
         return found
 
-    def _take_in(self, feature: PageFeature, receives: Iterable[type] = ()) -> None:
+    def _add(self, feature: PageFeature, receives: Iterable[type] = ()) -> None:
         self._features.append(feature)
         self._receivers.update((message, feature.receive) for message in (*feature.RECEIVES, *receives))
 
@@ -310,7 +310,7 @@ class Viewer:
         if manager is self.manager and self._node.get_parameter(_FIXED_FRAME).value != frame:
             self._node.set_parameters([Parameter(_FIXED_FRAME, value=frame)])
 
-    def _take_parameters(self, parameters: list[Parameter]) -> None:
+    def _set_parameters(self, parameters: list[Parameter]) -> None:
         for parameter in parameters:
             if parameter.name == _FIXED_FRAME and parameter.value != self.manager.fixed_frame:
                 self.manager.set_fixed_frame(str(parameter.value))

@@ -24,9 +24,9 @@ def camera_of(world: World) -> Transform | None:
     gui = world.element.first("gui") if world.element is not None else None
     if gui is None:
         return None
-    said = [pose for camera in gui.elements("camera") for pose in camera.elements("pose")]
-    said += [pose for plugin in gui.elements("plugin") for pose in plugin.elements("camera_pose")]
-    return _pose(said[0]) if said else None
+    poses = [pose for camera in gui.elements("camera") for pose in camera.elements("pose")]
+    poses += [pose for plugin in gui.elements("plugin") for pose in plugin.elements("camera_pose")]
+    return _pose(poses[0]) if poses else None
 
 
 def robots_of(world: World) -> list[str]:

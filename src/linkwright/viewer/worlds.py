@@ -197,7 +197,7 @@ class _Builder:
             shape.texture = self._located(link, image, IMAGE_TYPES)
         workflow = material.pbr.metal if material and material.pbr else None
         if workflow and _reflects(workflow):
-            urls = [self._located(link, each, IMAGE_TYPES) if each else None for each in _maps(workflow)]
+            urls = [self._located(link, file, IMAGE_TYPES) if file else None for file in _maps(workflow)]
             shape.surface = Surface(workflow.roughness, workflow.metalness, *urls)
 
     def _located(self, link: str, uri: str, types: dict[str, str]) -> str | None:

@@ -11,7 +11,7 @@ from tests.viewer.displays.test_topic_display import config
 from tests.viewer.scene import page, world
 
 VIEWER = Path(linkwright.viewer.__file__).parent
-_TEXT_OF = {"say": 2, "refuse": 0, "_refuse": 1, "StatusRow": 2}
+_TEXT_OF = {"set_status_row": 2, "refuse": 0, "_refuse": 1, "StatusRow": 2}
 """Calls that give a status its text -> which argument that is."""
 
 

@@ -198,8 +198,8 @@ async def test_a_message_that_a_display_fails_at_is_told_and_is_not_in_the_way(m
     async with world(config()) as w:
         display = w.display("PointStamped")
         kind = type(display)
-        monkeypatch.setattr(kind, "send_marks", kind.take, raising=False)
-        monkeypatch.setattr(kind, "take", fail)
+        monkeypatch.setattr(kind, "send_marks", kind.process_message, raising=False)
+        monkeypatch.setattr(kind, "process_message", fail)
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         for x in (-1.0, -2.0):
             publisher.publish(point(x, "tip"))
@@ -305,7 +305,7 @@ async def test_many_displays_that_wait_describe_no_endpoints_but_publishers(monk
         assert described.count(EndpointKind.SUBSCRIPTION) == 0
         before = len(described)
         for display in shown:
-            display._tell_count()  # as each does every second
+            display._report_count()  # as each does every second
         assert len(described) == before
         other.destroy()
         await eventually(lambda: "there is" not in shown[7].status[0].text)

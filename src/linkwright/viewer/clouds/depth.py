@@ -132,10 +132,10 @@ class DepthCloudBuilder:
         shown = (hidden.metres != 0.0) & (covering | ~valid)
         behind = _placed(hidden.metres, hidden.colours, shown, camera)
         front = _placed(metres, colours, valid, camera)
-        kept = valid & ~covering
-        hidden.metres[kept] = metres[kept]
-        hidden.colours[kept] = colours[kept] >> 1 & 0x7F7F7F
-        hidden.seen[kept] = now
+        visible = valid & ~covering
+        hidden.metres[visible] = metres[visible]
+        hidden.colours[visible] = colours[visible] >> 1 & 0x7F7F7F
+        hidden.seen[visible] = now
         return Points(
             np.concatenate([front.positions, behind.positions]),
             {"rgb": np.concatenate([front.channels["rgb"], behind.channels["rgb"]])},
@@ -179,9 +179,9 @@ def _metres(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     return metres, valid
 
 
-def _packed(picture: Picture) -> NDArray[np.uint32]:
+def _packed(image: Picture) -> NDArray[np.uint32]:
     """Return colours in the form of ``rgb`` channels."""
-    rgb = picture.rgb().astype(np.uint32)
+    rgb = image.rgb().astype(np.uint32)
     packed: NDArray[np.uint32] = np.bitwise_or(rgb[..., 0] << 16 | rgb[..., 1] << 8, rgb[..., 2], dtype=np.uint32)
     return packed
 

@@ -154,8 +154,8 @@ def _column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: i
 
 def decimated(cloud: CloudPoints, size: int) -> CloudPoints:
     """Return every k-th point, so that the arrays have at most so many bytes; at least one point."""
-    whole = cloud.positions.nbytes + cloud.colours.nbytes
-    step = -(-whole // max(1, size))
+    n_bytes = cloud.positions.nbytes + cloud.colours.nbytes
+    step = -(-n_bytes // max(1, size))
     if step <= 1:
         return cloud
     return replace(cloud, positions=cloud.positions[::step], colours=cloud.colours[::step], step=step)

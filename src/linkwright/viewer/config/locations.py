@@ -155,8 +155,8 @@ def recovery_file(config: RvizConfig) -> Path:
     """Return the recovery file of a configuration; one that was opened as such, and has no other file, keeps it."""
     folder = recovery_folder()
     if config.path is not None:
-        path = _whole(config.path)
-        return folder / path.name if path.parent == _whole(folder) else folder / _name_for(str(path))
+        path = _absolute(config.path)
+        return folder / path.name if path.parent == _absolute(folder) else folder / _name_for(str(path))
     name = config.document.source.name
     return folder / (f"{_UNNAMED}{ENDING}" if name.startswith("<") else _name_for(name))  # "<default>" and the like
 
@@ -167,7 +167,7 @@ def keep_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
     Returns:
         Where each of them is (RVIZ301), or that it is lost (RVIZ104).
     """
-    said: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     taken: set[Path] = set()
     for config in configs:
         text = config.text()
@@ -180,17 +180,17 @@ def keep_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
         try:
             configuration_file.write(path, text, FileForm())
         except LinkwrightError as error:
-            said += error.diagnostics
+            diagnostics += error.diagnostics
         else:
             RecentFiles().add(path)
-            said.append(_kept(config, path))
-    return said
+            diagnostics.append(_stored_finding(config, path))
+    return diagnostics
 
 
 def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
     """Report edits of a file that an earlier run of the program kept (RVIZ302)."""
     path = recovery_file(config)
-    if config.path is None or _whole(config.path) == _whole(path) or not path.is_file():
+    if config.path is None or _absolute(config.path) == _absolute(path) or not path.is_file():
         return []
     message = phrase(
         "earlier unsaved changes of '{path}' are in '{kept}': {how}",
@@ -210,18 +210,18 @@ def forget_unsaved(former: Path | None, config: RvizConfig, recent: RecentFiles)
         recent: the list from which removed files are dropped.
     """
     done = {recovery_file(config)}
-    if former is not None and _whole(former).parent == _whole(recovery_folder()):
-        done.add(_whole(former))
+    if former is not None and _absolute(former).parent == _absolute(recovery_folder()):
+        done.add(_absolute(former))
     for path in done:
-        if config.path is None or _whole(path) == _whole(config.path):
+        if config.path is None or _absolute(path) == _absolute(config.path):
             continue
         with suppress(OSError):
             path.unlink()
             recent.remove(path)
 
 
-def _kept(config: RvizConfig, path: Path) -> Diagnostic:
-    if config.path is None or _whole(config.path) == _whole(path):
+def _stored_finding(config: RvizConfig, path: Path) -> Diagnostic:
+    if config.path is None or _absolute(config.path) == _absolute(path):
         message = phrase("unsaved displays are stored in '{path}': {how}", path=path, how=_HOW)
     else:
         message = phrase(
@@ -259,5 +259,5 @@ def _free(path: Path, taken: set[Path]) -> Path:
     return found
 
 
-def _whole(path: Path) -> Path:
+def _absolute(path: Path) -> Path:
     return Path(os.path.realpath(path))

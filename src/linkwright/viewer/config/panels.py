@@ -218,14 +218,14 @@ def read_synchronization(document: Section) -> Synchronization:
     return Synchronization(_MODES[int(number)], _text(panel, "SyncSource"))
 
 
-def write_synchronization(document: Section, wanted: Synchronization) -> bool:
+def write_synchronization(document: Section, synchronization: Synchronization) -> bool:
     """Write the settings into the Time panel of a file that has one; returns whether that changed the file."""
     panel = _time_panel(document)
-    if panel is None or read_synchronization(document) == wanted:
+    if panel is None or read_synchronization(document) == synchronization:
         return False
-    panel.put(("SyncMode",), str(_MODES.index(wanted.mode)))
-    panel.put(("SyncSource",), wanted.source, string=True)
-    if wanted.mode != "Off" and not _is_always_on(panel):
+    panel.put(("SyncMode",), str(_MODES.index(synchronization.mode)))
+    panel.put(("SyncSource",), synchronization.source, string=True)
+    if synchronization.mode != "Off" and not _is_always_on(panel):
         panel.put(("Experimental",), "true")
     return True
 

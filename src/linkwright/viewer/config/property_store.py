@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.graph import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.viewer.config.former_names import FormerKey
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, accept, from_text, in_place_of, to_text
-from linkwright.viewer.config.yaml_tree import Made, Memory, Scalar, Section, make_section, unmake
+from linkwright.viewer.config.yaml_tree import Memory, NewSection, Scalar, Section, make_section, unmake
 from linkwright.viewer.protocol.displays import Property, PropertyChanged, PropertyValue, TopicOffer
 
 _MANY = 30
@@ -53,7 +53,7 @@ class PropertyStore:
         self._frames = frames
         self._former = former or {}
         self._recorded: list[Memory] | None = None
-        self._made: list[Made] = []
+        self._new_sections: list[NewSection] = []
         self._values: dict[Path, PropertyValue] = {}
 
     def get(self, *path: str) -> PropertyValue:
@@ -96,7 +96,7 @@ class PropertyStore:
             self._write(path, spec, to_text(spec, taken))
         return taken
 
-    def tell(self, path: Path, value: PropertyValue) -> bool:
+    def set_read_only(self, path: Path, value: PropertyValue) -> bool:
         """Set a value that the file does not store, as of a read-only property; returns whether it is new.
 
         Raises:
@@ -128,7 +128,7 @@ class PropertyStore:
         place = self._place()
         for memory in memories:
             place.recall(memory)
-        self._made = unmake(self._made)
+        self._new_sections = unmake(self._new_sections)
         old = {path: value for path, value in self._values.items() if self._key(path) in keys and self._is_kept(path)}
         for path in old:
             del self._values[path]
@@ -246,7 +246,7 @@ class PropertyStore:
     def _place(self) -> Section:
         """Return the mapping with the values, created if it is missing."""
         place, made = make_section(self._section, *self._base)
-        self._made += made
+        self._new_sections += made
         return place
 
     def _key(self, path: Path) -> str:

@@ -20,7 +20,7 @@ from linkwright.viewer.config.schema import Path as PropertyPath
 from linkwright.viewer.config.schema import PropertySpec, is_on
 from linkwright.viewer.config.tools import ToolsConfig
 from linkwright.viewer.config.views import ViewsConfig
-from linkwright.viewer.config.yaml_tree import Made, Memory, Section, SequenceMemory
+from linkwright.viewer.config.yaml_tree import Memory, NewSection, Section, SequenceMemory
 from linkwright.viewer.protocol.views_and_tools import View
 
 __all__ = ["GLOBAL_OPTIONS", "Arrangement", "DisplayConfig", "RvizConfig"]
@@ -264,7 +264,7 @@ class RvizConfig:
         self.warnings: list[Diagnostic] = []
         self.document = document
         self._form = form or FileForm()
-        self._made: list[Made] = []
+        self._new_sections: list[NewSection] = []
         self._state: FileState | None = configuration_file.state_of(path) if path else None
         self.options = PropertyStore(
             "global",
@@ -343,8 +343,8 @@ class RvizConfig:
         view = config.views.current
         view.values |= {"Distance": _MODEL_DISTANCE, "Pitch": _MODEL_PITCH}
         if size is not None:
-            for each, path, length in _sizes(config.displays, size):
-                each.section.put(path, f"{length:g}")
+            for display_config, path, length in _sizes(config.displays, size):
+                display_config.section.put(path, f"{length:g}")
             view.values |= {"Distance": size.distance, "Focal Shape Size": size.focal_shape}
         config.propose_view(view.values)
         config._proposed = _Proposed(config.displays, size)
@@ -463,7 +463,7 @@ class RvizConfig:
             for display in displays:
                 display.group = group
             yaml_tree.recall_sequence(self._parent(group), "Displays", arrangement.memories[group])
-        self._made = yaml_tree.unmake(self._made)
+        self._new_sections = yaml_tree.unmake(self._new_sections)
 
     def siblings(self, group: DisplayConfig | None) -> list[DisplayConfig]:
         """Return the displays in a group, or those at the top level for None."""
@@ -478,7 +478,7 @@ class RvizConfig:
         if group is not None:
             return group.section
         manager, made = yaml_tree.make_section(self.document, _MANAGER)
-        self._made += made
+        self._new_sections += made
         return manager
 
     # --- file --------------------------------------------------------------------------------------------------
@@ -523,7 +523,7 @@ class _Proposed:
         """Return the values that should be different, and were not changed since."""
         spacing = diagonal if self.size is None else self.size.spacing
         found = _sizes(self._displays, ModelSize(diagonal, spacing), ground)
-        return [each for each in found if each[0].section.text(*each[1]) == self._texts[each[1]]]
+        return [change for change in found if change[0].section.text(*change[1]) == self._texts[change[1]]]
 
     def among(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _Proposed | None:
         """Return the proposal for copies of the displays, or None if one is gone."""

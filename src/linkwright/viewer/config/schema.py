@@ -124,7 +124,7 @@ def accept(spec: PropertySpec, value: object) -> PropertyValue:
     """
     if spec.read_only:
         raise ValueError("only the program sets it")
-    taken = _take(spec, value)
+    taken = _validated(spec, value)
     if taken is None:
         raise ValueError(
             phrase(
@@ -184,7 +184,7 @@ _EXPECTED = {
 }
 
 
-def _take(spec: PropertySpec, value: object) -> PropertyValue:
+def _validated(spec: PropertySpec, value: object) -> PropertyValue:
     kind = spec.kind
     if kind == "bool":
         return value if isinstance(value, bool) else None

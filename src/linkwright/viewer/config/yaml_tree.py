@@ -249,7 +249,7 @@ def recall_sequence(parent: Section, key: str, memory: SequenceMemory) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class NewSection:
     """A mapping that was created on demand, for `unmake`.
 
     Attributes:
@@ -265,22 +265,22 @@ class Made:
     keys: list[str]
 
 
-def make_section(section: Section, *path: str) -> tuple[Section, list[Made]]:
+def make_section(section: Section, *path: str) -> tuple[Section, list[NewSection]]:
     """Return the mapping at a path, created if it is missing, and all mappings created on the way, with itself."""
-    made = []
+    new_sections = []
     for key in path:
         there = section.section(key)
         if there is None:
             memory = section.memory(key)
             there = ensure_section(section, key)
-            made.append(Made(section, memory, there, there.keys()))
+            new_sections.append(NewSection(section, memory, there, there.keys()))
         section = there
-    return section, made
+    return section, new_sections
 
 
-def unmake(made: list[Made]) -> list[Made]:
+def unmake(new_sections: list[NewSection]) -> list[NewSection]:
     """Remove mappings without content beyond their initial keys; returns the other ones."""
-    left = list(made)
+    left = list(new_sections)
     while left and left[-1].section.keys() == left[-1].keys:
         gone = left.pop()
         gone.holder.recall(gone.memory)
@@ -304,7 +304,7 @@ def _copy(node: yaml.Node, *, deep: bool = True) -> yaml.Node:
     if deep and isinstance(node, yaml.SequenceNode):
         value = [_copy(item) for item in value]
     elif deep:
-        value = [(_copy(key), _copy(each)) for key, each in value]
+        value = [(_copy(key), _copy(child)) for key, child in value]
     return type(node)(node.tag, value, node.start_mark, node.end_mark, node.flow_style)
 
 
@@ -329,11 +329,11 @@ def _child_mapping(node: yaml.MappingNode, key: str) -> yaml.MappingNode:
         if found.flow_style and not found.value:
             found.flow_style = False
         return found
-    made = yaml.MappingNode(_MAPPING, [], flow_style=False)
+    mapping = yaml.MappingNode(_MAPPING, [], flow_style=False)
     if isinstance(found, yaml.ScalarNode) and found.tag != _NULL:
-        _set(made, "Value", found)
-    _set(node, key, made)
-    return made
+        _set(mapping, "Value", found)
+    _set(node, key, mapping)
+    return mapping
 
 
 def _set(node: yaml.MappingNode, key: str, value: yaml.Node) -> None:

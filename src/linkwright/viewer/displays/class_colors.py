@@ -63,9 +63,9 @@ def read_class_colors(path: str) -> dict[str, Color]:
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         text = " ".join(str(error).split())
         raise ValueError(phrase("cannot read '{path}': {reason}", path=path, reason=foreign(text))) from None
-    if not isinstance(document, dict) or not all(_is_color(each) for each in document.values()):
+    if not isinstance(document, dict) or not all(_is_color(color) for color in document.values()):
         raise ValueError(phrase("'{path}' contains no colours, such as: 'ball: {{r: 255, g: 0, b: 0}}'", path=path))
-    return {str(name).lower(): (each["r"], each["g"], each["b"]) for name, each in document.items()}
+    return {str(name).lower(): (color["r"], color["g"], color["b"]) for name, color in document.items()}
 
 
 def _is_color(value: object) -> bool:

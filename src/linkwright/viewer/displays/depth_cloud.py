@@ -157,7 +157,7 @@ class DepthCloudDisplay(CloudDisplay):
         """Return the width of a pixel at a distance of one metre, if points are to be as large as pixels."""
         return self._pixel * self.properties.number(AUTO_SIZE, SIZE_FACTOR) if self.properties.flag(AUTO_SIZE) else 0.0
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show a depth map as soon as its colours have arrived."""
         assert pose is not None
         colour = self._colour_of(message) if self._wants_colour() else None
@@ -185,9 +185,9 @@ class DepthCloudDisplay(CloudDisplay):
 
     def time_changed(self) -> None:
         """Show the messages that were received while time was paused."""
-        self._infos.go_on()
+        self._infos.resume()
         if self._colours is not None:
-            self._colours.go_on()
+            self._colours.resume()
         super().time_changed()
 
     def reset(self) -> None:
@@ -221,7 +221,7 @@ class DepthCloudDisplay(CloudDisplay):
         for name, source in ((DEPTH_TRANSPORT, depth), (COLOUR_TRANSPORT, colour)):
             if not source.is_read:
                 choice = phrase("choose raw, compressed or compressedDepth")
-                self.say(
+                self.set_status_row(
                     name,
                     "error",
                     phrase(
@@ -237,7 +237,7 @@ class DepthCloudDisplay(CloudDisplay):
             return
         info = self.properties.text(INFO_TOPIC).strip() or camera_info_topic(depth.base)
         problem = self._infos.listen(info, self._qos())
-        self.say(
+        self.set_status_row(
             "Depth Camera Info",
             "error" if problem else "warn",
             problem or phrase("No CameraInfo received on [{topic}]", topic=info),
@@ -245,7 +245,7 @@ class DepthCloudDisplay(CloudDisplay):
         if colour.topic:
             self._colours = SideTopic(self.host, colour.message_type, self._colour_received)
             if problem := self._colours.listen(colour.topic, self._qos()):
-                self.say("Message", "error", problem)
+                self.set_status_row("Message", "error", problem)
             self.choose_transformer("RGB8")
 
     def _unsubscribe(self) -> None:
@@ -257,7 +257,7 @@ class DepthCloudDisplay(CloudDisplay):
 
     def _info_received(self, info: Any) -> None:
         self._info = info
-        self.say("Depth Camera Info", "ok", phrase("OK"))
+        self.set_status_row("Depth Camera Info", "ok", phrase("OK"))
         self._try_pending()
 
     def _colour_received(self, message: Any) -> None:
@@ -268,7 +268,7 @@ class DepthCloudDisplay(CloudDisplay):
 
     def _try_pending(self) -> None:
         if self._pending is not None:
-            self.take(*self._pending)
+            self.process_message(*self._pending)
 
     def _wants_colour(self) -> bool:
         return bool(self.properties.text(COLOUR_TOPIC).strip())
@@ -276,7 +276,7 @@ class DepthCloudDisplay(CloudDisplay):
     def _colour_of(self, depth: Any) -> Any:
         """Return the colour image nearest in time, or None if there is none near."""
         at = self.frame_of(depth)[1]
-        nearest = min(self._recent, key=lambda each: abs(self.frame_of(each)[1] - at), default=None)
+        nearest = min(self._recent, key=lambda image: abs(self.frame_of(image)[1] - at), default=None)
         if nearest is None or abs(self.frame_of(nearest)[1] - at) > _SYNC_NS:
             return None
         return nearest
@@ -287,10 +287,12 @@ class DepthCloudDisplay(CloudDisplay):
         try:
             points = self._points(message, pose, colour)
         except BadCloudError as error:
-            self.say("Message", "error", foreign(error))
+            self.set_status_row("Message", "error", foreign(error))
             return
         except BadImageError as error:
-            self.say("Message", "error", phrase("Error updating depth cloud: {reason}", reason=foreign(error)))
+            self.set_status_row(
+                "Message", "error", phrase("Error updating depth cloud: {reason}", reason=foreign(error))
+            )
             return
         frames = (message.header.frame_id, colour.header.frame_id if colour is not None else message.header.frame_id)
         if frames[0] != frames[1]:
@@ -299,25 +301,29 @@ class DepthCloudDisplay(CloudDisplay):
                 depth=frames[0],
                 color=frames[1],
             )
-            self.say("Message", "warn", text)
+            self.set_status_row("Message", "warn", text)
         else:
-            self.say("Message", "ok", phrase("Ok"))
+            self.set_status_row("Message", "ok", phrase("Ok"))
         self.show(points, pose, self.frame_of(message)[1])
 
     def _points(self, message: Any, pose: Pose, colour: Any) -> Points:
         depth = self._depth_unpacker.image(message, self._depth_source().transport)
-        self.say("Depth Image Size", "ok", phrase("{width} x {height}", width=depth.width, height=depth.height))
-        picture = None
+        self.set_status_row(
+            "Depth Image Size", "ok", phrase("{width} x {height}", width=depth.width, height=depth.height)
+        )
+        image = None
         if colour is not None:
             colour = self._colour_unpacker.image(colour, self._colour_source().transport)
-            self.say("Image Size", "ok", phrase("{width} x {height}", width=colour.width, height=colour.height))
-            picture = picture_of(colour, RangeFinder())
+            self.set_status_row(
+                "Image Size", "ok", phrase("{width} x {height}", width=colour.width, height=colour.height)
+            )
+            image = picture_of(colour, RangeFinder())
         camera = DepthCamera.of(self._info, depth.width, depth.height)
         self._pixel = camera.pixel
         keep = self.properties.number(OCCLUSION, OCCLUSION_TIMEOUT) if self.properties.flag(OCCLUSION) else None
         if keep is not None and self._has_moved(pose):
             self._builder.reset()
-        return self._builder.points(depth, camera, picture, keep_covered=keep, now=time.monotonic())
+        return self._builder.points(depth, camera, image, keep_covered=keep, now=time.monotonic())
 
     def _has_moved(self, pose: Pose) -> bool:
         before = self._camera_pose

@@ -57,7 +57,7 @@ class DetectionPictureDisplay(ImageDisplay):
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
         self._side = SideTopic(host, _TYPE, self._detected)
-        self._threshold = DetectorThreshold(host.context.node, partial(self.say, THRESHOLD))
+        self._threshold = DetectorThreshold(host.context.node, partial(self.set_status_row, THRESHOLD))
         self._images: deque[Any] = deque(maxlen=_MOST_IMAGES)
         self._detected_at = float("-inf")
 
@@ -70,24 +70,24 @@ class DetectionPictureDisplay(ImageDisplay):
         super().changed(path)
         if path[0] == DETECTIONS:
             self._threshold.close()
-            self.unsay(THRESHOLD)
+            self.delete_status_row(THRESHOLD)
             if self.enabled:
                 self._listen()
         elif path[0] == THRESHOLD and self.enabled:
             self._threshold.set(self.properties.text(DETECTIONS).strip(), self.properties.number(THRESHOLD))
 
-    def take_image(self, message: Any, pose: Pose | None) -> None:
+    def process_image(self, message: Any, pose: Pose | None) -> None:
         """Show an image, or store it until its detections are received."""
         if asyncio.get_running_loop().time() - self._detected_at < _PATIENCE:
             self._images.append(message)
             return
         self._images.clear()
         self.forget(_BOXES)
-        super().take_image(message, pose)
+        super().process_image(message, pose)
 
     def time_changed(self) -> None:
         """Show the messages that were received while time was paused."""
-        self._side.go_on()
+        self._side.resume()
         super().time_changed()
 
     def reset(self) -> None:
@@ -109,9 +109,9 @@ class DetectionPictureDisplay(ImageDisplay):
         topic = self.properties.text(DETECTIONS).strip()
         problem = self._side.listen(topic, qos_of(self.properties, DETECTIONS)) if topic else phrase("Empty topic name")
         if problem:
-            self.say(DETECTIONS, "error", problem)
+            self.set_status_row(DETECTIONS, "error", problem)
         else:
-            self.unsay(DETECTIONS)
+            self.delete_status_row(DETECTIONS)
 
     def _detected(self, message: Any) -> None:
         self._detected_at = asyncio.get_running_loop().time()
@@ -119,14 +119,16 @@ class DetectionPictureDisplay(ImageDisplay):
         image = next((image for image in self._images if self.frame_of(image)[1] == stamp_ns), None)
         content = _boxes(message, of_image=image is not None)
         if content is None:
-            self.say(DETECTIONS, "error", phrase("Message contained invalid floating point values (nans or infs)"))
+            self.set_status_row(
+                DETECTIONS, "error", phrase("Message contained invalid floating point values (nans or infs)")
+            )
             return
-        self.unsay(DETECTIONS)
+        self.delete_status_row(DETECTIONS)
         self.send(content, key=_BOXES, stamp_ns=stamp_ns)
         if image is not None:
             while self._images.popleft() is not image:
                 pass
-            super().take_image(image, None)
+            super().process_image(image, None)
 
 
 def _boxes(message: Any, *, of_image: bool) -> PictureBoxes | None:
@@ -136,8 +138,8 @@ def _boxes(message: Any, *, of_image: bool) -> PictureBoxes | None:
     middles = [detection.bbox.center for detection in detections]
     boxes = np.array(
         [
-            (middle.position.x, middle.position.y, each.bbox.size_x, each.bbox.size_y, middle.theta)
-            for middle, each in zip(middles, detections, strict=True)
+            (middle.position.x, middle.position.y, found_object.bbox.size_x, found_object.bbox.size_y, middle.theta)
+            for middle, found_object in zip(middles, detections, strict=True)
         ],
         dtype=np.float32,
     ).reshape(-1, 5)

@@ -99,7 +99,9 @@ class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
 
 def best_result(detection: Any) -> tuple[str, float]:
     """Return class and score of the likeliest hypothesis of a Detection2D or Detection3D, or no class and -1."""
-    best = max((result.hypothesis for result in detection.results), key=lambda each: each.score, default=None)
+    best = max(
+        (result.hypothesis for result in detection.results), key=lambda hypothesis: hypothesis.score, default=None
+    )
     return ("", -1.0) if best is None else (best.class_id, best.score)
 
 
@@ -133,9 +135,9 @@ class Detection3DArrayDisplay(_BoxDisplay):
         if path in ((CONFIG_PATH,), (LIFETIME,)):
             self.show_again()
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show the boxes for the time that the property sets."""
-        super().take(message, pose)
+        super().process_message(message, pose)
         self._cancel_end()
         seconds = int(self.properties.number(LIFETIME))
         if seconds:
@@ -161,12 +163,12 @@ class Detection3DArrayDisplay(_BoxDisplay):
     def _read_colors(self) -> None:
         path = self.properties.text(CONFIG_PATH).strip()
         self._table = {}
-        self.unsay(CONFIG_PATH)
+        self.delete_status_row(CONFIG_PATH)
         if path:
             try:
                 self._table = read_class_colors(path)
             except ValueError as error:
-                self.say(CONFIG_PATH, "error", foreign(error))
+                self.set_status_row(CONFIG_PATH, "error", foreign(error))
 
     def _cancel_end(self) -> None:
         if self._end is not None:

@@ -15,7 +15,7 @@ from linkwright.viewer.protocol.displays import StatusLevel
 _NAMES = ["threshold", "confidence_threshold", "detection.threshold"]
 """The names of the parameter in our detector and yolo_ros, yolov5_ros, and openrobotics_darknet_ros."""
 
-Told = Callable[[StatusLevel, str], None]
+StatusReport = Callable[[StatusLevel, str], None]
 """Called with a status of the display: the node that drops weaker detections, or a warning if it refuses."""
 
 
@@ -24,11 +24,11 @@ class DetectorThreshold:
 
     Args:
         node: the node that sends requests.
-        told: called with the outcome of a request.
+        report: called with the outcome of a request.
     """
 
-    def __init__(self, node: Node, told: Told) -> None:
-        self._node, self._told = node, told
+    def __init__(self, node: Node, report: StatusReport) -> None:
+        self._node, self._report = node, report
         self._wish: tuple[str, float] | None = None
         self._task: asyncio.Task[None] | None = None
 
@@ -48,9 +48,9 @@ class DetectorThreshold:
     async def _fulfil(self) -> None:
         while self._wish is not None:
             (topic, value), self._wish = self._wish, None
-            told = await self._set(topic, value)
+            outcome = await self._set(topic, value)
             if self._wish is None:
-                self._told(*told)
+                self._report(*outcome)
 
     async def _set(self, topic: str, value: float) -> tuple[StatusLevel, str]:
         full = self._node.resolve_topic_name(topic)
@@ -68,8 +68,8 @@ class DetectorThreshold:
             known = next((name for name in _NAMES if name in names), None)
             if known is None:
                 return "ok", f"Filtered here: {name} has no parameter 'threshold'"
-            wanted = Parameter(known, ParameterType.DOUBLE, value)
-            result = (await answer(client, client.set_parameters([wanted]))).results[0]
+            parameter = Parameter(known, ParameterType.DOUBLE, value)
+            result = (await answer(client, client.set_parameters([parameter]))).results[0]
         except NoAnswerError as error:
             return "warn", f"Filtered here: {error}"
         finally:

@@ -132,13 +132,13 @@ class EffortDisplay(RecentDisplay):
 
     def _ring_pose(self, joint: Joint, effort: float, stamp_ns: int) -> tuple[float, ...] | None:
         if not math.isfinite(effort):
-            self.say(joint.name, "error", phrase("Invalid effort: {effort}", effort=effort))
+            self.set_status_row(joint.name, "error", phrase("Invalid effort: {effort}", effort=effort))
             return None
         frame, fixed_frame = self._frame(joint), self.host.frames.fixed_frame
         try:
             pose = self.context.transforms.pose(fixed_frame, frame, stamp_ns)
         except TransformException:
-            self.say(
+            self.set_status_row(
                 joint.name,
                 "error",
                 phrase(
@@ -148,7 +148,7 @@ class EffortDisplay(RecentDisplay):
                 ),
             )
             return None
-        self.say(joint.name, "ok", phrase("OK"))
+        self.set_status_row(joint.name, "ok", phrase("OK"))
         x, y, z, *rotation = (float(part) for part in pose)
         qx, qy, qz, qw = rotation
         return (x, y, z, *quaternion_multiply((qx, qy, qz, qw), rotation_from_z(joint.axis)))
@@ -166,7 +166,9 @@ class EffortDisplay(RecentDisplay):
         try:
             self._descriptions = self.context.node.create_subscription(String, topic, self._described, DESCRIPTION_QOS)
         except LinkwrightError as error:
-            self.say(_URDF, "error", phrase("Error subscribing: {message}", message=error.diagnostics[0].message))
+            self.set_status_row(
+                _URDF, "error", phrase("Error subscribing: {message}", message=error.diagnostics[0].message)
+            )
 
     def _leave(self) -> None:
         if self._descriptions is not None:
@@ -177,9 +179,9 @@ class EffortDisplay(RecentDisplay):
     def _described(self, message: String) -> None:
         robot = self.context.library.read(message.data).robot
         if robot is None:
-            self.say(_URDF, "error", phrase("Unable to parse robot model description!"))
+            self.set_status_row(_URDF, "error", phrase("Unable to parse robot model description!"))
             return
-        self.say(_URDF, "ok", phrase("Robot model parsed Ok"))
+        self.set_status_row(_URDF, "ok", phrase("Robot model parsed Ok"))
         known = self._joints
         self._joints = {
             joint.name: joint for joint in robot.joints.values() if joint.type in _TURNING and joint.limit is not None

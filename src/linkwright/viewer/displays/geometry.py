@@ -101,9 +101,9 @@ class GridCellsDisplay(TopicDisplay):
         alpha("Opacity of the cells: 0 is invisible."),
     )
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show the cells."""
-        cells = [each for cell in message.cells for each in (cell.x, cell.y, cell.z)]
+        cells = [coordinate for cell in message.cells for coordinate in (cell.x, cell.y, cell.z)]
         positions = np.array(cells, dtype=np.float64).reshape(-1, 3)
         sides = (message.cell_width, message.cell_height)
         if not (np.isfinite(positions).all() and all(map(math.isfinite, sides))):
@@ -119,7 +119,7 @@ class GridCellsDisplay(TopicDisplay):
     def _refuse(self, level: StatusLevel, text: Phrase) -> None:
         """Remove the earlier cells, too, and show the reason in the row of the topic, as RViz does."""
         self.forget()
-        self.say(TOPIC, level, text)
+        self.set_status_row(TOPIC, level, text)
 
 
 class PointStampedDisplay(RecentDisplay):

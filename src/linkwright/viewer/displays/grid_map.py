@@ -111,9 +111,11 @@ class GridMapDisplay(RecentDisplay):
         while -(-grid.shape[0] // step) * -(-grid.shape[1] // step) > _MOST_CELLS:
             step += 1
         if step > 1:
-            self.say(_SIZE, "warn", phrase("The map is large: one of {step} rows and columns is drawn", step=step))
+            self.set_status_row(
+                _SIZE, "warn", phrase("The map is large: one of {step} rows and columns is drawn", step=step)
+            )
         else:
-            self.unsay(_SIZE)
+            self.delete_status_row(_SIZE)
         points = grid.points(np.where(valid, heights, 0.0))[::step, ::step]
         return GridSurface(
             points.shape[0],

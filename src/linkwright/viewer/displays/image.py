@@ -63,22 +63,22 @@ class ImageTopicDisplay(TopicDisplay):
         source = self._named_source()
         return source.message_type, source.topic, super().subscription()[2]
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show an image, or the reason why it cannot be unpacked."""
         try:
             image = self._image_of(message)
         except BadImageError as error:
-            self.say("Image", "error", foreign(error))
+            self.set_status_row("Image", "error", foreign(error))
             return
-        self.take_image(image, pose)
+        self.process_image(image, pose)
 
     @abstractmethod
-    def take_image(self, message: Any, pose: Pose | None) -> None:
+    def process_image(self, message: Any, pose: Pose | None) -> None:
         """Show an image.
 
         Args:
             message: with the fields of a sensor_msgs/msg/Image, or a sensor_msgs/msg/CompressedImage for browsers.
-            pose: see `take`.
+            pose: see `process_message`.
         """
 
     def reset(self) -> None:
@@ -91,12 +91,12 @@ class ImageTopicDisplay(TopicDisplay):
         try:
             content = self._frame(message, camera)
         except BadImageError as error:
-            self.say("Image", "error", foreign(error))
+            self.set_status_row("Image", "error", foreign(error))
             return
         if content.encoding == "file" and is_cut_off(content.data):
-            self.say("Image", "error", phrase("The image's file is truncated"))
+            self.set_status_row("Image", "error", phrase("The image's file is truncated"))
         else:
-            self.unsay("Image")
+            self.delete_status_row("Image")
         frame, stamp_ns = TopicDisplay.frame_of(self, message)
         shrink = partial(self._compressor.compressed, content)
         self.send(content, frame=frame.removeprefix("/"), pose=pose, stamp_ns=stamp_ns, shrink=shrink)
@@ -115,11 +115,11 @@ class ImageTopicDisplay(TopicDisplay):
         except InvalidTopicNameError:  # subscribing reports the invalid name
             return source
 
-    def _tell_count(self) -> None:
+    def _report_count(self) -> None:
         if self._count == 0 and self._named_source() != self._source:
             self._restart()
         else:
-            super()._tell_count()
+            super()._report_count()
 
     def _subscribe(self) -> None:
         source = self._source = self._named_source()
@@ -127,7 +127,7 @@ class ImageTopicDisplay(TopicDisplay):
             super()._subscribe()
         else:
             choice = phrase("choose {base} or {base}/{compressed}", base=source.base, compressed=COMPRESSED)
-            self.say(
+            self.set_status_row(
                 TOPIC,
                 "error",
                 phrase(
@@ -151,11 +151,11 @@ class ImageTopicDisplay(TopicDisplay):
                     phrase("Browsers do not support the image's format: '{format}'", format=message.format)
                 )
             return ImageFrame(0, 0, 0, 0, "file", data, camera)
-        picture = picture_of(message, self.ranges)
-        shown = picture.reduced(self.reduction(picture.width, picture.height)).thinned(MOST_PIXELS)
+        image = picture_of(message, self.ranges)
+        shown = image.reduced(self.reduction(image.width, image.height)).thinned(MOST_PIXELS)
         return ImageFrame(
-            width=picture.width,
-            height=picture.height,
+            width=image.width,
+            height=image.height,
             columns=shown.width,
             rows=shown.height,
             encoding=_ENCODINGS[shown.channels],
@@ -223,7 +223,7 @@ class ImageDisplay(ImageTopicDisplay):
             self._subscribe()
             if self.last is not None:  # the earlier image is still shown
                 self._count = 1
-                self._tell_count()
+                self._report_count()
         if before is not None and (message.width > before.width or message.height > before.height):
             self.show_again()
 
@@ -240,7 +240,7 @@ class ImageDisplay(ImageTopicDisplay):
             return self.SCHEMA
         return (_TOPIC_SPEC, *(replace(spec, hidden=True) for spec in _RANGE_SPECS))
 
-    def take_image(self, message: Any, pose: Pose | None) -> None:
+    def process_image(self, message: Any, pose: Pose | None) -> None:
         """Show an image."""
         if self._is_hidden:
             self._unsubscribe()
@@ -308,7 +308,7 @@ class CameraDisplay(ImageTopicDisplay):
 
     def schema(self) -> Schema:
         """Return the properties, with a check box for each other display."""
-        whole = PropertySpec(
+        check_box = PropertySpec(
             "Visibility",
             "bool",
             True,
@@ -316,7 +316,7 @@ class CameraDisplay(ImageTopicDisplay):
             children=self._boxes,
             nested=True,
         )
-        return (*_SPECS, whole)
+        return (*_SPECS, check_box)
 
     def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
         """Offer a check box for each of the other displays."""
@@ -341,14 +341,14 @@ class CameraDisplay(ImageTopicDisplay):
         """Return RViz's number, for which the display has no property."""
         return _MOST_WAITING
 
-    def take_image(self, message: Any, pose: Pose | None) -> None:
+    def process_image(self, message: Any, pose: Pose | None) -> None:
         """Show an image as soon as the camera's parameters are known."""
         camera = self._model(message)
         self.show_image(message, camera, pose)
 
     def time_changed(self) -> None:
         """Show the messages that were received while time was paused."""
-        self._infos.go_on()
+        self._infos.resume()
         super().time_changed()
 
     def reset(self) -> None:
@@ -365,7 +365,7 @@ class CameraDisplay(ImageTopicDisplay):
         info = camera_info_topic(topic)
         problem = self._infos.listen(info, qos_of(self.properties))
         text = problem or phrase("No CameraInfo received on [{topic}]. Topic may not exist.", topic=info)
-        self.say(_INFO, "error" if problem else "warn", text)
+        self.set_status_row(_INFO, "error" if problem else "warn", text)
 
     def _unsubscribe(self) -> None:
         super()._unsubscribe()
@@ -384,7 +384,7 @@ class CameraDisplay(ImageTopicDisplay):
             return None
         numbers = [np.asarray(part, np.float64) for part in (info.d, info.k, info.r, info.p)]
         if not all(np.isfinite(part).all() for part in numbers):
-            self.say(_INFO, "error", phrase("Contains invalid floating point values (nans or infs)"))
+            self.set_status_row(_INFO, "error", phrase("Contains invalid floating point values (nans or infs)"))
             return None
         width = info.width or getattr(image, "width", 0)
         height = info.height or getattr(image, "height", 0)
@@ -392,14 +392,14 @@ class CameraDisplay(ImageTopicDisplay):
             text = phrase(
                 "Could not determine width/height of image due to malformed CameraInfo (either width or height is 0)"
             )
-            self.say(_INFO, "error", text)
+            self.set_status_row(_INFO, "error", text)
             return None
         p = numbers[3]
         if p[0] == 0.0 or p[5] == 0.0:
             text = phrase("CameraInfo/P resulted in an invalid position calculation (nans or infs)")
-            self.say(_INFO, "error", text)
+            self.set_status_row(_INFO, "error", text)
             return None
-        self.say(_INFO, "ok", phrase("OK"))
+        self.set_status_row(_INFO, "ok", phrase("OK"))
         return CameraModel(
             width=float(width),
             height=float(height),

@@ -92,8 +92,8 @@ class InteractiveMarkersDisplay(DataDisplay):
         """Show the server's messages that were received while time was paused."""
         if not self.host.time.paused:
             held, self._held = self._held, []
-            for take in held:
-                take()
+            for handle in held:
+                handle()
 
     def receive(self, message: Any) -> None:
         """Send the user's action on a marker to the server."""
@@ -120,19 +120,21 @@ class InteractiveMarkersDisplay(DataDisplay):
     def _connect(self) -> None:
         namespace = self.properties.text(_NAMESPACE).strip()
         if not namespace:
-            self.say(_CLIENT, "error", phrase("Error connecting: empty namespace"))
+            self.set_status_row(_CLIENT, "error", phrase("Error connecting: empty namespace"))
             return
         self._release = self.context.transforms.use(self._transforms_came)
         events = ClientEvents(
-            lambda markers: self._soon(partial(self._take_all, markers)),
-            lambda update: self._soon(partial(self._take_update, update)),
+            lambda markers: self._soon(partial(self._apply_all, markers)),
+            lambda update: self._soon(partial(self._apply_update, update)),
             self._clear,
             self._client_status,
         )
         try:
             self._client = InteractiveMarkerClient(self.context.node, namespace, events)
         except LinkwrightError as error:
-            self.say(_CLIENT, "error", phrase("Error connecting: {message}", message=error.diagnostics[0].message))
+            self.set_status_row(
+                _CLIENT, "error", phrase("Error connecting: {message}", message=error.diagnostics[0].message)
+            )
 
     def _disconnect(self) -> None:
         if self._client is not None:
@@ -142,43 +144,43 @@ class InteractiveMarkersDisplay(DataDisplay):
             self._release()
             self._release = None
         self._clear()
-        self.unsay()
+        self.delete_status_row()
 
     # --- from the server ---------------------------------------------------------------------------------------
 
     def _client_status(self, level: StatusLevel, text: Phrase) -> None:
-        self.say(_CLIENT, level, text)
+        self.set_status_row(_CLIENT, level, text)
 
-    def _soon(self, take: Callable[[], None]) -> None:
+    def _soon(self, handle: Callable[[], None]) -> None:
         """Handle an update of the server, or hold it back while time is paused."""
         if self.host.time.paused:
-            self._held.append(take)
+            self._held.append(handle)
         else:
-            take()
+            handle()
 
     def _clear(self) -> None:
         self._held.clear()
         for name in self._markers:
-            self.unsay(name)
+            self.delete_status_row(name)
         self._markers.clear()
         self._poses.clear()
         self._unplaced.clear()
         self.forget()
 
-    def _take_all(self, markers: list[Any]) -> None:
+    def _apply_all(self, markers: list[Any]) -> None:
         self._clear()
         for marker in markers:
-            self._take(marker)
+            self._apply_marker(marker)
 
-    def _take_update(self, update: Any) -> None:
+    def _apply_update(self, update: Any) -> None:
         for marker in update.markers:
-            self._take(marker)
+            self._apply_marker(marker)
         for moved in update.poses:
             self._move(moved)
         for name in update.erases:
             self._erase(name)
 
-    def _take(self, marker: Any) -> None:
+    def _apply_marker(self, marker: Any) -> None:
         self._markers[marker.name] = marker
         self._poses[marker.name] = pose_of(marker.pose)
         self._data.pop(f"pose {marker.name}", None)
@@ -187,7 +189,9 @@ class InteractiveMarkersDisplay(DataDisplay):
     def _move(self, moved: Any) -> None:
         marker = self._markers.get(moved.name)
         if marker is None:
-            self.say(moved.name, "error", phrase("Pose received for non-existing marker '{name}'", name=moved.name))
+            self.set_status_row(
+                moved.name, "error", phrase("Pose received for non-existing marker '{name}'", name=moved.name)
+            )
             return
         pose = pose_of(moved.pose)
         self._poses[moved.name] = pose
@@ -206,7 +210,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self._unplaced.discard(name)
         self._data.pop(f"pose {name}", None)
         self.forget(f"marker {name}")
-        self.unsay(name)
+        self.delete_status_row(name)
 
     # --- to pages ----------------------------------------------------------------------------------------------
 
@@ -220,15 +224,15 @@ class InteractiveMarkersDisplay(DataDisplay):
             )
         except TransformException as error:
             self._unplaced.add(name)
-            self.say(name, "error", error.diagnostics[0].message)
+            self.set_status_row(name, "error", error.diagnostics[0].message)
             self.forget(f"marker {name}")
             return
         except BadMarkerError as error:
-            self.say(name, "error", foreign(error))
+            self.set_status_row(name, "error", foreign(error))
             self.forget(f"marker {name}")
             return
         self._unplaced.discard(name)
-        self.unsay(name)
+        self.delete_status_row(name)
         shape.pose = self._poses[name]
         self.context.meshes.replace(self.id, self._index.folders)
         self.send(shape, key=f"marker {name}", frame=frame, pose=at)

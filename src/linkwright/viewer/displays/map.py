@@ -27,7 +27,7 @@ _USE_TIMESTAMP = "Use Timestamp"
 _BINARY = "Binary representation"
 
 
-def _told(name: str, axes: str, description: str) -> PropertySpec:
+def _read_only_vector(name: str, axes: str, description: str) -> PropertySpec:
     rest = tuple(PropertySpec(axis, "float", 1.0 if axis == "W" else 0.0, read_only=True) for axis in axes)
     return PropertySpec(name, "group", description=description, children=rest)
 
@@ -48,8 +48,8 @@ _SCHEMA: Schema = (
     PropertySpec("Resolution", "float", 0.0, "Side of a cell, in metres.", read_only=True),
     PropertySpec("Width", "int", 0, "Cells along x.", read_only=True),
     PropertySpec("Height", "int", 0, "Cells along y.", read_only=True),
-    _told("Position", "XYZ", "The position of the lower left corner in the map's frame, in metres."),
-    _told("Orientation", "XYZW", "The rotation of the map in its frame."),
+    _read_only_vector("Position", "XYZ", "The position of the lower left corner in the map's frame, in metres."),
+    _read_only_vector("Orientation", "XYZW", "The rotation of the map in its frame."),
     PropertySpec(
         _USE_TIMESTAMP, "bool", False, "Place the map at its frame's pose at the map's time, not at the current one."
     ),
@@ -91,7 +91,7 @@ class MapDisplay(TopicDisplay):
         frame, stamp_ns = super().frame_of(message)
         return frame or "map", stamp_ns if self.properties.flag(_USE_TIMESTAMP) else 0
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show a map; one that was updated meanwhile stays."""
         self._pose = pose
         if message is not self._map and not self._load(message):
@@ -121,12 +121,12 @@ class MapDisplay(TopicDisplay):
             return
         frame = self.frame_of(self._map)[0].removeprefix("/")
         problem = self.host.frames.problem(frame)
-        self.say(TRANSFORM, "error" if problem else "ok", problem or phrase("Transform OK"))
+        self.set_status_row(TRANSFORM, "error" if problem else "ok", problem or phrase("Transform OK"))
 
     def time_changed(self) -> None:
         """Show the map and the updates that were received while time was paused."""
         super().time_changed()
-        self._updates.go_on()
+        self._updates.resume()
 
     def reset(self) -> None:
         """Draw nothing; forget the map of a former topic."""
@@ -149,7 +149,7 @@ class MapDisplay(TopicDisplay):
         topic = self.properties.text(TOPIC).strip()
         updates = f"{topic}_updates" if topic else ""
         if self.config.section.text(_UPDATE_TOPIC) is None:
-            self.properties.tell((_UPDATE_TOPIC,), updates)
+            self.properties.set_read_only((_UPDATE_TOPIC,), updates)
         elif file_too:
             self.properties.set((_UPDATE_TOPIC,), updates)
 
@@ -158,10 +158,10 @@ class MapDisplay(TopicDisplay):
         topic = self.properties.text(TOPIC).strip()
         if not topic:
             return
-        self.say("Message", "warn", phrase("No map received"))
+        self.set_status_row("Message", "warn", phrase("No map received"))
         updates = self.properties.text(_UPDATE_TOPIC).strip() or f"{topic}_updates"
         problem = self._updates.listen(updates, qos_of(self.properties, _UPDATE_TOPIC))
-        self.say("Update Topic", "error" if problem else "ok", problem or phrase("OK"))
+        self.set_status_row("Update Topic", "error" if problem else "ok", problem or phrase("OK"))
 
     def _unsubscribe(self) -> None:
         super()._unsubscribe()
@@ -174,25 +174,27 @@ class MapDisplay(TopicDisplay):
         cells = np.frombuffer(message.data, np.uint8)
         origin = _pose_of(info.origin)
         if not np.isfinite([info.resolution, *origin]).all():
-            self.say("Map", "error", phrase("Message contained invalid floating point values (nans or infs)"))
+            self.set_status_row(
+                "Map", "error", phrase("Message contained invalid floating point values (nans or infs)")
+            )
         elif info.width * info.height == 0:
-            self.say(
+            self.set_status_row(
                 "Map", "error", phrase("Map is zero-sized ({width}x{height})", width=info.width, height=info.height)
             )
         elif info.width * info.height != cells.size:
-            self.say("Map", "error", _size_mismatch(info, cells))
+            self.set_status_row("Map", "error", _size_mismatch(info, cells))
         else:
             self._map = message
             self._cells, self._is_own = cells.reshape(info.height, info.width), False
-            self.say("Message", "ok", phrase("Map received"))
-            self.say("Map", "ok", phrase("Map OK"))
-            self._tell(message)
+            self.set_status_row("Message", "ok", phrase("Map received"))
+            self.set_status_row("Map", "ok", phrase("Map OK"))
+            self._publish_readings(message)
             return True
         return False
 
-    def _tell(self, message: Any) -> None:
+    def _publish_readings(self, message: Any) -> None:
         for path, value in _readings(message.info):
-            if self.properties.tell(path, value):
+            if self.properties.set_read_only(path, value):
                 self.pages.publish(PropertyChanged(self.property_id(path), value))
 
     def _updated(self, update: Any) -> None:
@@ -202,15 +204,15 @@ class MapDisplay(TopicDisplay):
         part = np.frombuffer(update.data, np.uint8)
         right, top = update.x + update.width, update.y + update.height
         if update.x < 0 or update.y < 0 or right > info.width or top > info.height:
-            self.say("Update", "error", phrase("Update area outside of original map area."))
+            self.set_status_row("Update", "error", phrase("Update area outside of original map area."))
             return
         if part.size != update.width * update.height:
-            self.say("Update", "error", _size_mismatch(update, part))
+            self.set_status_row("Update", "error", _size_mismatch(update, part))
             return
         if not self._is_own:
             self._cells, self._is_own = self._cells.copy(), True
         self._cells[update.y : top, update.x : right] = part.reshape(update.height, update.width)
-        self.say("Update", "ok", phrase("Update OK"))
+        self.set_status_row("Update", "ok", phrase("Update OK"))
         self._send_soon()
 
     def _send_soon(self) -> None:

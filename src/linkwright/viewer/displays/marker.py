@@ -72,7 +72,7 @@ class MarkerDisplay(StoredMarkersDisplay):
             PropertySpec(_NAMESPACES, "bool", True, "Set the boxes of all namespaces.", children=boxes),
         )
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Apply the action of a marker."""
         self._do(message)
         while len(self._arriving) > self.most_waiting():
@@ -131,7 +131,9 @@ class MarkerDisplay(StoredMarkersDisplay):
             ]:
                 self._remove(identity)
         else:
-            self.say(marker_id(message), "error", phrase("Unknown marker action: {action}", action=message.action))
+            self.set_status_row(
+                marker_id(message), "error", phrase("Unknown marker action: {action}", action=message.action)
+            )
 
     def _add(self, message: Any) -> None:
         identity = marker_id(message)
@@ -139,7 +141,7 @@ class MarkerDisplay(StoredMarkersDisplay):
             reading = read_marker(message, self._meshes)
         except BadMarkerError as error:
             self._remove(identity)
-            self.say(identity, "error", foreign(error))
+            self.set_status_row(identity, "error", foreign(error))
             return
         if message.ns not in self._namespaces:
             self._namespaces = sorted([*self._namespaces, message.ns])
@@ -159,7 +161,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         self._unplaced.discard(identity)
         self._arriving.pop(identity, None)
         self._store.remove(identity)
-        self.unsay(identity)
+        self.delete_status_row(identity)
 
     def _place_marker(self, identity: str, marker: _Marker) -> None:
         fixed_frame = self.host.frames.fixed_frame
@@ -174,16 +176,16 @@ class MarkerDisplay(StoredMarkersDisplay):
                 fixed_frame=fixed_frame,
                 reason=reason,
             )
-            self.say(identity, "error", text)
+            self.set_status_row(identity, "error", text)
             self._unplaced.add(identity)
             self._store.remove(identity)
             return
         self._unplaced.discard(identity)
         self._arriving.pop(identity, None)
         if marker.reading.warning:
-            self.say(identity, "warn", marker.reading.warning)
+            self.set_status_row(identity, "warn", marker.reading.warning)
         else:
-            self.unsay(identity)
+            self.delete_status_row(identity)
         if marker.locked:
             shape.frame, shape.pose = marker.frame, list(marker.reading.pose)
         else:
@@ -212,8 +214,10 @@ class MarkerDisplay(StoredMarkersDisplay):
     def _expire(self) -> None:
         self._expiry = None
         now_ns = self._clock.now_ns()
-        mortal = {each: marker.expires_ns for each, marker in self._markers.items() if marker.expires_ns is not None}
-        over = [each for each, expires_ns in mortal.items() if expires_ns <= now_ns]
+        mortal = {
+            marker_id: marker.expires_ns for marker_id, marker in self._markers.items() if marker.expires_ns is not None
+        }
+        over = [marker_id for marker_id, expires_ns in mortal.items() if expires_ns <= now_ns]
         for identity in over:
             self._remove(identity)
         if over:
@@ -229,7 +233,7 @@ class MarkerArrayDisplay(MarkerDisplay):
     MESSAGE = "visualization_msgs/msg/MarkerArray"
     SCHEMA = (topic_spec(default="visualization_marker_array", description="visualization_msgs/msg/MarkerArray"),)
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Apply the actions of the markers, in their order."""
         self._check_duplicates(message.markers)
         for marker in message.markers:
@@ -246,10 +250,10 @@ class MarkerArrayDisplay(MarkerDisplay):
                     namespace=marker.ns,
                     id=marker.id,
                 )
-                self.say(_DUPLICATES, "error", text)
+                self.set_status_row(_DUPLICATES, "error", text)
                 return
             seen.add(name)
-        self.unsay(_DUPLICATES)
+        self.delete_status_row(_DUPLICATES)
 
 
 class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
@@ -273,7 +277,7 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
             of the message's header, at its time.
         """
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Draw a message."""
         made = list(self.markers(message))
         header = getattr(message, "header", None)

@@ -77,9 +77,9 @@ class OctomapDisplay(StoredMarkersDisplay):
         """Show in the status whether the frame of the map can be placed."""
         problem = self.host.frames.problem(self._frame) if self._frame else None
         if problem:
-            self.say(TRANSFORM, "error", problem)
+            self.set_status_row(TRANSFORM, "error", problem)
         elif self._frame:
-            self.say(TRANSFORM, "ok", phrase("Transform OK"))
+            self.set_status_row(TRANSFORM, "ok", phrase("Transform OK"))
 
     def reset(self) -> None:
         """Forget the map."""
@@ -88,16 +88,16 @@ class OctomapDisplay(StoredMarkersDisplay):
         self._store.clear()
         self.show_markers()
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Draw a map."""
         data = np.asarray(message.data, dtype=np.int8).tobytes()
         try:
             cells = read_octree(data=data, binary=message.binary, kind=message.id, resolution=message.resolution)
         except BadOctreeError as error:
             self.reset()
-            self.say(_MAP, "error", foreign(error))
+            self.set_status_row(_MAP, "error", foreign(error))
             return
-        self.unsay(_MAP)
+        self.delete_status_row(_MAP)
         self._frame = message.header.frame_id.removeprefix("/")
         markers = octomap_markers(
             self._chosen(cells, message.resolution),

@@ -83,7 +83,7 @@ class CloudDisplay(TopicDisplay):
 
     def choose_transformer(self, transformer: str) -> None:
         """Choose a transformer that the messages support; the one in the file stays there."""
-        if self.properties.tell((COLOUR_TRANSFORMER,), transformer):
+        if self.properties.set_read_only((COLOUR_TRANSFORMER,), transformer):
             self.publish_properties()
 
     def schema(self) -> Schema:
@@ -106,9 +106,9 @@ class CloudDisplay(TopicDisplay):
         decay = self.properties.number(DECAY_TIME)
         self._number += 1
         if decay == 0:
-            for each in self._shown:
-                if each.key:
-                    self.forget(each.key)
+            for earlier in self._shown:
+                if earlier.key:
+                    self.forget(earlier.key)
             self._shown.clear()
         shown = _Shown(str(self._number) if decay > 0 else "", points, pose, stamp_ns, now)
         self._shown.append(shown)
@@ -227,16 +227,16 @@ class CloudDisplay(TopicDisplay):
 
     def _count_points(self) -> None:
         if self._counting is None:
-            self._say_count()
+            self._report_points()
             self._counting = asyncio.get_running_loop().call_later(_COUNT_PERIOD, self._count_ended)
 
     def _count_ended(self) -> None:
         self._counting = None
-        self._say_count()
+        self._report_points()
 
-    def _say_count(self) -> None:
+    def _report_points(self) -> None:
         points = sum(len(shown.points) for shown in self._shown)
-        self.say(
+        self.set_status_row(
             "Points",
             "ok",
             phrase("Showing [{points}] points from [{shown}] messages", points=points, shown=len(self._shown)),
@@ -265,17 +265,17 @@ class PointsDisplay(CloudDisplay):
         """Return the points of a message and the pose of their frame; a scanner may move while it scans."""
         return points, pose
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show the points of a message."""
         assert pose is not None
         try:
             points = self.points_of(message)
         except BadCloudError as error:
-            self.say("Message", "error", foreign(error))
+            self.set_status_row("Message", "error", foreign(error))
             return
-        self.unsay("Message")
+        self.delete_status_row("Message")
         lack = self.lack_of_points(message) if len(points) == 0 else None
-        self.unsay("Values") if lack is None else self.say("Values", "warn", lack)
+        self.delete_status_row("Values") if lack is None else self.set_status_row("Values", "warn", lack)
         self.show(*self.placed(points, message, pose), self.frame_of(message)[1])
 
 

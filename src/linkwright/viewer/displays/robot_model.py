@@ -370,18 +370,18 @@ class RobotModelDisplay(ViewerDisplay):
             return
         value = self.properties.get(*path)
         changed = [follower for follower in followers if self.properties.get(*follower) != value]
-        for each in changed:
-            self.properties.set(each, value)
+        for box_path in changed:
+            self.properties.set(box_path, value)
         changed += self._derive_boxes(rows)
         if path == STYLE or len(changed) > _MANY_BOXES:
             self.publish_properties()
             return
-        for each in changed:
-            self.pages.publish(PropertyChanged(self.property_id(each), self.properties.get(*each)))
+        for box_path in changed:
+            self.pages.publish(PropertyChanged(self.property_id(box_path), self.properties.get(*box_path)))
 
     def _derive_boxes(self, rows: RobotRows) -> list[Path]:
         derived = rows.derived(self.properties.text(*STYLE), lambda path: self.properties.flag(*path))
-        return [path for path, value in derived.items() if self.properties.tell(path, value)]
+        return [path for path, value in derived.items() if self.properties.set_read_only(path, value)]
 
     def _log_new_problems(self, problems: dict[str, list[Phrase]]) -> None:
         for link, texts in problems.items():

@@ -135,7 +135,9 @@ class TfDisplay(ViewerDisplay):
             self._shown, self._parents, self._schema = shown, parents, None
             self.publish_properties()
         filters = ((_WHITELIST, self._only), (_BLACKLIST, self._without))
-        problems = [StatusRow(name, "error", each.problem) for name, each in filters if each.problem]
+        problems = [
+            StatusRow(name, "error", frame_filter.problem) for name, frame_filter in filters if frame_filter.problem
+        ]
         self.set_status(problems + [self._frame_status(name) for name in shown])
 
     def _frame_status(self, name: str) -> StatusRow:

@@ -149,8 +149,8 @@ class WorldDisplay(TopicDisplay):
     def time_changed(self) -> None:
         """Take the messages that were received while time was paused."""
         super().time_changed()
-        self._side.go_on()
-        self._rays.go_on()
+        self._side.resume()
+        self._rays.resume()
 
     def time_reset(self) -> None:
         """Keep the world, which is not published again; rays are measured again."""
@@ -192,7 +192,7 @@ class WorldDisplay(TopicDisplay):
             self._page_problems[key] = phrase(
                 "Could not load mesh '{name}': {reason}", name=name, reason=status.error[:500]
             )
-        self._tell_problems()
+        self._report_problems()
 
     def _follow(self) -> None:
         self._side.close()
@@ -201,20 +201,20 @@ class WorldDisplay(TopicDisplay):
             return
         problem = self._side.listen(topic, TF_QOS)
         if problem is not None:
-            self.say(_POSES, "error", problem)
+            self.set_status_row(_POSES, "error", problem)
 
     def _follow_rays(self) -> None:
         problem = self._rays.follow(
             self.properties.text(_RAYS_TOPIC).strip() if self.enabled else "", self.properties.text(_RAYS)
         )
         if problem is None:
-            self.unsay(_RAYS_TOPIC)
+            self.delete_status_row(_RAYS_TOPIC)
         else:
-            self.say(_RAYS_TOPIC, "error", problem)
+            self.set_status_row(_RAYS_TOPIC, "error", problem)
 
     # --- descriptions ------------------------------------------------------------------------------------------
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Read a description; the former one is shown until that is done."""
         self._cancel()
         self._reading = asyncio.get_running_loop().create_task(self._read(message.data))
@@ -232,7 +232,7 @@ class WorldDisplay(TopicDisplay):
             self._refuse(error.diagnostics)
             return
         except FrameError as error:
-            self.say(_WORLD, "error", phrase("'{name}' cannot be placed", name=error.name))
+            self.set_status_row(_WORLD, "error", phrase("'{name}' cannot be placed", name=error.name))
             return
         self.context.meshes.replace(self.id, index.folders)
         before = {link.name: row for row, link in enumerate(self._content.links)}
@@ -251,29 +251,31 @@ class WorldDisplay(TopicDisplay):
         self.send(_scene(self._revision, world, content, lidars, cameras), key=_SCENE_KEY)
         self._rays.describe(lidars)
         self._follow_rays()
-        self.say(
+        self.set_status_row(
             _WORLD, "ok", phrase("{models} models, {links} links", models=len(world.models), links=len(content.links))
         )
-        self._tell_problems()
+        self._report_problems()
         self._show_poses()
 
     def _refuse(self, diagnostics: tuple[Diagnostic, ...]) -> None:
         errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR][:_MOST_FINDINGS]
         texts = [error.placed_message for error in errors] or [phrase("The description is not SDF")]
-        self.say(_WORLD, "error", joined(texts, "; "))
+        self.set_status_row(_WORLD, "error", joined(texts, "; "))
 
-    def _tell_problems(self) -> None:
+    def _report_problems(self) -> None:
         problems = [(link, text) for link, texts in self._content.problems.items() for text in texts]
         problems += [(link, text) for (link, _), text in self._page_problems.items()]
-        self._tell("Files", "error", [joined((link, text), ": ") for link, text in problems])
+        self._report("Files", "error", [joined((link, text), ": ") for link, text in problems])
 
-    def _tell(self, name: str, level: StatusLevel, texts: list[Phrase]) -> None:
+    def _report(self, name: str, level: StatusLevel, texts: list[Phrase]) -> None:
         more = len(texts) - _MOST_FINDINGS
         if texts:
             text = joined(texts[:_MOST_FINDINGS], "; ")
-            self.say(name, level, phrase("{texts}; and {more} more", texts=text, more=more) if more > 0 else text)
+            self.set_status_row(
+                name, level, phrase("{texts}; and {more} more", texts=text, more=more) if more > 0 else text
+            )
         else:
-            self.unsay(name)
+            self.delete_status_row(name)
 
     # --- poses -------------------------------------------------------------------------------------------------
 
@@ -282,9 +284,11 @@ class WorldDisplay(TopicDisplay):
         rows = [self._rows_of.get(child, -1) for child in batch.children]
         poses = np.asarray(batch.poses)
         if not np.isfinite(poses).all():
-            self.say(_POSES, "error", phrase("Message contained invalid floating point values (nans or infs)"))
+            self.set_status_row(
+                _POSES, "error", phrase("Message contained invalid floating point values (nans or infs)")
+            )
             return
-        self.unsay(_POSES)
+        self.delete_status_row(_POSES)
         self._posed = batch.children
         # Transforms of this very moment may not have arrived yet; those of the last poses have.
         self._locate()
@@ -322,7 +326,7 @@ class WorldDisplay(TopicDisplay):
         found = self._anchor(frames) if self._leads or WORLD not in frames else None
         if self._leads or WORLD in frames:
             self._placed = (WORLD, None)
-            self.say(_FRAME, "ok", phrase("The world is at the frame '{world}'", world=WORLD))
+            self.set_status_row(_FRAME, "ok", phrase("The world is at the frame '{world}'", world=WORLD))
             if found is not None:
                 self._place_frames(*found)
             elif self._leads and self.context.transforms.own(WORLD) is None:
@@ -330,7 +334,7 @@ class WorldDisplay(TopicDisplay):
         elif found is not None:
             row, frame, pose = found
             self._placed = ("", np.array(compose(pose, invert(tuple(self._poses[row])))))
-            self.say(
+            self.set_status_row(
                 _FRAME,
                 "ok",
                 phrase(
@@ -341,7 +345,7 @@ class WorldDisplay(TopicDisplay):
             )
         elif self._placed[1] is None:
             self._placed = ("", None)
-            self.say(
+            self.set_status_row(
                 _FRAME,
                 "warn",
                 phrase("tf has no '{world}' and no frame of a model: the world is at the Fixed Frame", world=WORLD),
@@ -354,7 +358,7 @@ class WorldDisplay(TopicDisplay):
         before = transforms.own(WORLD)
         if before is None or before.parent != root or np.abs(before.pose - placed).max() > _UNMOVED:
             transforms.place(self.id, OwnFrame(WORLD, root, placed))
-        self.say(
+        self.set_status_row(
             _FRAME,
             "ok",
             phrase(

@@ -62,32 +62,32 @@ class LidarRays:
         Returns:
             RViz's text for a problem with the topic, or None.
         """
-        wanted: dict[str, list[str]] = {}
+        lidars: dict[str, list[str]] = {}
         for name, lidar in self._lidars.items():
             if topic and (choice == "All" or (choice == "Visualized" and lidar.scene.visualized)):
-                wanted.setdefault(topic if lidar.scene.visualized else topic + _OTHERS, []).append(name)
-        self._let_go({name for names in wanted.values() for name in names})
-        for key in self._topics.keys() - wanted.keys():
+                lidars.setdefault(topic if lidar.scene.visualized else topic + _OTHERS, []).append(name)
+        self._let_go({name for names in lidars.values() for name in names})
+        for key in self._topics.keys() - lidars.keys():
             self._topics.pop(key).close()
         problem: Phrase | None = None
-        for key in wanted.keys() - self._topics.keys():
+        for key in lidars.keys() - self._topics.keys():
             self._topics[key] = SideTopic(self._host, "sensor_msgs/msg/LaserScan", self._measured)
             problem = self._topics[key].listen(key, SENSOR_DATA_QOS) or problem
         return problem
 
-    def go_on(self) -> None:
+    def resume(self) -> None:
         """Take the messages that were received while time was paused."""
         for topic in self._topics.values():
-            topic.go_on()
+            topic.resume()
 
     def close(self) -> None:
         """Unsubscribe."""
         self.follow("", "")
 
-    def _let_go(self, kept: set[str]) -> None:
-        for name in self._shown - kept:
+    def _let_go(self, drawn: set[str]) -> None:
+        for name in self._shown - drawn:
             self._hide(name)
-        self._shown &= kept
+        self._shown &= drawn
 
     def _measured(self, message: Any) -> None:
         name = message.header.frame_id

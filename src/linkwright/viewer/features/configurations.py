@@ -76,22 +76,22 @@ class ConfigurationFeature(PageFeature):
     def __init__(self, viewer: FeatureHost, recent: RecentFiles | None = None) -> None:
         super().__init__(viewer)
         self._recent = recent or RecentFiles()
-        self._told: dict[VisualizationManager, Configuration] = {}
+        self._sent: dict[VisualizationManager, Configuration] = {}
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the current state."""
-        self._told[manager] = self._state(manager)
-        return [self._told[manager]]
+        self._sent[manager] = self._state(manager)
+        return [self._sent[manager]]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
         """Forget the state that its pages received."""
-        self._told.pop(manager, None)
+        self._sent.pop(manager, None)
 
     def edited(self, manager: VisualizationManager) -> None:
         """Send pages the current state, if it has changed."""
         state = self._state(manager)
-        if self._told.get(manager) != state:
-            self._told[manager] = state
+        if self._sent.get(manager) != state:
+            self._sent[manager] = state
             manager.publish(state)
 
     def receive(self, page: Page, message: Any) -> None:
@@ -131,27 +131,27 @@ class ConfigurationFeature(PageFeature):
         manager.tree.add(entry, group.config if group else None, prepare)
 
     def _duplicate(self, asked: Request[DuplicateDisplays]) -> None:
-        if displays := _found(asked.manager, asked.message.displays):
+        if displays := _displays_of(asked.manager, asked.message.displays):
             asked.manager.tree.duplicate(displays)
 
     def _rename(self, asked: Request[RenameDisplay]) -> None:
-        for display in _found(asked.manager, [asked.message.display]):
+        for display in _displays_of(asked.manager, [asked.message.display]):
             asked.manager.tree.rename(display, _name(asked.message.name))
 
     def _remove(self, asked: Request[RemoveDisplays]) -> None:
-        if displays := _found(asked.manager, asked.message.displays):
+        if displays := _displays_of(asked.manager, asked.message.displays):
             asked.manager.tree.remove(displays)
 
     def _move(self, asked: Request[MoveDisplays]) -> None:
         message, manager = asked.message, asked.manager
         group = manager.display(message.group) if message.group is not None else None
         before = manager.display(message.before) if message.before is not None else None
-        displays = _found(manager, message.displays)
+        displays = _displays_of(manager, message.displays)
         if displays and (group is None) == (message.group is None):
             manager.tree.move(displays, group.config if group else None, before.config if before else None)
 
     def _group(self, asked: Request[GroupDisplays]) -> None:
-        if displays := _found(asked.manager, asked.message.displays):
+        if displays := _displays_of(asked.manager, asked.message.displays):
             asked.manager.tree.gather(displays, _name(asked.message.name))
 
     def _undo(self, asked: Request[Undo]) -> None:
@@ -253,10 +253,10 @@ _DEEDS: dict[type, Callable[..., None]] = {
 ConfigurationFeature.RECEIVES = tuple(_DEEDS)
 
 
-def _found(manager: VisualizationManager, identities: list[str]) -> list[ViewerDisplay]:
+def _displays_of(manager: VisualizationManager, identities: list[str]) -> list[ViewerDisplay]:
     """Return the displays with these ids in the order of the tree, without those that are gone."""
-    wanted = set(identities)
-    return [display for display in manager.displays if display.id in wanted]
+    selected = set(identities)
+    return [display for display in manager.displays if display.id in selected]
 
 
 def _folder(manager: VisualizationManager) -> Path:

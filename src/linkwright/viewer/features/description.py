@@ -192,9 +192,9 @@ class DescriptionFeature(PageFeature):
             return display.provenance(question.link) if display is not None else None
 
         async with self._thinking:
-            told = await asyncio.to_thread(answer)
-        if told is not None:
-            page.send(told)
+            reply = await asyncio.to_thread(answer)
+        if reply is not None:
+            page.send(reply)
 
     def _look_at(self, display: RobotModelDisplay) -> KnownDescription | None:
         """Return the known description that a display shows now."""

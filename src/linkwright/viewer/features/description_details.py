@@ -242,11 +242,11 @@ def implausible(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
     subject = Subject(description, finder, Settings())
     rules = [rule for rule in all_rules() if rule.default and rule.code.startswith(_RULES)]
     found = [diagnostic for rule in rules for diagnostic in rule.check(subject)]
-    kept = Suppressions(subject, subject.settings).apply(found)
+    findings = Suppressions(subject, subject.settings).apply(found)
     owners = _owners(robot)
     return [
         InertiaFinding(link, diagnostic.code, diagnostic.message, diagnostic.hint or "")
-        for diagnostic in kept
+        for diagnostic in findings
         if diagnostic.severity is not Severity.INFO
         if (link := _link_of(diagnostic, owners)) is not None
     ]

@@ -34,7 +34,7 @@ class DisplaysFeature(PageFeature):
         elif display := manager.display(message.display):
             if isinstance(message, PictureSize):
                 self._sizes.setdefault(display, {})[page] = message
-                self._tell_size(display)
+                self._send_size(display)
             else:
                 display.receive(message)
 
@@ -42,9 +42,9 @@ class DisplaysFeature(PageFeature):
         """Forget the panels of a page; images fit those of the others."""
         for display, sizes in list(self._sizes.items()):
             if sizes.pop(page, None) is not None:
-                self._tell_size(display)
+                self._send_size(display)
 
-    def _tell_size(self, display: ViewerDisplay) -> None:
+    def _send_size(self, display: ViewerDisplay) -> None:
         """Send a display the size of the largest panel that shows it, or zero."""
         sizes = self._sizes[display].values()
         width = max((size.width for size in sizes), default=0)

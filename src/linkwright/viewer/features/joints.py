@@ -45,7 +45,7 @@ class JointsFeature(PageFeature):
             self._soon.cancel()
             self._soon = None
         self._panel = panel
-        self._unsubscribe = None if panel is None else panel.subscribe(self._told)
+        self._unsubscribe = None if panel is None else panel.subscribe(self._panel_changed)
         for message in self.opening():
             self.context.pages.publish(message)
 
@@ -74,7 +74,7 @@ class JointsFeature(PageFeature):
         """Release the panel."""
         self.attach(None)
 
-    def _told(self, kind: str) -> None:
+    def _panel_changed(self, kind: str) -> None:
         if self._panel is not None and kind == "sliders":
             self.context.pages.publish(self._controls(self._panel))
         if self._soon is None:

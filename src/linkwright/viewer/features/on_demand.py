@@ -125,7 +125,7 @@ class OnDemandFeatures(PageFeature):
             self._listening = True
             self.context.graph_changes.listen(self._review)
         self._review()
-        return [told for where, told in _WHILE_NOT_MADE.items() if where not in self._made]
+        return [message for where, message in _WHILE_NOT_MADE.items() if where not in self._made]
 
     def receive(self, page: Page, message: Any) -> None:
         """Create the feature that handles the message, and forward it."""

@@ -69,7 +69,7 @@ class RecordingFeature(PageFeature):
     def recording_shown(self) -> None:
         """Refuse to record."""
         self._possible = False
-        self._tell()
+        self._publish()
 
     def opening(self) -> list[ServerMessage]:
         """Return the state of the recording."""
@@ -85,7 +85,7 @@ class RecordingFeature(PageFeature):
             case StopRecording():
                 self._end()
             case SaveMinutes(start, end) if self._saving is None and self.viewer.live is not None:
-                if all(each is None or isfinite(each) for each in (start, end)):
+                if all(time is None or isfinite(time) for time in (start, end)):
                     self._attempt(partial(self._save, self.viewer.live, start, end))
 
     def close(self) -> None:
@@ -118,7 +118,7 @@ class RecordingFeature(PageFeature):
             threshold, post_callback=lambda _: self._loop.call_soon_threadsafe(self._end_at_reset, recorder)
         )
         self._running = _Running(node, writer, recorder, jumps, self.context.node.get_clock() if simulated else None)
-        self._tell_later()
+        self._publish_later()
 
     def _guarded(self, callback: Callable[..., object]) -> Callable[..., object]:
         """Return a callback for the recorder's node that ends the recording when a write fails."""
@@ -150,11 +150,11 @@ class RecordingFeature(PageFeature):
             self._refused(error.diagnostics)
         running.node.destroy_node()
         if running.recorder.message_count:
-            self._made(path, running.length, running.simulated)
+            self._add_file(path, running.length, running.simulated)
         else:
             shutil.rmtree(path, ignore_errors=True)
             self._refused([_finding(phrase("no messages arrived, so there is no recording"))])
-        self._tell()
+        self._publish()
 
     # --- the last minutes --------------------------------------------------------------------------------------
 
@@ -167,7 +167,7 @@ class RecordingFeature(PageFeature):
         self._saved = 0.0
         self._saving = self._loop.create_task(self._write(live, live.topics(), path, start_ns, end_ns))
         self._saving.add_done_callback(self._written)
-        self._tell_later()
+        self._publish_later()
 
     async def _write(
         self, live: LiveHistory, topics: dict[str, KeptTopic], path: Path, start_ns: int, end_ns: int
@@ -183,7 +183,7 @@ class RecordingFeature(PageFeature):
             await asyncio.to_thread(save_messages, path, topics, messages, self._note)
         except LinkwrightError as error:
             self._refused(error.diagnostics)
-        self._made(path, (messages[-1][1] - messages[0][1]) / _NANO)
+        self._add_file(path, (messages[-1][1] - messages[0][1]) / _NANO)
 
     def _note(self, part: float) -> None:
         self._saved = part
@@ -194,7 +194,7 @@ class RecordingFeature(PageFeature):
         if error is not None:  # a bug must not leave pages waiting
             self.context.node.get_logger().error(f"The last minutes were not saved: {error!r}")
             self._refused([_finding(phrase("the last minutes were not saved: {reason}", reason=foreign(repr(error))))])
-        self._tell()
+        self._publish()
 
     # --- files -------------------------------------------------------------------------------------------------
 
@@ -233,7 +233,7 @@ class RecordingFeature(PageFeature):
         except OSError:
             return sys.maxsize
 
-    def _made(self, path: Path, length: float, simulated: float | None = None) -> None:
+    def _add_file(self, path: Path, length: float, simulated: float | None = None) -> None:
         for file in sorted(path.glob("*.mcap")):
             url = self.context.downloads.keep(file)
             made = RecordedFile(path.name, str(path), file.stat().st_size, length, url, simulated)
@@ -248,7 +248,7 @@ class RecordingFeature(PageFeature):
             what()
         except LinkwrightError as error:
             self._refused(error.diagnostics)
-        self._tell()
+        self._publish()
 
     def _refused(self, diagnostics: Iterable[Diagnostic]) -> None:
         """Show an error in pages and in the terminal."""
@@ -256,10 +256,10 @@ class RecordingFeature(PageFeature):
             self.context.report(diagnostic)
         self._problem = in_one_line(diagnostics)
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         self.context.pages.publish(self._state())
 
-    def _tell_later(self) -> None:
+    def _publish_later(self) -> None:
         if self._timer is None:
             self._timer = self._loop.call_later(_PERIOD, self._look)
 
@@ -273,9 +273,9 @@ class RecordingFeature(PageFeature):
             )
             self._refused([_finding(full)])
             self._end()
-        self._tell()
+        self._publish()
         if self._running is not None or self._saving is not None:
-            self._tell_later()
+            self._publish_later()
 
     def _state(self) -> RecordingState:
         running = self._running

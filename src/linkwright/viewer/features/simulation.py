@@ -60,7 +60,7 @@ class _Drag:
 
     model: str
     start: Any = None
-    wanted: Sequence[float] | None = None
+    target: Sequence[float] | None = None
     calling: bool = False
 
 
@@ -135,7 +135,7 @@ class SimulationFeature(PageFeature):
         elif not present:
             self._leave()
         now = self._status if present == self._status.present else replace(NO_SIMULATION, present=present)
-        self._tell(replace(now, drivable=present and self._is_drivable()))
+        self._publish(replace(now, drivable=present and self._is_drivable()))
 
     def _is_drivable(self) -> bool:
         endpoints = self.context.node.graph.endpoints()
@@ -144,15 +144,15 @@ class SimulationFeature(PageFeature):
         )
 
     def _state(self, message: Any) -> None:
-        self._tell(replace(self._status, present=True, paused=message.state == _PAUSED))
+        self._publish(replace(self._status, present=True, paused=message.state == _PAUSED))
 
     def _metrics(self, message: Any) -> None:
         stamp = message.header.stamp
         time = stamp.sec + stamp.nanosec / 1e9
         factor = message.real_time_factor if isfinite(message.real_time_factor) else None
-        self._tell(replace(self._status, present=True, time=time, real_time_factor=factor))
+        self._publish(replace(self._status, present=True, time=time, real_time_factor=factor))
 
-    def _tell(self, status: SimulationStatus) -> None:
+    def _publish(self, status: SimulationStatus) -> None:
         if status != self._status:
             self._status = status
             self.context.pages.publish(status)
@@ -190,11 +190,11 @@ class SimulationFeature(PageFeature):
         def listed(response: Any) -> None:
             taken = () if response is None else response.model_names
             if name in taken:
-                free = next(each for number in count(2) if (each := f"{name}_{number}") not in taken)
+                free = next(candidate for number in count(2) if (candidate := f"{name}_{number}") not in taken)
                 fields.update(name=free, robot_namespace=f"/{free}")
-                spawn(partial(_tell_added, page, name, free))
+                spawn(partial(_report_added, page, name, free))
             else:
-                spawn(partial(_tell_added, page, name, name))
+                spawn(partial(_report_added, page, name, name))
 
         spawn = partial(self._services.ask, page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields)
         self._services.ask(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, listed)
@@ -227,7 +227,7 @@ class SimulationFeature(PageFeature):
             )
         known = self._drags.get(page)
         if known is not None and known.model == message.model and _is_vector(message.offset):
-            known.wanted = message.offset
+            known.target = message.offset
             self._put(page, known)
 
     def _held(self, page: Page, drag: _Drag, response: Any) -> None:
@@ -237,11 +237,11 @@ class SimulationFeature(PageFeature):
 
     def _put(self, page: Page, drag: _Drag) -> None:
         """Send the newest pose, after the simulation has answered the request before."""
-        if drag.start is None or drag.wanted is None or drag.calling:
+        if drag.start is None or drag.target is None or drag.calling:
             return
         start = drag.start.pose.position
         drag.calling = True
-        offset, drag.wanted = drag.wanted, None
+        offset, drag.target = drag.target, None
         state = type(drag.start)(name=drag.model, reference_frame="world")
         state.pose = _pose([start.x + offset[0], start.y + offset[1], start.z + offset[2]])
         state.pose.orientation = drag.start.pose.orientation
@@ -264,19 +264,19 @@ class SimulationFeature(PageFeature):
         self._services.ask(page, "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", fields)
 
 
-def _tell_added(page: Page, name: str, free: str, response: Any) -> None:
+def _report_added(page: Page, name: str, free: str, response: Any) -> None:
     """Tell a page that a model was added, and that it was renamed if its name was taken."""
     if response is None or not response.success:
         return
     page.send(ModelAdded(free))
     if free != name:
-        told = phrase(
+        notice = phrase(
             "There is a '{name}' already: this one is '{free}', and the topics of its plugins begin with /{free}. "
             "Frames of both have the same names.",
             name=name,
             free=free,
         )
-        page.send(SimulationNotice(told))
+        page.send(SimulationNotice(notice))
 
 
 def _is_vector(numbers: Sequence[float]) -> bool:

@@ -64,7 +64,7 @@ class TimeFeature(PageFeature):
         manager = self.managers.of(page)
         if isinstance(message, SetTime):
             manager.set_time(paused=message.paused, mode=message.mode, source=message.source)
-            self._tell_all()
+            self._publish_all()
         elif isinstance(message, ResetTime):
             self._reset(manager)
         elif isinstance(message, WatchClock):
@@ -99,7 +99,7 @@ class TimeFeature(PageFeature):
         self._since.pop(manager, None)
         self._begin(manager)
         manager.publish(TimeReset())
-        self._tell_all()
+        self._publish_all()
 
     def _jumped(self, jump: TimeJump) -> None:
         if self.context.held_time.switching:
@@ -112,7 +112,7 @@ class TimeFeature(PageFeature):
         # A message of /clock moves the clock, in any thread.
         self._loop.call_soon_threadsafe(reset)
 
-    def _tell_all(self) -> None:
+    def _publish_all(self) -> None:
         for page in self._watching:
             self._watching[page] = None
         self._tick()
@@ -123,10 +123,10 @@ class TimeFeature(PageFeature):
             self._timer.cancel()
             self._timer = None
         moving = False
-        for page, told in list(self._watching.items()):
+        for page, sent in list(self._watching.items()):
             clock = self._clock(self.managers.of(page))
             moving = moving or not clock.running
-            if told is None or (not clock.running and clock.ros != told.ros) or clock.running != told.running:
+            if sent is None or (not clock.running and clock.ros != sent.ros) or clock.running != sent.running:
                 page.send(clock)
                 self._watching[page] = clock
         if moving:

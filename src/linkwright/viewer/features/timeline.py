@@ -64,7 +64,7 @@ class TimelineFeature(PageFeature):
         self._problem: str = ""
         self._begun = False
         self._timer: asyncio.TimerHandle | None = None
-        self._telling: asyncio.TimerHandle | None = None
+        self._publish_timer: asyncio.TimerHandle | None = None
         self._live: LiveHistory | None = None
         self._was_playing = False
         self._was_live = True
@@ -107,9 +107,9 @@ class TimelineFeature(PageFeature):
         """Return the recording, and the position in it."""
         playback = self._recorded
         if self._live is not None:
-            kept = self._kept(self._live)
-            self._tell_kept_later()
-            return [Timeline("", kept.start, kept.end, [], live=True), kept, self._live_playhead(self._live)]
+            extent = self._extent(self._live)
+            self._publish_extent_later()
+            return [Timeline("", extent.start, extent.end, [], live=True), extent, self._live_playhead(self._live)]
         if playback is None or self._timeline is None:
             return []
         if not self._begun:
@@ -163,8 +163,8 @@ class TimelineFeature(PageFeature):
         """Stop playing."""
         if self._timer is not None:
             self._timer.cancel()
-        if self._telling is not None:
-            self._telling.cancel()
+        if self._publish_timer is not None:
+            self._publish_timer.cancel()
         if self._live is not None:
             self._live.close()
         elif self._recorded is not None:
@@ -180,9 +180,9 @@ class TimelineFeature(PageFeature):
         for manager in self.managers.all():
             manager.reset_time()
             manager.publish(TimeReset())
-        self._tell_jump()
+        self._notify_jump()
 
-    def _tell_jump(self) -> None:
+    def _notify_jump(self) -> None:
         for jumped in self.jumped:
             jumped()
 
@@ -194,7 +194,7 @@ class TimelineFeature(PageFeature):
         if live is not None and live.live is not self._was_live:
             self._was_live = live.live
             if live.live:
-                self._tell_jump()
+                self._notify_jump()
         if live is not None and not live.live:
             playing = live.playback.playing
             caught_up = live.span_ns[1] - live.playback.position_ns < _CAUGHT_UP_NS
@@ -217,17 +217,17 @@ class TimelineFeature(PageFeature):
             return self._playhead(live.playback)
         return Playhead(live.span_ns[0] / _SECOND, False, 1.0, False, 0, self._problem, live=True)
 
-    def _kept(self, live: LiveHistory) -> Kept:
+    def _extent(self, live: LiveHistory) -> Kept:
         start_ns, end_ns = live.span_ns
         return Kept(start_ns / _SECOND, end_ns / _SECOND, live.size, live.most_bytes)
 
-    def _tell_kept_later(self) -> None:
-        if self._telling is None:
-            self._telling = self._loop.call_later(_KEPT_PERIOD, self._tell_kept)
+    def _publish_extent_later(self) -> None:
+        if self._publish_timer is None:
+            self._publish_timer = self._loop.call_later(_KEPT_PERIOD, self._publish_extent)
 
-    def _tell_kept(self) -> None:
+    def _publish_extent(self) -> None:
         """Report the extent of the history to pages, as long as there are any."""
-        self._telling = None
+        self._publish_timer = None
         if self._live is not None and len(self.context.pages):
-            self.context.pages.publish(self._kept(self._live))
-            self._tell_kept_later()
+            self.context.pages.publish(self._extent(self._live))
+            self._publish_extent_later()

@@ -125,7 +125,7 @@ class ToolsFeature(PageFeature):
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the tools."""
-        return [_told(self._shelf(manager))]
+        return [_tools_message(self._shelf(manager))]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
         """Stop publishing for it."""
@@ -181,7 +181,7 @@ class ToolsFeature(PageFeature):
 
     def _changed(self, manager: VisualizationManager) -> None:
         manager.edited()
-        manager.publish(_told(self._shelves[manager]))
+        manager.publish(_tools_message(self._shelves[manager]))
 
     def _add(self, manager: VisualizationManager, message: AddTool) -> None:
         shelf = self._shelves[manager]
@@ -254,7 +254,7 @@ class ToolsFeature(PageFeature):
         goals = self._shelves[manager].goals.get(chosen.tool)
         if goals is not None:
             message, known = self._stamped(manager, _POSE, place)
-            self._tell_pose("goal", message.header, _fill(message.pose, known), known)
+            self._log_pose("goal", message.header, _fill(message.pose, known), known)
             goals.send(message, lambda reason: manager.publish(GoalOutcome(reason, failed=True)))
             return
         found = self._find(manager, chosen.tool, _POSE_TOOLS)
@@ -267,10 +267,10 @@ class ToolsFeature(PageFeature):
             for index, axis in ((0, "x"), (7, "y"), (35, "yaw")):
                 message.pose.covariance[index] = entry.properties.number(f"Covariance {axis}")
             pose = message.pose.pose
-        self._tell_pose(_POSE_TOOLS[entry.cls], message.header, _fill(pose, known), known)
+        self._log_pose(_POSE_TOOLS[entry.cls], message.header, _fill(pose, known), known)
         publisher.publish(message)
 
-    def _tell_pose(self, kind: str, header: Any, pose: Any, place: list[float]) -> None:
+    def _log_pose(self, kind: str, header: Any, pose: Any, place: list[float]) -> None:
         self.context.node.get_logger().info(
             f"Setting {kind} pose: Frame:{header.frame_id}, "
             f"Position({pose.position.x:g}, {pose.position.y:g}, 0), "
@@ -307,7 +307,7 @@ def _angle(pose: list[float]) -> float:
     return 2 * math.atan2(pose[5], pose[6])
 
 
-def _told(shelf: _Shelf) -> Tools:
+def _tools_message(shelf: _Shelf) -> Tools:
     return Tools(
         [
             Tool(entry.id, entry.cls, tool_name(entry.cls), entry.cls in TOOL_KINDS, entry.properties.rows())

@@ -66,7 +66,7 @@ class FrameHistory:
         if not self._subscriptions:
             for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
                 self._subscriptions.append(
-                    self._node.create_subscription(TFMessage, topic, partial(self._take, static=static), qos)
+                    self._node.create_subscription(TFMessage, topic, partial(self._add_transforms, static=static), qos)
                 )
 
         def release() -> None:
@@ -136,7 +136,7 @@ class FrameHistory:
         """Forget all moving transforms: time was reset."""
         self._buffer.clear()
 
-    def _take(self, message: TFMessage, *, static: bool) -> None:
+    def _add_transforms(self, message: TFMessage, *, static: bool) -> None:
         self._buffer.update(message, static=static)
         for listener in list(self._listeners):
             run_logged(self._node.get_logger(), "placing messages", listener)

@@ -246,7 +246,9 @@ class FrameStream:
     def start(self) -> None:
         """Subscribe, and start sending."""
         for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
-            self._node.create_subscription(TFMessage, topic, partial(self._take, static=static), qos).take_together()
+            self._node.create_subscription(
+                TFMessage, topic, partial(self._add_transforms, static=static), qos
+            ).take_together()
         self._history.on_own.append(self._wake)
         self._age()
 
@@ -272,7 +274,7 @@ class FrameStream:
             held = list(self._held.values())
             self._held.clear()
             for message, static in held:
-                self._take(message, static=static)
+                self._add_transforms(message, static=static)
         self.refresh()
 
     def forget(self) -> None:
@@ -303,7 +305,7 @@ class FrameStream:
         """Return the frame table and the last binary frame, for a page that opens; empty before there is one."""
         return self._table, self._frame
 
-    def _take(self, message: TFMessage, *, static: bool) -> None:
+    def _add_transforms(self, message: TFMessage, *, static: bool) -> None:
         batch = message.batch
         if self._time.paused:
             key = (batch.parents, batch.children, static)
@@ -348,7 +350,7 @@ class FrameStream:
         rows = poses.astype(np.float32)
         if changed or self._is_news(rows, ages):
             self._send(rows, ages)
-        self._tell_displays(snapshot, rows, fixed_frame, changed=changed)
+        self._notify_displays(snapshot, rows, fixed_frame, changed=changed)
 
     def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
         """Return the poses of all frames in the Fixed Frame, which may be one that a display places."""
@@ -424,7 +426,7 @@ class FrameStream:
         in_time = self._looked_at - self._due < period / 2
         return (self._due if in_time else self._looked_at) + period
 
-    def _tell_displays(
+    def _notify_displays(
         self, snapshot: FrameSnapshot, poses: NDArray[np.float32], fixed_frame: str, *, changed: bool
     ) -> None:
         has_pose = ~np.isnan(poses[:, 0])

@@ -261,7 +261,7 @@ def _control(
 
 def _marker(marker: Any, message: Any, index: MeshIndex, frames: FramePlacer) -> MarkerShape:
     shape = read_marker(marker, index).shape
-    shape.scale = [each or 1.0 for each in shape.scale]
+    shape.scale = [length or 1.0 for length in shape.scale]
     frame = marker.header.frame_id.removeprefix("/")
     reference = message.header.frame_id.removeprefix("/")
     if frame:

@@ -112,7 +112,7 @@ def pack_data(
         "key": key,
         "frame": frame,
         "stamp": stamp,
-        "pose": None if pose is None else [float(each) for each in pose],
+        "pose": None if pose is None else [float(number) for number in pose],
         "content": content,
     }
     text = _json(header, arrays)

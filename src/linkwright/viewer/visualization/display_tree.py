@@ -54,7 +54,7 @@ class DisplayTree:
         """Create the displays of a configuration, without starting them."""
         self._config = config
         self.displays = [self._make(entry) for entry in config.walk()]
-        self._tell_arrangement()
+        self._notify_arrangement()
 
     def start(self) -> None:
         """Start all displays."""
@@ -186,12 +186,12 @@ class DisplayTree:
         def swap(memory: Memory) -> Memory:
             now = section.memory("Name")
             section.recall(memory)
-            self._tell_arrangement()
+            self._notify_arrangement()
             self._rearranged()
             return now
 
         display.config.name = name
-        self._tell_arrangement()
+        self._notify_arrangement()
         self._rearranged()
         self._history.add(Edit(EditName("rename", name), swap, before))
 
@@ -238,7 +238,7 @@ class DisplayTree:
         for entry in there.keys() - set(entries):
             there[entry].stop()
         self.displays = [there.get(entry) or new.get(entry) or self._make(entry) for entry in entries]
-        self._tell_arrangement()
+        self._notify_arrangement()
         self._rearranged()
         for display in self.displays:
             if display.config not in there:
@@ -246,7 +246,7 @@ class DisplayTree:
             elif display.enabled != enabled[display.config]:
                 display.enabled_changed()
 
-    def _tell_arrangement(self) -> None:
+    def _notify_arrangement(self) -> None:
         for display in self.displays:
             display.arranged(self.displays)
 

@@ -287,8 +287,8 @@ class VisualizationManager:
 
     def _synchronize(self) -> None:
         """Set time to the file's synchronization, not paused."""
-        wanted = read_synchronization(self.config.document)
-        self.set_time(paused=False, mode=wanted.mode, source=wanted.source)
+        synchronization = read_synchronization(self.config.document)
+        self.set_time(paused=False, mode=synchronization.mode, source=synchronization.source)
 
     def _time_changed(self) -> None:
         time = self.time

@@ -23,7 +23,7 @@ from linkwright.viewer.protocol.message import (
 from linkwright.viewer.protocol.session import ProgramIsLate, Received
 from linkwright.viewer.protocol.voice import SoundBlock, unpack_sound
 from linkwright.viewer.web.lateness import Lateness
-from linkwright.viewer.web.outbox import BULK, TRANSFORMS, InPieces, Line, Made, Outbox, Payload, ScaledData
+from linkwright.viewer.web.outbox import BULK, TRANSFORMS, InPieces, Line, Outbox, Outgoing, Payload, ScaledData
 
 if TYPE_CHECKING:
     from aiohttp.web import Request, WebSocketResponse
@@ -69,7 +69,7 @@ class Page:
         self._socket = socket
         self._reduced: dict[str, tuple[ScaledData, int]] = {}
         self._lateness: Lateness | None = None
-        self._told_late = False
+        self._reported_late = False
         self._opening: list[Payload] = []
         self._completing: asyncio.TimerHandle | None = None
         self._completion: InPieces | None = None
@@ -113,7 +113,7 @@ class Page:
             self._completing.cancel()
             self._completing = None
 
-    async def _send(self, payload: Made | ScaledData) -> None:
+    async def _send(self, payload: Outgoing | ScaledData) -> None:
         if not isinstance(payload, (str, bytes)):
             payload = await self._fitted(payload)
         size = len(payload)
@@ -129,7 +129,7 @@ class Page:
         """Return as much of a content as the line carries; the rest follows when the line is idle."""
         room = self.line.room
         frame = await payload.fitting(room)
-        if frame is payload.whole:
+        if frame is payload.full_frame:
             self._reduced.pop(payload.key, None)
         else:
             self._reduced[payload.key] = (payload, room)
@@ -163,8 +163,8 @@ class Page:
             self._lateness.close()
             self._lateness = None
         late = self._lateness is not None and self._lateness.mean * _OURS >= (self.line.took or math.inf)
-        if late != self._told_late:
-            self._told_late = late
+        if late != self._reported_late:
+            self._reported_late = late
             self.send(ProgramIsLate(late))
 
     def _complete(self) -> None:

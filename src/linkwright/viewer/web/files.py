@@ -229,9 +229,9 @@ def _beside(path: Path) -> Path:
     """Return a file, or the image of its name in the place where Gazebo models store images without a folder."""
     if path.suffix.lower() in IMAGE_TYPES and not path.exists():
         model = path.parent.parent
-        kept = model / "materials" / "textures" / path.name
-        if kept.exists() and (model / _MODEL_CONFIG).is_file():
-            return kept
+        texture = model / "materials" / "textures" / path.name
+        if texture.exists() and (model / _MODEL_CONFIG).is_file():
+            return texture
     return path
 
 
@@ -259,17 +259,17 @@ class Downloads:
 
     def __init__(self) -> None:
         self._files: dict[str, Download] = {}
-        self._kept: dict[str, Path] = {}
+        self._reusable: dict[str, Path] = {}
 
     def keep(self, path: Path) -> str:
         """Offer a file for any number of fetches; returns its address."""
         key = secrets.token_urlsafe(16)
-        self._kept[key] = path
+        self._reusable[key] = path
         return f"/export/{key}/{quote(path.name)}"
 
     def path(self, key: str) -> Path | None:
         """Return the file with a key of `keep`."""
-        return self._kept.get(key)
+        return self._reusable.get(key)
 
     def put(self, file: Download) -> str:
         """Offer a file for one fetch; returns its address."""

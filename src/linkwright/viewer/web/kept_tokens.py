@@ -54,17 +54,17 @@ def token_folder() -> Path:
 def keep_token(port: int) -> PortToken:
     """Return the token of the user's last program on a port, or a new one, and store it."""
     now = time.time()
-    made, kept = _read(token_folder() / str(port))
-    if kept is None or not 0.0 <= now - made < _LIFETIME:
-        made, kept = now, PortToken(new_token())
-    _write(port, made, PortToken(kept.token))
-    return kept
+    made, stored = _read(token_folder() / str(port))
+    if stored is None or not 0.0 <= now - made < _LIFETIME:
+        made, stored = now, PortToken(new_token())
+    _write(port, made, PortToken(stored.token))
+    return stored
 
 
 def leave_token(port: int, token: str, *, pages_wait: bool) -> None:
     """Store at the end of a program whether its pages wait for the next one, unless the file has another token."""
-    made, kept = _read(token_folder() / str(port))
-    if kept is not None and kept.token == token:
+    made, stored = _read(token_folder() / str(port))
+    if stored is not None and stored.token == token:
         _write(port, made, PortToken(token, pages_wait))
 
 
@@ -74,10 +74,10 @@ def _read(path: Path) -> tuple[float, PortToken | None]:
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
         with open(descriptor, "rb") as file:  # noqa: PTH123 - a descriptor, not a path
             if _is_private(os.fstat(descriptor)):
-                told = json.loads(file.read(_LONGEST))
-                made, token = float(told["made"]), str(told["token"])
+                stored = json.loads(file.read(_LONGEST))
+                made, token = float(stored["made"]), str(stored["token"])
                 if _TOKEN.fullmatch(token):
-                    return made, PortToken(token, told.get("pages wait") is True)
+                    return made, PortToken(token, stored.get("pages wait") is True)
     return 0.0, None
 
 
@@ -89,10 +89,10 @@ def _is_private(facts: os.stat_result) -> bool:
     return user is None or (facts.st_uid == user() and not facts.st_mode & 0o077)
 
 
-def _write(port: int, made: float, kept: PortToken) -> None:
+def _write(port: int, made: float, port_token: PortToken) -> None:
     """Store a token; if the state cannot be written, the next program has another, which is not an error."""
     folder = token_folder()
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-        told = {"token": kept.token, "made": made, "pages wait": kept.pages_wait}
-        write_whole_file(folder / str(port), json.dumps(told), mode=0o600)
+        content = {"token": port_token.token, "made": made, "pages wait": port_token.pages_wait}
+        write_whole_file(folder / str(port), json.dumps(content), mode=0o600)

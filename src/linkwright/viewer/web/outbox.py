@@ -44,14 +44,14 @@ class ScaledData:
         self._smaller: dict[int, asyncio.Future[bytes]] = {}
 
     @cached_property
-    def whole(self) -> bytes:
+    def full_frame(self) -> bytes:
         """Return the frame with the full content."""
         return self._pack(self._content)
 
     async def fitting(self, room: int) -> bytes:
         """Return the frame with as much as fits into so many bytes; cached for pages of similar lines."""
-        if len(self.whole) <= room:
-            return self.whole
+        if len(self.full_frame) <= room:
+            return self.full_frame
         size = 1 << (room.bit_length() - 1)
         if size not in self._smaller:
             self._smaller[size] = asyncio.ensure_future(asyncio.to_thread(self._made, size))
@@ -80,14 +80,14 @@ class InPieces:
     @property
     def done(self) -> bool:
         """Whether all pieces were sent, or they are not needed any more."""
-        return self.payload.gone or self._given >= len(self.payload.whole)
+        return self.payload.gone or self._given >= len(self.payload.full_frame)
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
         """Return the next piece, or None if there is none. The argument is ignored: pieces are counted here."""
         if self.done:
             return None, seen
         size = self._size()
-        piece = pack_piece(self.payload.whole, self._number, self._given, size)
+        piece = pack_piece(self.payload.full_frame, self._number, self._given, size)
         self._given += size
         return piece, seen
 
@@ -96,7 +96,7 @@ FRAME_TABLE = "frame_table"
 TRANSFORMS = "transforms"
 _URGENT = (FRAME_TABLE, TRANSFORMS)
 
-Made = str | bytes
+Outgoing = str | bytes
 """Text of a control message, or a binary frame."""
 
 
@@ -109,7 +109,7 @@ class Changes(Protocol):
     key: str
     """Its key in the outbox."""
 
-    def since(self, seen: int) -> tuple[Made | None, int]:
+    def since(self, seen: int) -> tuple[Outgoing | None, int]:
         """Return the message or binary frame for a page.
 
         Args:
@@ -120,7 +120,7 @@ class Changes(Protocol):
         """
 
 
-Payload = Made | Changes | ScaledData
+Payload = Outgoing | Changes | ScaledData
 
 
 class Outbox:
@@ -163,7 +163,7 @@ class Outbox:
         self.is_held = held
         self._filled.set()
 
-    async def take(self) -> Made | ScaledData:
+    async def take(self) -> Outgoing | ScaledData:
         """Return the next payload, as soon as there is one."""
         while True:
             while not self._urgent and (self.is_held or not self._ordinary):
@@ -176,7 +176,7 @@ class Outbox:
             if made is not None:
                 return made
 
-    def make(self, payload: Payload) -> Made | ScaledData | None:
+    def make(self, payload: Payload) -> Outgoing | ScaledData | None:
         """Return the message or frame to send for a payload now, or None."""
         if isinstance(payload, (str, bytes)):
             return payload

@@ -37,7 +37,7 @@ class PageServer:
         self.is_open_to_others = False
         self.web: WebServer | None = None
         self.host, self._port = host, port
-        self._kept: tuple[int, PortToken] | None = None
+        self._port_token: tuple[int, PortToken] | None = None
 
     async def open(self) -> None:
         """Listen, and serve the page; further requests wait for `show`.
@@ -51,8 +51,8 @@ class PageServer:
         self.is_open_to_others = is_open_to_others(listener)
         if self._port != 0 and not self.is_open_to_others:
             port = listener.getsockname()[1]
-            self._kept = port, keep_token(port)
-        gate = Gate(self.host, self._kept[1].token if self._kept else new_token())
+            self._port_token = port, keep_token(port)
+        gate = Gate(self.host, self._port_token[1].token if self._port_token else new_token())
         self.web = WebServer(gate, self.meshes, self.downloads)
         self.url = await self.web.start(listener)
 
@@ -64,13 +64,13 @@ class PageServer:
     @property
     def pages_wait(self) -> bool:
         """Whether pages of the former program at this port are looking for this one."""
-        return self._kept is not None and self._kept[1].pages_wait
+        return self._port_token is not None and self._port_token[1].pages_wait
 
     def leave_token(self, *, pages_wait: bool) -> None:
         """Store at the end of the program whether its pages wait for the next one."""
-        if self._kept is not None:
-            (port, kept), self._kept = self._kept, None
-            leave_token(port, kept.token, pages_wait=pages_wait)
+        if self._port_token is not None:
+            (port, port_token), self._port_token = self._port_token, None
+            leave_token(port, port_token.token, pages_wait=pages_wait)
 
     async def close(self) -> None:
         """Close the connections to pages and stop listening."""

@@ -251,23 +251,23 @@ class WebServer:
     ) -> web.StreamResponse:
         """Return a file of the page. It is in memory once for all requests, however slow their readers are."""
         async with self._reading:
-            kept = self._page_contents.get((path, unpack))
+            cached = self._page_contents.get((path, unpack))
             try:
-                read = await asyncio.to_thread(_read, path, kept.tag if kept else "", unpack=unpack)
+                read = await asyncio.to_thread(_read, path, cached.tag if cached else "", unpack=unpack)
             except OSError:
                 raise _no_file() from None
-            if kept is None or read.body is not None:
-                kept = self._page_contents[path, unpack] = read
-        headers = {"Cache-Control": cache, "ETag": kept.tag, **(packing or {})}
-        if kept.body is None or kept.is_known_to(request):
+            if cached is None or read.body is not None:
+                cached = self._page_contents[path, unpack] = read
+        headers = {"Cache-Control": cache, "ETag": cached.tag, **(packing or {})}
+        if cached.body is None or cached.is_known_to(request):
             return web.Response(status=304, headers=headers)
         response = web.StreamResponse(headers={**headers, "Content-Type": content_type})
-        response.content_length = len(kept.body)
+        response.content_length = len(cached.body)
         await response.prepare(request)
         if request.method != "HEAD":
-            whole = memoryview(kept.body)
-            for start in range(0, len(whole), MOST_UNSENT):
-                await response.write(whole[start : start + MOST_UNSENT])
+            content = memoryview(cached.body)
+            for start in range(0, len(content), MOST_UNSENT):
+                await response.write(content[start : start + MOST_UNSENT])
         await response.write_eof()
         return response
 
@@ -284,10 +284,10 @@ class WebServer:
 
     async def _export(self, request: web.Request) -> web.StreamResponse:
         file = self._downloads.take(request.match_info["key"])
-        kept = self._downloads.path(request.match_info["key"])
-        if kept is not None:
+        recording = self._downloads.path(request.match_info["key"])
+        if recording is not None:
             self._admit(request)
-            return await _streamed(request, kept)
+            return await _streamed(request, recording)
         if file is None:
             raise web.HTTPNotFound(text="There is no such file; it can be fetched once.\n")
         self._admit(request)
@@ -314,10 +314,10 @@ class WebServer:
 
     async def _show_kept(self, uploads: Uploads, request: web.Request) -> web.Response:
         """Show a recording that this program made: its file is on this machine already."""
-        kept = self._downloads.path(request.match_info["key"])
-        if kept is None:
+        recording = self._downloads.path(request.match_info["key"])
+        if recording is None:
             raise web.HTTPNotFound(text="There is no such recording.\n")
-        return await uploads.show(request, kept)
+        return await uploads.show(request, recording)
 
     def _shielded(
         self, handler: Callable[[web.Request], Awaitable[web.Response]]
@@ -391,7 +391,7 @@ def _own_displays(request: web.Request) -> str:
 
 def _takes_gzip(request: web.Request) -> bool:
     offered = request.headers.get("Accept-Encoding", "").split(",")
-    return any(each.strip().lower() == "gzip" for each in offered)
+    return any(encoding.strip().lower() == "gzip" for encoding in offered)
 
 
 def _without_token() -> web.Response:
@@ -487,7 +487,7 @@ def _read(path: Path, known: str, *, unpack: bool = False) -> _FileRead:
 
 
 def _is_among(tag: str, known: str) -> bool:
-    return tag in {each.strip().removeprefix("W/") for each in known.split(",")}
+    return tag in {entry.strip().removeprefix("W/") for entry in known.split(",")}
 
 
 def listen(host: str, port: int | None) -> socket.socket:

@@ -75,7 +75,7 @@ class _Upload:
 
     announced: _Announcement
     scratch: TemporaryDirectory[str]
-    whole: set[int] = field(default_factory=set)
+    received: set[int] = field(default_factory=set)
     touched: float = field(default_factory=lambda: asyncio.get_running_loop().time())
     busy: bool = False
 
@@ -162,7 +162,7 @@ class Uploads:
         """Receive one of the files."""
         upload = self._uploads.get(request.match_info["key"])
         number = int(request.match_info["number"])
-        if upload is None or number >= len(upload.announced.files) or number in upload.whole or upload.busy:
+        if upload is None or number >= len(upload.announced.files) or number in upload.received or upload.busy:
             raise web.HTTPNotFound(text="Nothing of that name is expected.\n")
         file = upload.announced.files[number]
         upload.busy = True
@@ -179,13 +179,13 @@ class Uploads:
             upload.busy = False
         if come != file.size:
             return web.Response(status=400, text="That is not all of the file.\n")
-        upload.whole.add(number)
+        upload.received.add(number)
         return web.Response(status=204)
 
     async def open(self, request: web.Request) -> web.Response:
         """Show a recording whose files have arrived."""
         upload = self._uploads.get(request.match_info["key"])
-        if upload is None or len(upload.whole) != len(upload.announced.files):
+        if upload is None or len(upload.received) != len(upload.announced.files):
             raise web.HTTPNotFound(text="There is no upload of that name.\n")
         upload.busy = True
         try:

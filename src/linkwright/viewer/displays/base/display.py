@@ -246,22 +246,22 @@ class DataDisplay(ViewerDisplay):
 
     def forget(self, key: str | None = None) -> None:
         """Remove the data that was sent under a key from pages, or all data."""
-        for each in self._data if key is None else (key,):
-            self._replaced(each)
+        for data_key in self._data if key is None else (key,):
+            self._replaced(data_key)
         if key is None:
             self._data.clear()
         else:
             self._data.pop(key, None)
         self.pages.publish(DisplayForgotten(self.id, key))
 
-    def say(self, name: str, level: StatusLevel, text: str) -> None:
+    def set_status_row(self, name: str, level: StatusLevel, text: str) -> None:
         """Set a status row; a phrase is shown in the language of each page."""
         row = StatusRow(name, level, text)
         if self._rows.get(name) != row:
             self._rows[name] = row
             self.set_status(list(self._rows.values()))
 
-    def unsay(self, name: str | None = None) -> None:
+    def delete_status_row(self, name: str | None = None) -> None:
         """Remove a status row, or all."""
         if name is None:
             self._rows.clear()

@@ -36,7 +36,7 @@ class StoredMarkersDisplay(TopicDisplay):
     def receive(self, message: Any) -> None:
         """Show a page's report on a marker's mesh or texture in the status."""
         if isinstance(message, MeshStatus) and message.error is not None and message.link in self._store:
-            self.say(
+            self.set_status_row(
                 message.link,
                 "error",
                 phrase("Mesh resource marker [{link}]: {error}", link=message.link, error=message.error[:500]),

@@ -58,7 +58,7 @@ class SideTopic:
             self._subscription = None
         self._held.clear()
 
-    def go_on(self) -> None:
+    def resume(self) -> None:
         """Handle the messages that were held while time was paused."""
         while self._held and not self._host.time.paused:
             self._on_message(self._held.popleft())
@@ -105,8 +105,8 @@ _MOST_OTHERS = 3
 class TopicDisplay(DataDisplay, ABC):
     """A display of the messages of one type on one topic.
 
-    A subclass sets `CLASS`, `MESSAGE` and its properties, among them a `topic_spec`, and overrides `take`. It
-    subscribes only while it is enabled, as in RViz.
+    A subclass sets `CLASS`, `MESSAGE` and its properties, among them a `topic_spec`, and overrides `process_message`.
+    It subscribes only while it is enabled, as in RViz.
 
     Attributes:
         last: the message shown now, to show it again when a property changes.
@@ -140,7 +140,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._failing = False
         self._count = 0
         self._since = 0.0
-        self._telling: asyncio.TimerHandle | None = None
+        self._report_timer: asyncio.TimerHandle | None = None
         self._incompatibility: Phrase | None = None
         self._late: asyncio.TimerHandle | None = None
         self._late_reason = ""
@@ -148,7 +148,7 @@ class TopicDisplay(DataDisplay, ABC):
     # --- what subclasses override ------------------------------------------------------------------------------
 
     @abstractmethod
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show a message.
 
         Args:
@@ -236,7 +236,7 @@ class TopicDisplay(DataDisplay, ABC):
         self.last = None
         self._failing = False
         self.reset()
-        self.unsay()
+        self.delete_status_row()
         if self.enabled:
             self._subscribe()
 
@@ -244,7 +244,7 @@ class TopicDisplay(DataDisplay, ABC):
         message, topic, qos = self.subscription()
         self._count, self._since, self._incompatibility = 0, time.monotonic(), None
         if not topic:
-            self.say(self.TOPIC_ROW, "error", phrase("Error subscribing: Empty topic name"))
+            self.set_status_row(self.TOPIC_ROW, "error", phrase("Error subscribing: Empty topic name"))
             return
         from linkwright.graph import SubscriptionEventCallbacks  # here, because the view of a robot has no topics
 
@@ -257,18 +257,18 @@ class TopicDisplay(DataDisplay, ABC):
                 event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._incompatible),
             )
         except LinkwrightError as error:
-            self.say(
+            self.set_status_row(
                 self.TOPIC_ROW, "error", phrase("Error subscribing: {message}", message=error.diagnostics[0].message)
             )
             return
         if self.TRANSFORMED or self.FOLLOWS_TRANSFORMS:
             self._release = self.context.transforms.use(self.transforms_came)
-        self._tell_count()
+        self._report_count()
 
     def _unsubscribe(self) -> None:
-        if self._telling is not None:
-            self._telling.cancel()
-            self._telling = None
+        if self._report_timer is not None:
+            self._report_timer.cancel()
+            self._report_timer = None
         if self._subscription is not None:
             with suppress(ValueError):  # the node may have been destroyed before
                 self.context.node.destroy_subscription(self._subscription)
@@ -295,9 +295,9 @@ class TopicDisplay(DataDisplay, ABC):
                 topic=TOPIC,
             )
         if self._count == 0:
-            self._tell_count()
+            self._report_count()
 
-    def _tell_count(self) -> None:
+    def _report_count(self) -> None:
         """Show the number of messages, or why there are none; repeated while there are none."""
         if self._count > 0:
             seconds = time.monotonic() - self._since
@@ -305,14 +305,14 @@ class TopicDisplay(DataDisplay, ABC):
             if self._count > 1 and seconds > 0:
                 rate = self._count / seconds
                 text = phrase("{count} messages received at {rate:.0f} hz.", count=self._count, rate=rate)
-            self.say(self.TOPIC_ROW, "ok", text)
+            self.set_status_row(self.TOPIC_ROW, "ok", text)
             return
-        self.say(
+        self.set_status_row(
             self.TOPIC_ROW,
             "ok" if self._is_awaited() else "warn",
             self._incompatibility or phrase("No messages received: {reason}", reason=self._silence()),
         )
-        self._tell_count_later()
+        self._report_count_later()
 
     def _is_awaited(self) -> bool:
         """Whether messages are rare and the topic has a publisher for them."""
@@ -320,13 +320,13 @@ class TopicDisplay(DataDisplay, ABC):
         publishers = self.context.published.publishers(topic)
         return self.OCCASIONAL and self._incompatibility is None and any(kind == message for _, kind in publishers)
 
-    def _tell_count_later(self) -> None:
-        def tell() -> None:
-            self._telling = None
-            self._tell_count()
+    def _report_count_later(self) -> None:
+        def report() -> None:
+            self._report_timer = None
+            self._report_count()
 
-        if self._telling is None:
-            self._telling = asyncio.get_running_loop().call_later(_COUNT_PERIOD, tell)
+        if self._report_timer is None:
+            self._report_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD, report)
 
     def _silence(self) -> Phrase:
         """Return the reason why no messages arrive, as far as the graph knows, and topics of the same type."""
@@ -352,9 +352,9 @@ class TopicDisplay(DataDisplay, ABC):
     def _received(self, message: Any) -> None:
         self._count += 1
         if self._count == 1:
-            self._tell_count()
+            self._report_count()
         else:
-            self._tell_count_later()
+            self._report_count_later()
         if self.TRANSFORMED:
             self.host.time.took(self.config.name, self.frame_of(message)[1])
         if self.host.time.paused:
@@ -366,7 +366,7 @@ class TopicDisplay(DataDisplay, ABC):
 
     def _offer(self, message: Any) -> None:
         if not self.TRANSFORMED:
-            self._take(message, None)
+            self._process(message, None)
             return
         if self._waiting or not self._place(message):
             self._waiting.append(message)
@@ -392,18 +392,18 @@ class TopicDisplay(DataDisplay, ABC):
             self._could_not_place(reason, stamp_ns, is_late=isinstance(error, ExtrapolationException))
             return False
         self._in_time()
-        self.say(TRANSFORM, "ok", phrase("Transform OK"))
-        self._take(message, pose)
+        self.set_status_row(TRANSFORM, "ok", phrase("Transform OK"))
+        self._process(message, pose)
         return True
 
     def _could_not_place(self, reason: Phrase, stamp_ns: int, *, is_late: bool) -> None:
         """Report a message without a transform; if it is only late, after a while without placed messages."""
         if not is_late:
-            self.say(TRANSFORM, "error", reason)
+            self.set_status_row(TRANSFORM, "error", reason)
             return
         self._late_reason = self._with_clocks(reason, stamp_ns)
         if self._late is None:
-            self._late = asyncio.get_running_loop().call_later(_LATE, self._tell_late)
+            self._late = asyncio.get_running_loop().call_later(_LATE, self._report_late)
 
     def _with_clocks(self, reason: Phrase, stamp_ns: int) -> Phrase:
         """Return the reason, with advice about clocks if the message's stamp is far from the local time."""
@@ -424,26 +424,26 @@ class TopicDisplay(DataDisplay, ABC):
             reason=reason,
         )
 
-    def _tell_late(self) -> None:
+    def _report_late(self) -> None:
         self._late = None
         if self._waiting:
-            self.say(TRANSFORM, "error", self._late_reason)
+            self.set_status_row(TRANSFORM, "error", self._late_reason)
 
     def _in_time(self) -> None:
         if self._late is not None:
             self._late.cancel()
             self._late = None
 
-    def _take(self, message: Any, pose: Pose | None) -> None:
+    def _process(self, message: Any, pose: Pose | None) -> None:
         """Show a message. An unexpected failure must not stop the following ones."""
         self.last = message
         try:
-            self.take(message, pose)
+            self.process_message(message, pose)
         except Exception as error:  # noqa: BLE001  # the message is a stranger's
             if not self._failing:
                 self.context.node.get_logger().error(f"'{self.config.name}' failed:\n{traceback.format_exc().rstrip()}")
             self._failing = True
-            self.say(
+            self.set_status_row(
                 _FAILURE,
                 "error",
                 phrase("The message could not be shown: {reason}", reason=foreign(error or type(error).__name__)),
@@ -451,7 +451,7 @@ class TopicDisplay(DataDisplay, ABC):
             return
         if self._failing:
             self._failing = False
-            self.unsay(_FAILURE)
+            self.delete_status_row(_FAILURE)
 
 
 _MESSAGE = "Message"
@@ -486,7 +486,7 @@ class RecentDisplay(TopicDisplay):
     def content(self, message: Any) -> DataContent | None:
         """Return the content of a message, in the frame of `frame_of`, or None to ignore it."""
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show a message, and drop the oldest one."""
         assert pose is not None
         content = self.content(message)
@@ -506,9 +506,9 @@ class RecentDisplay(TopicDisplay):
         super().changed(path)
         if path == self.LENGTH:
             length = self._length()
-            kept = list(self._shown)[-length:]
+            recent = list(self._shown)[-length:]
             self.reset()
-            for shown in kept:
+            for shown in recent:
                 self._shown.append(shown)
                 self._send(shown)
 
@@ -520,11 +520,11 @@ class RecentDisplay(TopicDisplay):
 
     def refuse(self, text: str) -> None:
         """Show the problem of the last message."""
-        self.say(_MESSAGE, "error", text)
+        self.set_status_row(_MESSAGE, "error", text)
 
     def accept(self) -> None:
         """Clear the problem of the previous message."""
-        self.unsay(_MESSAGE)
+        self.delete_status_row(_MESSAGE)
 
     def is_finite(self, *numbers: ArrayLike) -> bool:
         """Return whether all numbers are finite, and show in the status if they are not."""

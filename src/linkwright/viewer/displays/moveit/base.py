@@ -63,18 +63,18 @@ class MoveItDisplay(StoredMarkersDisplay):
     def drawn(self) -> None:
         """Send the markers of `put`, and show in the status which frames cannot be placed."""
         self.show_markers()
-        self._tell_frames()
+        self._report_frames()
 
-    def say_unknown(self, joints: list[str]) -> None:
+    def report_unknown_joints(self, joints: list[str]) -> None:
         """Show in the status the joints of a state that the robot does not have."""
         if joints:
             names, more = quoted_names(joints[:5]), len(joints) - 5
             text = phrase("The robot has no joint {names}", names=names)
             if more > 0:
                 text = phrase("The robot has no joint {names} and {more} more", names=names, more=more)
-            self.say(_JOINTS, "warn", text)
+            self.set_status_row(_JOINTS, "warn", text)
         else:
-            self.unsay(_JOINTS)
+            self.delete_status_row(_JOINTS)
 
     # --- life --------------------------------------------------------------------------------------------------
 
@@ -113,11 +113,11 @@ class MoveItDisplay(StoredMarkersDisplay):
 
     def frames_changed(self) -> None:
         """Show in the status which frames cannot be placed."""
-        self._tell_frames()
+        self._report_frames()
 
     def time_changed(self) -> None:
         """Show the messages that were received while time was paused."""
-        self._descriptions.go_on()
+        self._descriptions.resume()
         super().time_changed()
 
     def reset(self) -> None:
@@ -132,27 +132,27 @@ class MoveItDisplay(StoredMarkersDisplay):
         if not self.enabled:
             return
         if not topic:
-            self.say(_URDF, "error", phrase("Error subscribing: Empty topic name"))
+            self.set_status_row(_URDF, "error", phrase("Error subscribing: Empty topic name"))
             return
         problem = self._descriptions.listen(topic, DESCRIPTION_QOS)
         if problem is not None:
-            self.say(_URDF, "error", problem)
+            self.set_status_row(_URDF, "error", problem)
         elif self.robot is None:
-            self.say(_URDF, "warn", phrase("No description on topic '{topic}' yet", topic=topic))
+            self.set_status_row(_URDF, "warn", phrase("No description on topic '{topic}' yet", topic=topic))
 
     def _described(self, message: Any) -> None:
         robot = self.context.library.read(message.data).robot
         if robot is None or not robot.links:
-            self.say(
+            self.set_status_row(
                 _URDF,
                 "error",
                 phrase("URDF is empty") if not message.data.strip() else phrase("URDF failed Model parse"),
             )
             return
-        self.say(_URDF, "ok", phrase("URDF parsed OK"))
-        self._take_robot(robot, message.data)
+        self.set_status_row(_URDF, "ok", phrase("URDF parsed OK"))
+        self._set_robot(robot, message.data)
 
-    def _take_robot(self, robot: Robot, text: str) -> None:
+    def _set_robot(self, robot: Robot, text: str) -> None:
         self._meshes = MeshIndex(self.context.library.packages(text) or self.context.finder)
         self.robot = PosableRobot(robot, self._meshes)
         links = tuple(self.robot.shaped_links)
@@ -160,22 +160,22 @@ class MoveItDisplay(StoredMarkersDisplay):
             self.link_names = links
             self.publish_properties()
         for link, problems in self.robot.problems.items():
-            self.say(link, "error", joined(problems, "; "))
+            self.set_status_row(link, "error", joined(problems, "; "))
         self.robot_changed()
         self.draw()
 
     def robot_changed(self) -> None:
         """Handle another robot; `draw` is called later."""
 
-    def _tell_frames(self) -> None:
+    def _report_frames(self) -> None:
         frames = {shape.frame for shapes in self._groups.values() for shape in shapes.values()}
         problems = [problem for frame in sorted(frames) if (problem := self.host.frames.problem(frame))]
         if problems:
-            self.say(TRANSFORM, "error", joined(problems, "; "))
+            self.set_status_row(TRANSFORM, "error", joined(problems, "; "))
         elif frames:
-            self.say(TRANSFORM, "ok", phrase("Transform OK"))
+            self.set_status_row(TRANSFORM, "ok", phrase("Transform OK"))
         else:
-            self.unsay(TRANSFORM)
+            self.delete_status_row(TRANSFORM)
 
 
 def _is_same(one: MarkerShape, other: MarkerShape) -> bool:

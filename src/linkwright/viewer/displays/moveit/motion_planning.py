@@ -75,7 +75,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
     def time_changed(self) -> None:
         """Show the messages that were received while time was paused."""
         super().time_changed()
-        self._motions.go_on()
+        self._motions.resume()
 
     def robot_changed(self) -> None:
         """Play the motion of this robot."""
@@ -123,6 +123,6 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
             else phrase("Error subscribing: Empty topic name")
         )
         if problem is None:
-            self.unsay(TRAJECTORY_TOPIC)
+            self.delete_status_row(TRAJECTORY_TOPIC)
         else:
-            self.say(TRAJECTORY_TOPIC, "error", problem)
+            self.set_status_row(TRAJECTORY_TOPIC, "error", problem)

@@ -53,7 +53,7 @@ class PlanningSceneDisplay(MoveItDisplay):
         self._client: Client[Any, Any] | None = None
         self._state: Any = None
         self._due: asyncio.TimerHandle | None = None
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
 
     def schema(self) -> Schema:
         """Return the properties, with a check box for each link."""
@@ -98,25 +98,25 @@ class PlanningSceneDisplay(MoveItDisplay):
         """Forget the scene."""
         self.scene = Scene()
         self._state = None
-        self._told.clear()
+        self._reported.clear()
         super().reset()
 
     def robot_changed(self) -> None:
         """Apply the last state, which may have arrived before the description."""
         self.scene.state = JointPositions()
         if self._state is not None:
-            self._take_state(self._state)
+            self._apply_state(self._state)
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Apply changes of the scene, or another scene."""
         before = self.scene.name
         self.scene.apply(message)
         if self.scene.name != before:
-            self._tell_name()
+            self._publish_name()
         state = message.robot_state
         if state.joint_state.name or state.multi_dof_joint_state.joint_names:
             self._state = state
-            self._take_state(state)
+            self._apply_state(state)
         self._draw_soon()
 
     def draw(self) -> None:
@@ -128,7 +128,7 @@ class PlanningSceneDisplay(MoveItDisplay):
             return
         self._draw_geometry()
         self._draw_robot()
-        self._tell_problems()
+        self._report_problems()
         self.drawn()
 
     # --- drawing -----------------------------------------------------------------------------------------------
@@ -169,26 +169,26 @@ class PlanningSceneDisplay(MoveItDisplay):
         shown = has_state and alpha > 0.0
         self.put("held", self.scene.held_markers(self.robot, self.scene.state, _HELD, color) if shown else ())
 
-    def _take_state(self, message: Any) -> None:
+    def _apply_state(self, message: Any) -> None:
         if self.robot is None:
             return
         try:
-            self.say_unknown(self.robot.set_state(self.scene.state, message))
+            self.report_unknown_joints(self.robot.set_state(self.scene.state, message))
         except UnusableStateError as error:
-            self.say(STATE, "error", foreign(error))
+            self.set_status_row(STATE, "error", foreign(error))
             return
-        self.unsay(STATE)
+        self.delete_status_row(STATE)
 
-    def _tell_problems(self) -> None:
-        for name in self._told - self.scene.problems.keys():
-            self.unsay(name)
-        self._told = set(self.scene.problems)
+    def _report_problems(self) -> None:
+        for name in self._reported - self.scene.problems.keys():
+            self.delete_status_row(name)
+        self._reported = set(self.scene.problems)
         for name, text in self.scene.problems.items():
-            self.say(name, "error", text)
+            self.set_status_row(name, "error", text)
 
-    def _tell_name(self) -> None:
+    def _publish_name(self) -> None:
         path = (GEOMETRY, "Scene Name")
-        if self.properties.tell(path, self.scene.name):
+        if self.properties.set_read_only(path, self.scene.name):
             self.pages.publish(PropertyChanged(self.property_id(path), self.scene.name))
 
     # --- asking for the whole scene ----------------------------------------------------------------------------
@@ -222,7 +222,7 @@ class PlanningSceneDisplay(MoveItDisplay):
 
     def _received_scene(self, scene: Any) -> None:
         if not self.host.time.paused:
-            self._take(scene, None)
+            self._process(scene, None)
 
     def _leave(self) -> None:
         self.context.graph_changes.ignore(self._ask_if_ready)

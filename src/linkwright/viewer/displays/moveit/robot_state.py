@@ -52,7 +52,7 @@ class RobotStateDisplay(MoveItDisplay):
             links_spec(self.link_names),
         )
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show a state."""
         self._read(message)
         self.draw()
@@ -91,12 +91,12 @@ class RobotStateDisplay(MoveItDisplay):
         color = (*rgb(properties.text("Attached Body Color")), alpha)
         self.put(_HELD, self._attached.held_markers(robot, self._state, _HELD, color))
         for name, text in self._attached.problems.items():
-            self.say(name, "error", text)
+            self.set_status_row(name, "error", text)
         unknown = sorted(name for name in highlights if not robot.has_link(name))
         if unknown:
-            self.say(_HIGHLIGHTS, "warn", phrase("The robot has no link '{name}'", name=unknown[0]))
+            self.set_status_row(_HIGHLIGHTS, "warn", phrase("The robot has no link '{name}'", name=unknown[0]))
         else:
-            self.unsay(_HIGHLIGHTS)
+            self.delete_status_row(_HIGHLIGHTS)
         self.drawn()
 
     def _read(self, message: Any) -> None:
@@ -104,14 +104,14 @@ class RobotStateDisplay(MoveItDisplay):
         if robot is None:
             return
         for name in self._attached.problems:
-            self.unsay(name)
+            self.delete_status_row(name)
         self._attached = Scene()
         self._attached.attach(message.state.attached_collision_objects)
         state = self._state.copy() if message.state.is_diff else JointPositions()
         try:
-            self.say_unknown(robot.set_state(state, message.state))
+            self.report_unknown_joints(robot.set_state(state, message.state))
         except UnusableStateError as error:
-            self.say(STATE, "error", foreign(error))
+            self.set_status_row(STATE, "error", foreign(error))
             return
-        self.unsay(STATE)
+        self.delete_status_row(STATE)
         self._state = state

@@ -104,12 +104,12 @@ class Scene:
             self.is_whole = True
         if message.name:
             self.name = message.name
-        for each in message.object_colors:
-            self._colors[each.id] = rgba(each.color)
+        for object_color in message.object_colors:
+            self._colors[object_color.id] = rgba(object_color.color)
         if not message.robot_state.is_diff and not message.is_diff:
             self._held.clear()
-        for each in message.world.collision_objects:
-            self._change(each)
+        for collision_object in message.world.collision_objects:
+            self._change(collision_object)
         self.attach(message.robot_state.attached_collision_objects)
         octomap = message.world.octomap
         if octomap.octomap.id or octomap.octomap.data:
@@ -117,15 +117,15 @@ class Scene:
 
     def attach(self, messages: Iterable[Any]) -> None:
         """Apply a moveit_msgs/msg/AttachedCollisionObject, which attaches or detaches an object."""
-        for each in messages:
-            self._attach(each)
+        for attached in messages:
+            self._attach(attached)
 
     def object_markers(self, namespace: str, color: Color) -> list[MarkerShape]:
         """Return the markers of the objects around the robot."""
         made: list[MarkerShape] = []
-        for each in self._objects.values():
-            chosen = self._colors.get(each.id, color)
-            made += self._markers(each, namespace, chosen, each.frame, IDENTITY)
+        for known_object in self._objects.values():
+            chosen = self._colors.get(known_object.id, color)
+            made += self._markers(known_object, namespace, chosen, known_object.frame, IDENTITY)
         return made
 
     def held_markers(
@@ -134,26 +134,26 @@ class Scene:
         """Return the markers of the attached objects, in a state of the robot."""
         links = robot.link_poses(state)
         made: list[MarkerShape] = []
-        for link, each in self._held.values():
-            at = each.frame or link
+        for link, held in self._held.values():
+            at = held.frame or link
             if at not in links:
-                self.problems[each.id] = phrase(
-                    "The robot has no link '{link}' for the attached object '{name}'", link=at, name=each.id
+                self.problems[held.id] = phrase(
+                    "The robot has no link '{link}' for the attached object '{name}'", link=at, name=held.id
                 )
                 continue
-            chosen = self._colors.get(each.id, color)
-            made += self._markers(each, namespace, chosen, robot.frame_of(state), links[at])
+            chosen = self._colors.get(held.id, color)
+            made += self._markers(held, namespace, chosen, robot.frame_of(state), links[at])
         return made
 
     def _markers(
-        self, each: SceneObject, namespace: str, color: Color, frame: str, base: Transform
+        self, scene_object: SceneObject, namespace: str, color: Color, frame: str, base: Transform
     ) -> list[MarkerShape]:
         try:
-            made = object_markers(each, namespace, color, frame=frame, base=base)
+            made = object_markers(scene_object, namespace, color, frame=frame, base=base)
         except BadObjectError as error:
-            self.problems[each.id] = foreign(error)
+            self.problems[scene_object.id] = foreign(error)
             return []
-        self.problems.pop(each.id, None)
+        self.problems.pop(scene_object.id, None)
         return made
 
     def _change(self, message: Any) -> None:
@@ -177,10 +177,14 @@ class Scene:
     def _attach(self, message: Any) -> None:
         name, link = message.object.id, message.link_name
         if message.object.operation == _REMOVE:
-            gone = [each for each, (at, _) in self._held.items() if each == name or (not name and link in ("", at))]
-            for each in gone:
-                del self._held[each]
-                self.problems.pop(each, None)
+            gone = [
+                identity
+                for identity, (at, _) in self._held.items()
+                if identity == name or (not name and link in ("", at))
+            ]
+            for identity in gone:
+                del self._held[identity]
+                self.problems.pop(identity, None)
             return
         held = SceneObject.of(message.object)
         before = self._held.get(name)

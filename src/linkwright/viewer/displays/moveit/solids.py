@@ -116,7 +116,7 @@ def _cone(_: Any, sizes: list[float]) -> Form:
     angles = np.linspace(0.0, 2.0 * math.pi, _ROUND + 1)
     rim = np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(_ROUND + 1, -height / 2.0)], axis=-1)
     tip, middle = (0.0, 0.0, height / 2.0), (0.0, 0.0, -height / 2.0)
-    corners = [each for a, b in pairwise(rim) for each in (a, b, tip, b, a, middle)]
+    corners = [corner for a, b in pairwise(rim) for corner in (a, b, tip, b, a, middle)]
     return "triangle_list", _ONE, _points(corners)
 
 

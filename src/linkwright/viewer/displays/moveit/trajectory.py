@@ -183,11 +183,11 @@ class MotionPlayer:
             self.motion = read_motion(robot, self._message)
         except UnusableStateError as error:
             self.motion = None
-            self._display.say(STATE, "error", foreign(error))
+            self._display.set_status_row(STATE, "error", foreign(error))
             self._show()
             return
-        self._display.unsay(STATE)
-        self._display.say_unknown(self.motion.unknown)
+        self._display.delete_status_row(STATE)
+        self._display.report_unknown_joints(self.motion.unknown)
         self._place = 0
         self._wait()
         self._show()
@@ -242,7 +242,7 @@ class TrajectoryDisplay(MoveItDisplay):
         """Return the properties, with a check box for each link."""
         return (DESCRIPTION_SPEC, *path_specs(self.link_names))
 
-    def take(self, message: Any, pose: Pose | None) -> None:
+    def process_message(self, message: Any, pose: Pose | None) -> None:
         """Play a motion."""
         self._player.play(message)
 

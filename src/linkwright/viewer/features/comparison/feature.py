@@ -49,7 +49,7 @@ class ComparisonFeature(PageFeature):
         self._pair: Pair | None = None
         self._old: OldRobot | None = None
         self._compared: tuple[Robot, Robot, Comparison] | None = None
-        self._told: dict[VisualizationManager, ComparedDescriptions] = {}
+        self._sent: dict[VisualizationManager, ComparedDescriptions] = {}
 
     def attach(self, pair: Pair, node: Node) -> Callable[[str], None]:
         """Show pages the differences of two descriptions.
@@ -69,7 +69,7 @@ class ComparisonFeature(PageFeature):
         message = self._message(manager)
         if message is None:
             return []
-        self._told[manager] = message
+        self._sent[manager] = message
         return [message]
 
     def robot_changed(self) -> None:
@@ -86,20 +86,20 @@ class ComparisonFeature(PageFeature):
             self._compared = old, new, comparison
             self._old.place(old, new, comparison)
         for manager in self.managers.all():
-            self._tell(manager)
+            self._publish(manager)
 
     def edited(self, manager: VisualizationManager) -> None:
         """Compare again, as displays may have been added or removed."""
-        self._tell(manager)
+        self._publish(manager)
 
     def manager_closed(self, manager: VisualizationManager) -> None:
         """Forget the messages that its pages received."""
-        self._told.pop(manager, None)
+        self._sent.pop(manager, None)
 
-    def _tell(self, manager: VisualizationManager) -> None:
+    def _publish(self, manager: VisualizationManager) -> None:
         message = self._message(manager)
-        if message is not None and message != self._told.get(manager):
-            self._told[manager] = message
+        if message is not None and message != self._sent.get(manager):
+            self._sent[manager] = message
             manager.publish(message)
 
     def _message(self, manager: VisualizationManager) -> ComparedDescriptions | None:
@@ -203,10 +203,10 @@ def _element(difference: Difference, old: Robot, new: Robot) -> tuple[Literal["l
     if difference.subject == "extension":
         name = name.partition(" ")[2]  # such as that of the link to which a <gazebo> refers
     for robot in (new, old):
-        things: Mapping[str, Mapping[str, object]] = {"link": robot.links, "joint": robot.joints}
-        if difference.subject != "joint" and name in things["link"]:
+        elements: Mapping[str, Mapping[str, object]] = {"link": robot.links, "joint": robot.joints}
+        if difference.subject != "joint" and name in elements["link"]:
             return "link", name, robot is old
-        if difference.subject != "link" and name in things["joint"]:
+        if difference.subject != "link" and name in elements["joint"]:
             return "joint", name, robot is old
     return "link", "", False
 

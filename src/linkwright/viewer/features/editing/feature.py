@@ -90,11 +90,11 @@ class EditingFeature(PageFeature):
         else:
             files = await asyncio.to_thread(history.redo)
         page.send(editing.EditWritten(files, None))
-        for each in self._watching:
-            each.send(editing.EditHistory(history.can_undo, history.can_redo))
+        for watching_page in self._watching:
+            watching_page.send(editing.EditHistory(history.can_undo, history.can_redo))
 
     async def _preview(self, page: Page, message: editing.PreviewEdit) -> None:
-        robot, known = self._known(page, message.display)
+        robot, known = self._known_robot(page, message.display)
         why_not = _why_not(robot, known)
         if known is None or why_not is not None:
             raise EditRefusedError(Diagnostic("EDIT101", why_not or phrase("there is no robot")))
@@ -106,13 +106,13 @@ class EditingFeature(PageFeature):
         page.send(editing.EditPreview(message.number, files_of(plan), list(plan.also), None))
 
     def _parts(self, page: Page, message: editing.AskEditableParts) -> editing.EditableParts:
-        robot, known = self._known(page, message.display)
+        robot, known = self._known_robot(page, message.display)
         why_not = _why_not(robot, known) if page.is_here else _elsewhere().message
         parts = [] if robot is None else parts_of(robot, message.link)
-        told = "" if why_not is None else item_of(Diagnostic("EDIT101", why_not)).message
-        return editing.EditableParts(message.display, message.link, told, parts)
+        problem = "" if why_not is None else item_of(Diagnostic("EDIT101", why_not)).message
+        return editing.EditableParts(message.display, message.link, problem, parts)
 
-    def _known(self, page: Page, display: str) -> tuple[Robot | None, Description | None]:
+    def _known_robot(self, page: Page, display: str) -> tuple[Robot | None, Description | None]:
         """Return the robot that a display shows, and how it was read if it is from a file of this machine."""
         found = next(
             (robot_model for robot_model in self.managers.of(page).robot_models() if robot_model.id == display), None

@@ -71,5 +71,5 @@ def _turned(profile: Array) -> Triangles:
     triangles = np.stack([first, below, below + 1, first, below + 1, first + 1], axis=1)
     corners = positions[triangles.reshape(-1, 3)]
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    kept = triangles.reshape(-1, 3)[areas > 1e-9 * max(areas.max(initial=0.0), 1e-300)]
-    return Triangles(positions, kept.reshape(-1), normals / lengths, np.stack([u, v], axis=2).reshape(-1, 2))
+    valid = triangles.reshape(-1, 3)[areas > 1e-9 * max(areas.max(initial=0.0), 1e-300)]
+    return Triangles(positions, valid.reshape(-1), normals / lengths, np.stack([u, v], axis=2).reshape(-1, 2))

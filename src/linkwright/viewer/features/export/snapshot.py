@@ -222,13 +222,13 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
     models = [model for model in manager.robot_models() if model.enabled and model.scene.links]
     if not models:
         raise no_robot()
-    told, frames = viewer.opening_messages(manager)
+    opening, frames = viewer.opening_messages(manager)
     if view is not None:
-        told = [
+        opening = [
             ViewState(view, server_message.revision) if isinstance(server_message, ViewState) else server_message
-            for server_message in told
+            for server_message in opening
         ]
-    snapshot = take_snapshot(models[0], told, frames, viewer.context.meshes)
+    snapshot = take_snapshot(models[0], opening, frames, viewer.context.meshes)
     files = viewer.context.library.files
     outside = [path for model in models for path in files_outside(files(model.text), model.scene, snapshot.meshes)]
     return dataclasses.replace(
@@ -265,13 +265,13 @@ def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) 
 
 
 def take_snapshot(
-    model: RobotModelDisplay, told: Sequence[ServerMessage], payloads: Sequence[Payload], meshes: MeshFolders
+    model: RobotModelDisplay, opening: Sequence[ServerMessage], payloads: Sequence[Payload], meshes: MeshFolders
 ) -> Snapshot:
     """Return the part of the messages to a new page that it needs to run without a server.
 
     Args:
         model: the display of the robot whose joints can be moved.
-        told: the messages to a page that opens.
+        opening: the messages to a page that opens.
         payloads: the binary frames to it.
         meshes: the folders that it may read from.
 
@@ -281,12 +281,12 @@ def take_snapshot(
     robot, scene = model.robot, model.scene
     if robot is None:
         raise no_robot()
-    frames = [frame for payload in payloads if isinstance(frame := _whole(payload), bytes)]
-    table = next(message for message in told if isinstance(message, FrameTable))
+    frames = [frame for payload in payloads if isinstance(frame := _complete(payload), bytes)]
+    table = next(message for message in opening if isinstance(message, FrameTable))
     poses = _poses(table, frames)
     positions = positions_now(robot, {link.name: poses[link.frame] for link in scene.links if link.frame in poses})
     messages: list[ServerMessage] = []
-    for message in told:
+    for message in opening:
         if isinstance(message, Tree):
             messages.append(_anonymous(message))
         elif isinstance(message, RobotScene):
@@ -325,10 +325,10 @@ def no_robot() -> LinkwrightError:
     return LinkwrightError(Diagnostic("VIEW201", phrase("there is no robot to export"), hint=hint))
 
 
-def _whole(payload: Payload) -> bytes | str | None:
+def _complete(payload: Payload) -> bytes | str | None:
     """Return the complete content, as for a new page."""
     if isinstance(payload, ScaledData):
-        return payload.whole
+        return payload.full_frame
     return payload if isinstance(payload, (bytes, str)) else payload.since(0)[0]
 
 
@@ -358,8 +358,8 @@ def _anonymous(tree: Tree) -> Tree:
 
 def _without_paths(properties: Sequence[Property]) -> list[Property]:
     return [
-        replace(each, value="" if each.name in _PATHS else each.value, children=_without_paths(each.children))
-        for each in properties
+        replace(row, value="" if row.name in _PATHS else row.value, children=_without_paths(row.children))
+        for row in properties
     ]
 
 

@@ -180,13 +180,13 @@ class EditedWorld:
             Where it is (RVIZ301), or that it is lost (RVIZ104).
         """
         mark = hashlib.sha256(os.fsencode(self.path)).hexdigest()[:8]  # distinguishes files of the same name
-        kept = folder / f"{self.path.stem[:_LONGEST_STEM]}-{mark}{self.path.suffix}"
+        file = folder / f"{self.path.stem[:_LONGEST_STEM]}-{mark}{self.path.suffix}"
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            write_whole_file(kept, self._encoded)
+            write_whole_file(file, self._encoded)
         except OSError as error:
-            return Diagnostic("RVIZ104", _not_written(kept, error))
-        message = phrase("unsaved changes of the world '{path}' are stored in '{kept}'", path=self.path, kept=kept)
+            return Diagnostic("RVIZ104", _not_written(file, error))
+        message = phrase("unsaved changes of the world '{path}' are stored in '{kept}'", path=self.path, kept=file)
         return Diagnostic("RVIZ301", message, severity=Severity.WARNING)
 
     @property

@@ -95,7 +95,7 @@ class ModellingFeature(PageFeature):
         available = self._is_available()
         if available != self._available:
             self._available = available
-            self._tell()
+            self._publish()
 
     def _state(self) -> ModellingState:
         edited = self._edited
@@ -109,7 +109,7 @@ class ModellingFeature(PageFeature):
             self._available, self._active, file, edited.unsaved, edited.can_undo, edited.can_redo, things
         )
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         self.context.pages.publish(self._state())
 
     # --- what they ask for -------------------------------------------------------------------------------------
@@ -141,11 +141,11 @@ class ModellingFeature(PageFeature):
         elif isinstance(message, SaveWorld):
             edited = await self._world()
             await asyncio.to_thread(edited.save, message.path)
-            self._tell()
+            self._publish()
         else:
             edited = await self._world()
             await asyncio.to_thread(_edit(edited, message))
-            self._tell()
+            self._publish()
             if self._waiting.empty():
                 await self._load(page, edited)
 
@@ -159,7 +159,7 @@ class ModellingFeature(PageFeature):
         else:
             await self._ask(page, _EMPTY, "/unpause_physics")
         self._active = active
-        self._tell()
+        self._publish()
 
     async def _world(self) -> EditedWorld:
         """Return the edited world, read again if its file has changed and it has no unsaved edits."""
@@ -183,18 +183,18 @@ class ModellingFeature(PageFeature):
         from linkwright.viewer.features.modelling.edited_world import EditedWorld
 
         packages = self.context.finder
-        told = await asyncio.to_thread(EditedWorld.of_text, await self._described(), packages)
-        name = await self._file_told()
+        described = await asyncio.to_thread(EditedWorld.of_text, await self._described(), packages)
+        name = await self._simulated_file()
         path = await asyncio.to_thread(ResourceFinder(packages).world, name) if name else None
         if path is not None:
             with suppress(EditError, LinkwrightError):  # the file may differ on another machine
                 found = await asyncio.to_thread(EditedWorld.of_file, path.absolute(), packages)
-                if found.world.world.name == told.world.world.name:
-                    await asyncio.to_thread(found.reserve, told.world.entities)
+                if found.world.world.name == described.world.world.name:
+                    await asyncio.to_thread(found.reserve, described.world.entities)
                     return found
-        return told
+        return described
 
-    async def _file_told(self) -> str:
+    async def _simulated_file(self) -> str:
         """Return the value of the simulator's parameter ``world``; empty if there is none."""
         node = self.context.node
         publishers = node.get_publishers_info_by_topic(_DESCRIPTION)
@@ -202,17 +202,17 @@ class ModellingFeature(PageFeature):
             return ""
         name = f"{publishers[0].node_namespace.rstrip('/')}/{publishers[0].node_name}/get_parameters"
         client = node.create_client(get_service("rcl_interfaces/srv/GetParameters"), name)
-        told: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+        reply: asyncio.Future[str] = asyncio.get_running_loop().create_future()
 
-        def take(future: Any) -> None:
-            if not told.done():
-                told.set_result(next((value.string_value for value in future.result().values), ""))
+        def receive(future: Any) -> None:
+            if not reply.done():
+                reply.set_result(next((value.string_value for value in future.result().values), ""))
 
         try:
             if not client.service_is_ready():
                 return ""
-            client.call_async(client.srv_type.Request(names=["world"])).add_done_callback(take)
-            return await asyncio.wait_for(told, _PATIENCE)
+            client.call_async(client.srv_type.Request(names=["world"])).add_done_callback(receive)
+            return await asyncio.wait_for(reply, _PATIENCE)
         except asyncio.TimeoutError:
             return ""
         finally:
@@ -227,15 +227,15 @@ class ModellingFeature(PageFeature):
         from linkwright.sdf.editing import EditError
 
         node = self.context.node
-        told: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+        text: asyncio.Future[str] = asyncio.get_running_loop().create_future()
 
-        def take(message: Any) -> None:
-            if not told.done():
-                told.set_result(message.data)
+        def receive(message: Any) -> None:
+            if not text.done():
+                text.set_result(message.data)
 
-        subscription = node.create_subscription(get_message("std_msgs/msg/String"), _DESCRIPTION, take, _LATCHED)
+        subscription = node.create_subscription(get_message("std_msgs/msg/String"), _DESCRIPTION, receive, _LATCHED)
         try:
-            return await asyncio.wait_for(told, _PATIENCE if self._is_available() else 0)
+            return await asyncio.wait_for(text, _PATIENCE if self._is_available() else 0)
         except asyncio.TimeoutError:
             raise EditError(phrase("there is no world to edit: no simulation publishes one")) from None
         finally:

@@ -93,12 +93,12 @@ def changed(world: WorldText, message: PageMessage) -> WorldText:
             raise TypeError(f"{type(message).__name__} changes no world")
 
 
-def _change(wanted: ThingChange) -> Change:
+def _change(change: ThingChange) -> Change:
     return Change(
-        wanted.name,
-        pose=None if wanted.pose is None else tuple(wanted.pose),
-        size=None if wanted.size is None else tuple(wanted.size),
-        new_name=wanted.new_name,
-        static=wanted.static,
-        colour=None if wanted.colour is None else tuple(wanted.colour),
+        change.name,
+        pose=None if change.pose is None else tuple(change.pose),
+        size=None if change.size is None else tuple(change.size),
+        new_name=change.new_name,
+        static=change.static,
+        colour=None if change.colour is None else tuple(change.colour),
     )

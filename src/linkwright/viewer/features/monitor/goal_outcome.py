@@ -35,7 +35,7 @@ class GoalOutcomeFeature(PageFeature):
         self._goal = b""
         self._active = False
         self._reasons: dict[str, str] = {}
-        self._told: GoalOutcome = NO_GOAL_FAILED
+        self._sent: GoalOutcome = NO_GOAL_FAILED
         self._due: asyncio.TimerHandle | None = None
 
     def opening(self) -> list[ServerMessage]:
@@ -46,7 +46,7 @@ class GoalOutcomeFeature(PageFeature):
                 self._listen("action_msgs/msg/GoalStatusArray", STATUS_TOPIC, self._goals_changed, lasting),
                 self._listen("rcl_interfaces/msg/Log", "/rosout", self._logged, ROSOUT_QOS),
             ]
-        return [self._told]
+        return [self._sent]
 
     def page_gone(self, page: Page) -> None:
         """Stop listening after the last page."""
@@ -73,19 +73,19 @@ class GoalOutcomeFeature(PageFeature):
         if goal != self._goal:
             self._goal, self._active = goal, False
             self._reasons.clear()
-            self._tell(NO_GOAL_FAILED)
+            self._publish(NO_GOAL_FAILED)
         if last.status in _ACTIVE:
             self._active = True
         elif self._active:
             self._active = False
             if last.status == _ABORTED:
-                self._due = asyncio.get_running_loop().call_later(_LOG_DELAY, self._tell_failure, goal)
+                self._due = asyncio.get_running_loop().call_later(_LOG_DELAY, self._publish_failure, goal)
 
     def _logged(self, record: Any) -> None:
         if record.level >= _ERROR:
             self._reasons[record.name] = record.msg
 
-    def _tell_failure(self, goal: bytes) -> None:
+    def _publish_failure(self, goal: bytes) -> None:
         self._due = None
         if goal != self._goal:
             return
@@ -95,11 +95,11 @@ class GoalOutcomeFeature(PageFeature):
             if endpoint.kind is EndpointKind.PUBLISHER and endpoint.name == STATUS_TOPIC and endpoint.node is not None
         }
         reasons = [reason for logger, reason in self._reasons.items() if logger.rpartition(".")[2] in servers]
-        self._tell(GoalOutcome(reasons[-1] if reasons else "", failed=True))
+        self._publish(GoalOutcome(reasons[-1] if reasons else "", failed=True))
 
-    def _tell(self, outcome: GoalOutcome) -> None:
-        if outcome != self._told:
-            self._told = outcome
+    def _publish(self, outcome: GoalOutcome) -> None:
+        if outcome != self._sent:
+            self._sent = outcome
             self.context.pages.publish(outcome)
 
 

@@ -64,7 +64,7 @@ class LogFeature(PageFeature):
     def opening(self) -> list[ServerMessage]:
         """Begin to store records."""
         if self._tap is None:
-            self._tap = TopicTap(self.context, _TOPIC, self._take)
+            self._tap = TopicTap(self.context, _TOPIC, self._receive)
         return []
 
     def receive(self, page: Page, message: WatchLog) -> None:
@@ -94,7 +94,7 @@ class LogFeature(PageFeature):
             self._tap.close()
             self._tap = None
 
-    def _take(self, message: Any, _: MessageInfo) -> None:
+    def _receive(self, message: Any, _: MessageInfo) -> None:
         line = LogLine(
             level=message.level,
             node=message.name,

@@ -69,7 +69,7 @@ class NavigationFeature(PageFeature):
         elif message.open:
             self._pages.add(page)
             if self._watch is None:
-                self._watch = _Watch(self.context, self._tell)
+                self._watch = _Watch(self.context, self._publish)
             page.send(self._watch.state)
         else:
             self.page_gone(page)
@@ -86,7 +86,7 @@ class NavigationFeature(PageFeature):
         for page in tuple(self._pages):
             self.page_gone(page)
 
-    def _tell(self, state: NavigationState) -> None:
+    def _publish(self, state: NavigationState) -> None:
         for page in self._pages:
             page.send(state)
 
@@ -98,9 +98,9 @@ class _Watch:
         state: for pages.
     """
 
-    def __init__(self, context: ViewerContext, tell: Callable[[NavigationState], None]) -> None:
+    def __init__(self, context: ViewerContext, publish: Callable[[NavigationState], None]) -> None:
         self._node = context.node
-        self._tell = tell
+        self._publish = publish
         self.state = NavigationState("unknown", "unknown", "none", None, None, None, None, busy=False, problem="")
         self._active = {name: self._client("std_srvs/srv/Trigger", name, "is_active") for name in _MANAGERS}
         self._manage = {
@@ -147,7 +147,7 @@ class _Watch:
         changed = NavigationState(**{**known, **fields})
         if changed != self.state:
             self.state = changed
-            self._tell(changed)
+            self._publish(changed)
 
     # --- states ------------------------------------------------------------------------------------------------
 
@@ -183,13 +183,13 @@ class _Watch:
         self._change(**fields)
 
     def _progressed(self, message: Any) -> None:
-        told = message.feedback
-        distance = float(told.distance_remaining)
+        feedback = message.feedback
+        distance = float(feedback.distance_remaining)
         self._change(
-            eta=_seconds(told.estimated_time_remaining),
-            taken=_seconds(told.navigation_time),
+            eta=_seconds(feedback.estimated_time_remaining),
+            taken=_seconds(feedback.navigation_time),
             distance=round(distance, 2) if math.isfinite(distance) else None,
-            recoveries=int(told.number_of_recoveries),
+            recoveries=int(feedback.number_of_recoveries),
         )
 
     # --- commands ----------------------------------------------------------------------------------------------

@@ -15,33 +15,33 @@ class NodeGraphFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._told: dict[Page, NodeGraph] = {}
+        self._sent: dict[Page, NodeGraph] = {}
 
     def receive(self, page: Page, message: WatchNodeGraph) -> None:
         """Start or stop sending the graph to a page."""
         if not message.watched:
             self.page_gone(page)
             return
-        self._told[page] = current = node_graph(self.context.node.graph)
+        self._sent[page] = current = node_graph(self.context.node.graph)
         page.send(current)
-        self.context.graph_changes.listen(self._tell)
+        self.context.graph_changes.listen(self._publish)
 
     def page_gone(self, page: Page) -> None:
         """Forget the page."""
-        self._told.pop(page, None)
-        if not self._told:
-            self.context.graph_changes.ignore(self._tell)
+        self._sent.pop(page, None)
+        if not self._sent:
+            self.context.graph_changes.ignore(self._publish)
 
     def close(self) -> None:
         """Stop sending."""
-        self._told.clear()
-        self.context.graph_changes.ignore(self._tell)
+        self._sent.clear()
+        self.context.graph_changes.ignore(self._publish)
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         current = node_graph(self.context.node.graph)
-        for page, told in self._told.items():
-            if current != told:
-                self._told[page] = current
+        for page, sent in self._sent.items():
+            if current != sent:
+                self._sent[page] = current
                 page.send(current)
 
 

@@ -72,25 +72,25 @@ def value_texts(value: Any) -> tuple[ParameterKind, list[str]]:
     kind = ParameterType(value.type)
     if kind is ParameterType.NOT_SET:
         return _KINDS[kind], []
-    return _KINDS[kind], [_text(each) for each in (plain if kind.is_array else [plain])]
+    return _KINDS[kind], [_text(element) for element in (plain if kind.is_array else [plain])]
 
 
-def parameter_of(wanted: SetParameter) -> Parameter:
+def parameter_of(request: SetParameter) -> Parameter:
     """Return the parameter that a page asks to set.
 
     Raises:
         ValueError: a text is not a value of the kind; the message quotes it.
     """
-    kind = _TYPES[wanted.kind]
+    kind = _TYPES[request.kind]
     if kind is ParameterType.NOT_SET:
-        return Parameter(wanted.name, kind)
-    element = wanted.kind.removesuffix("_array")
-    values = [_value(element, text) for text in wanted.values]
+        return Parameter(request.name, kind)
+    element = request.kind.removesuffix("_array")
+    values = [_value(element, text) for text in request.values]
     if kind.is_array:
-        return Parameter(wanted.name, kind, values)
+        return Parameter(request.name, kind, values)
     if len(values) != 1:
         raise ValueError(f"a {element} is one value, not {len(values)}")
-    return Parameter(wanted.name, kind, values[0])
+    return Parameter(request.name, kind, values[0])
 
 
 def _text(value: Any) -> str:
@@ -117,7 +117,7 @@ def _value(kind: str, text: str) -> Any:
     return number
 
 
-_TELL_PERIOD = 0.05
+_PUBLISH_PERIOD = 0.05
 
 
 class RemoteNode:
@@ -126,17 +126,17 @@ class RemoteNode:
     Args:
         node: the node that makes the clients.
         name: full name of the node whose parameters these are.
-        tell: called with all parameters at the start, and on every change.
+        publish: called with all parameters at the start, and on every change.
     """
 
-    def __init__(self, node: Node, name: str, tell: Callable[[NodeParameters], None]) -> None:
+    def __init__(self, node: Node, name: str, publish: Callable[[NodeParameters], None]) -> None:
         self.name = name
         self.known: NodeParameters | None = None
-        self._tell = tell
+        self._publish = publish
         self._client = AsyncParameterClient(node, name)
         self._rows: dict[str, ParameterRow] = {}
         self._tasks: set[asyncio.Task[None]] = set()
-        self._turn = Paced(self._tell_rows, _TELL_PERIOD)
+        self._turn = Paced(self._publish_rows, _PUBLISH_PERIOD)
 
     def close(self) -> None:
         """Stop requests."""
@@ -149,7 +149,7 @@ class RemoteNode:
         """Request all parameters again."""
         self._run(self._refresh())
 
-    def take(self, event: Any) -> None:
+    def apply_event(self, event: Any) -> None:
         """Apply a rcl_interfaces/msg/ParameterEvent of the node."""
         for parameter in event.deleted_parameters:
             self._rows.pop(parameter.name, None)
@@ -162,9 +162,9 @@ class RemoteNode:
         elif self.known is not None:
             self._turn.ask()
 
-    def set(self, wanted: SetParameter, answer: Callable[[ParameterResult], None]) -> None:
+    def set(self, request: SetParameter, answer: Callable[[ParameterResult], None]) -> None:
         """Set a parameter, and answer with the outcome."""
-        self._run(self._set(wanted, answer))
+        self._run(self._set(request, answer))
 
     def dump(self, answer: Callable[[ParameterDump], None]) -> None:
         """Answer with a parameter file with all the parameters."""
@@ -182,25 +182,25 @@ class RemoteNode:
             descriptors = (await self._answer(self._client.describe_parameters(names))).descriptors if names else []
         except NoAnswerError as error:
             self.known = NodeParameters(self.name, [], str(error))
-            self._tell(self.known)
+            self._publish(self.known)
             return
         pairs = zip(descriptors, values, strict=False)
         self._rows = {descriptor.name: parameter_row(descriptor, value) for descriptor, value in pairs}
-        self._tell_rows()
+        self._publish_rows()
 
-    def _tell_rows(self) -> None:
+    def _publish_rows(self) -> None:
         self.known = NodeParameters(self.name, [self._rows[name] for name in sorted(self._rows)], None)
-        self._tell(self.known)
+        self._publish(self.known)
 
-    async def _set(self, wanted: SetParameter, answer: Callable[[ParameterResult], None]) -> None:
+    async def _set(self, request: SetParameter, answer: Callable[[ParameterResult], None]) -> None:
         try:
             await services_ready(self._client)
-            response = await self._answer(self._client.set_parameters([parameter_of(wanted)]))
+            response = await self._answer(self._client.set_parameters([parameter_of(request)]))
         except (ValueError, NoAnswerError) as error:
-            answer(ParameterResult(self.name, wanted.name, False, str(error)))
+            answer(ParameterResult(self.name, request.name, False, str(error)))
             return
         result = response.results[0]
-        answer(ParameterResult(self.name, wanted.name, result.successful, result.reason))
+        answer(ParameterResult(self.name, request.name, result.successful, result.reason))
 
     async def _dump(self, answer: Callable[[ParameterDump], None]) -> None:
         file = f"{self.name.strip('/').replace('/', '__')}.yaml"
@@ -226,10 +226,10 @@ _LIST = "/list_parameters"
 
 
 @dataclass(slots=True)
-class _Wish:
+class _Request:
     listed: bool
     node: str | None
-    told: ParameterNodes | None = None
+    sent: ParameterNodes | None = None
 
 
 class ParametersFeature(PageFeature):
@@ -237,7 +237,7 @@ class ParametersFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._wishes: dict[Page, _Wish] = {}
+        self._requests: dict[Page, _Request] = {}
         self._nodes: dict[str, RemoteNode] = {}
         self._events: TopicTap | None = None
 
@@ -246,8 +246,8 @@ class ParametersFeature(PageFeature):
         if isinstance(message, WatchParameters):
             self._watch(page, message)
             return
-        wish = self._wishes.get(page)
-        if wish is None or wish.node != message.node:
+        request = self._requests.get(page)
+        if request is None or request.node != message.node:
             return
         if isinstance(message, SetParameter):
             self._nodes[message.node].set(message, page.send)
@@ -256,25 +256,25 @@ class ParametersFeature(PageFeature):
 
     def page_gone(self, page: Page) -> None:
         """Forget the page's requests."""
-        if self._wishes.pop(page, None) is not None:
-            self._keep()
+        if self._requests.pop(page, None) is not None:
+            self._update_subscriptions()
 
     def close(self) -> None:
         """Stop for good."""
-        self._wishes.clear()
-        self._keep()
+        self._requests.clear()
+        self._update_subscriptions()
 
     def _watch(self, page: Page, message: WatchParameters) -> None:
         name = message.node
         known = self._nodes.get(name) if name is not None else None
         if name is not None and known is None:
             try:
-                self._nodes[name] = RemoteNode(self.context.node, name, self._tell)
+                self._nodes[name] = RemoteNode(self.context.node, name, self._publish)
             except LinkwrightError as error:
                 page.send(NodeParameters(name, [], error.diagnostics[0].message))
                 name = None
-        self._wishes[page] = _Wish(message.listed, name)
-        self._keep()
+        self._requests[page] = _Request(message.listed, name)
+        self._update_subscriptions()
         if message.listed:
             self._send_lists()
         if known is None and name is not None:
@@ -282,45 +282,50 @@ class ParametersFeature(PageFeature):
         elif known is not None and known.known is not None:
             page.send(known.known)
 
-    def _keep(self) -> None:
+    def _update_subscriptions(self) -> None:
         """Close clients and subscriptions that no page needs, and open those that a page does."""
-        wishes = self._wishes.values()
-        wanted = {wish.node for wish in wishes if wish.node is not None}
-        for name in self._nodes.keys() - wanted:
+        requests = self._requests.values()
+        names = {request.node for request in requests if request.node is not None}
+        for name in self._nodes.keys() - names:
             self._nodes.pop(name).close()
-        if wanted and self._events is None:
-            self._events = TopicTap(self.context, _EVENTS, self._take)
-        elif not wanted and self._events is not None:
+        if names and self._events is None:
+            self._events = TopicTap(self.context, _EVENTS, self._receive)
+        elif not names and self._events is not None:
             self._events.close()
             self._events = None
-        if any(wish.listed for wish in wishes):
+        if any(request.listed for request in requests):
             self.context.graph_changes.listen(self._send_lists)
         else:
             self.context.graph_changes.ignore(self._send_lists)
 
-    def _take(self, event: Any, _: MessageInfo) -> None:
+    def _receive(self, event: Any, _: MessageInfo) -> None:
         node = self._nodes.get(event.node)
         if node is not None:
-            node.take(event)
+            node.apply_event(event)
 
-    def _tell(self, parameters: NodeParameters) -> None:
-        for page, wish in self._wishes.items():
-            if wish.node == parameters.node:
+    def _publish(self, parameters: NodeParameters) -> None:
+        for page, request in self._requests.items():
+            if request.node == parameters.node:
                 page.send(parameters)
 
     def _send_lists(self) -> None:
         services = (name for name, _ in self.context.node.get_service_names_and_types())
         listed = ParameterNodes([name.removesuffix(_LIST) for name in services if name.endswith(_LIST)])
-        for page, wish in self._wishes.items():
-            if wish.listed and wish.told != listed:
-                back = self._returned(wish, listed)
-                wish.told = listed
+        for page, request in self._requests.items():
+            if request.listed and request.sent != listed:
+                back = self._returned(request, listed)
+                request.sent = listed
                 page.send(listed)
                 if back is not None:
                     back.refresh()
 
-    def _returned(self, wish: _Wish, listed: ParameterNodes) -> RemoteNode | None:
+    def _returned(self, request: _Request, listed: ParameterNodes) -> RemoteNode | None:
         """Return the node that the page watches, if it has appeared (again) since the last list."""
-        if wish.told is None or wish.node is None or wish.node in wish.told.nodes or wish.node not in listed.nodes:
+        if (
+            request.sent is None
+            or request.node is None
+            or request.node in request.sent.nodes
+            or request.node not in listed.nodes
+        ):
             return None
-        return self._nodes[wish.node]
+        return self._nodes[request.node]

@@ -37,4 +37,4 @@ def past_samples(path: FieldPath, cls: Any, messages: Sequence[Recorded]) -> NDA
     """Return samples of recorded messages of a class: array, shape (3, M), whose columns are as in `sample_of`."""
     step = -(-len(messages) // _MOST_READ) or 1
     read = [sample_of(path, deserialize(data, cls), stamp_ns) for _, stamp_ns, data in messages[::-1][::step]]
-    return np.array([each for each in reversed(read) if each is not None], dtype=np.float64).reshape(-1, 3).T
+    return np.array([sample for sample in reversed(read) if sample is not None], dtype=np.float64).reshape(-1, 3).T

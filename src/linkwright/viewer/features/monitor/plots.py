@@ -53,8 +53,8 @@ class SampleQueue:
         self._stamps.append(stamp)
         self._values.append(value)
         if len(self._values) >= _MOST_WAITING:
-            kept = thinned(self._array(), MOST_SENT).tolist()
-            self._received, self._stamps, self._values = kept
+            thinned_out = thinned(self._array(), MOST_SENT).tolist()
+            self._received, self._stamps, self._values = thinned_out
 
     def take(self) -> NDArray[np.float64]:
         """Return all of them, thinned out to fit a frame: array, shape (3, M); the queue is empty then."""
@@ -81,12 +81,12 @@ def thinned(samples: NDArray[Any], most: int) -> NDArray[Any]:
     values = samples[-1]
     unknown = np.isnan(values)
     edges = np.linspace(0, count, most // 2 + 1).astype(np.int64)
-    kept: set[int] = set()
+    chosen: set[int] = set()
     for start, stop in pairwise(edges):
         share, gap = values[start:stop], unknown[start:stop]
-        kept.add(int(start + np.argmin(np.where(gap, np.inf, share))))
-        kept.add(int(start + np.argmax(np.where(gap, -np.inf, share))))
-    return samples[:, sorted(kept)]
+        chosen.add(int(start + np.argmin(np.where(gap, np.inf, share))))
+        chosen.add(int(start + np.argmax(np.where(gap, -np.inf, share))))
+    return samples[:, sorted(chosen)]
 
 
 _PERIOD = 1 / 30
@@ -108,7 +108,7 @@ _LONGEST_PAST = 600.0
 class _Series:
     """A series of a page."""
 
-    wanted: PlotSeries
+    series: PlotSeries
     path: FieldPath | None
     error: str | None
     queue: SampleQueue = field(default_factory=SampleQueue)
@@ -136,7 +136,7 @@ class _Channel:
         self._came = came
         self.series: list[_Series] = []
         self.changed = False
-        self.tap = TopicTap(context, topic, self._take, changed=self._class_changed)
+        self.tap = TopicTap(context, topic, self._receive, changed=self._class_changed)
 
     def add(self, series: _Series) -> None:
         """Feed a series from the topic."""
@@ -164,7 +164,7 @@ class _Channel:
                 error = str(problem)
         series.error = error
 
-    def _take(self, message: Any, info: MessageInfo) -> None:
+    def _receive(self, message: Any, info: MessageInfo) -> None:
         values: dict[str, tuple[float, float, float] | None] = {}
         for series in self.series:
             if series.error is not None or series.path is None:
@@ -177,7 +177,7 @@ class _Channel:
                 series.queue.add(*sample)
         self._came()
 
-    def take_past(self, seconds: Callable[[_Series], float], timeline: TimelineFeature) -> None:
+    def set_past(self, seconds: Callable[[_Series], float], timeline: TimelineFeature) -> None:
         """Give the waiting series their samples from before the time that is shown."""
         cls = self.tap.message_class
         feeding = [series for series in self.series if series.error is None and series.path is not None]
@@ -202,7 +202,7 @@ class _Plots:
     def __init__(self) -> None:
         self.series: dict[int, _Series] = {}
         self.seconds = 0.0
-        self.told: list[SeriesState] = []
+        self.sent: list[SeriesState] = []
 
     def has_samples(self) -> bool:
         """Whether there are samples to send."""
@@ -253,21 +253,21 @@ class PlotsFeature(PageFeature):
 
     # --- series ------------------------------------------------------------------------------------------------
 
-    def _watch(self, page: Page, wanted: list[PlotSeries], seconds: float) -> None:
+    def _watch(self, page: Page, requested: list[PlotSeries], seconds: float) -> None:
         plots = self._pages.setdefault(page, _Plots())
         longer = plots.seconds < seconds <= _LONGEST_PAST
         plots.seconds = seconds if 0 < seconds <= _LONGEST_PAST else plots.seconds
         have = plots.series
-        asked = {series.id: series for series in wanted}
+        asked = {series.id: series for series in requested}
         new = {identity: series for identity, series in asked.items() if self._is_new(have, series)}
         for identity in [identity for identity in have if identity not in asked or identity in new]:
             self._drop(have.pop(identity))
         for identity, series in new.items():
             have[identity] = self._add(series)
-        if wanted and (new or longer):
+        if requested and (new or longer):
             self._read_past_soon()
-        if wanted:
-            plots.told = []
+        if requested:
+            plots.sent = []
             self._turn.ask()
 
     # --- samples before the time that is shown -----------------------------------------------------------------
@@ -287,31 +287,31 @@ class PlotsFeature(PageFeature):
         self._reading = None
         seconds = {id(series): plots.seconds for plots in self._pages.values() for series in plots.series.values()}
         for channel in list(self._channels.values()):
-            channel.take_past(lambda series: seconds.get(id(series), 0.0), self._timeline)
+            channel.set_past(lambda series: seconds.get(id(series), 0.0), self._timeline)
 
     # -----------------------------------------------------------------------------------------------------------
 
     @staticmethod
     def _is_new(have: dict[int, _Series], series: PlotSeries) -> bool:
-        return series.id not in have or have[series.id].wanted != series
+        return series.id not in have or have[series.id].series != series
 
-    def _add(self, wanted: PlotSeries) -> _Series:
+    def _add(self, requested: PlotSeries) -> _Series:
         try:
-            path = FieldPath(wanted.path)
+            path = FieldPath(requested.path)
         except FieldPathError as error:
-            return _Series(wanted, None, str(error))
-        series = _Series(wanted, path, None)
-        channel = self._channels.get(wanted.topic)
+            return _Series(requested, None, str(error))
+        series = _Series(requested, path, None)
+        channel = self._channels.get(requested.topic)
         if channel is None:
-            channel = _Channel(self.context, wanted.topic, self._turn.ask)
-            self._channels[wanted.topic] = channel
+            channel = _Channel(self.context, requested.topic, self._turn.ask)
+            self._channels[requested.topic] = channel
         channel.add(series)
         return series
 
     def _drop(self, series: _Series) -> None:
         if series.path is None:
             return
-        topic = series.wanted.topic
+        topic = series.series.topic
         channel = self._channels[topic]
         channel.remove(series)
         if not channel.series:
@@ -321,8 +321,8 @@ class PlotsFeature(PageFeature):
     def _send(self) -> None:
         for page, plots in self._pages.items():
             states = [SeriesState(identity, series.error) for identity, series in plots.series.items()]
-            if states != plots.told:
-                plots.told = states
+            if states != plots.sent:
+                plots.sent = states
                 page.send(SeriesStates(states))
             if plots.has_samples():
                 page.outbox.put(plots.key, plots)
@@ -332,11 +332,11 @@ class PlotsFeature(PageFeature):
     def _ask(self, page: Page, topic: str) -> None:
         """Answer with the fields that can be plotted, and again once a message has the lengths of arrays."""
 
-        def take(message: Any, _: MessageInfo) -> None:
+        def receive(message: Any, _: MessageInfo) -> None:
             page.send(TopicFields(topic, message.TYPE_NAME, plot_fields(type(message), message), None))
             self._stop_asking(page)
 
-        tap = TopicTap(self.context, topic, take, changed=lambda: page.send(self._answer(tap)))
+        tap = TopicTap(self.context, topic, receive, changed=lambda: page.send(self._answer(tap)))
         self._questions[page] = tap
         page.send(self._answer(tap))
 

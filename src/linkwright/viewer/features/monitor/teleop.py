@@ -56,12 +56,12 @@ class TeleopFeature(PageFeature):
 class _Pad:
     """The pad of a page."""
 
-    def __init__(self, node: Node, target: TeleopTarget, tell: Callable[[TeleopState], None]) -> None:
+    def __init__(self, node: Node, target: TeleopTarget, publish: Callable[[TeleopState], None]) -> None:
         self._node = node
         self._target = target
-        self._tell = tell
+        self._publish = publish
         self._topic: VelocityTopic | None = None
-        self._told: TeleopState | None = None
+        self._sent: TeleopState | None = None
         self._silent: asyncio.TimerHandle | None = None
         self.review()
 
@@ -89,14 +89,14 @@ class _Pad:
                 self._topic = VelocityTopic(self._node, target.topic, stamped, target.frame_id)
             listeners = self._topic.review(may_change=self._silent is None)
         except LinkwrightError as error:
-            self._say(TeleopState(target.topic, "", 0, error.diagnostics[0].message))
+            self._set_state(TeleopState(target.topic, "", 0, error.diagnostics[0].message))
             return
         topic = self._topic
         if topic.foreign is not None:
             self._cancel()
-            self._say(TeleopState(topic.name, "", 0, f"the topic carries {topic.foreign}"))
+            self._set_state(TeleopState(topic.name, "", 0, f"the topic carries {topic.foreign}"))
             return
-        self._say(TeleopState(topic.name, topic.type_name.rpartition("/")[2], listeners, None))
+        self._set_state(TeleopState(topic.name, topic.type_name.rpartition("/")[2], listeners, None))
 
     def _stop(self) -> None:
         """Publish zero, unless it was published last."""
@@ -110,7 +110,7 @@ class _Pad:
             self._silent.cancel()
             self._silent = None
 
-    def _say(self, state: TeleopState) -> None:
-        if state != self._told:
-            self._told = state
-            self._tell(state)
+    def _set_state(self, state: TeleopState) -> None:
+        if state != self._sent:
+            self._sent = state
+            self._publish(state)

@@ -141,8 +141,8 @@ class TopicTap:
             self.error = error.diagnostics[0].message
             self.message_class = None
             return
-        wanted = QoSPresetProfiles.get_from_short_key("sensor_data")
-        self._qos = fit(wanted, offers).profile
+        sensor_data = QoSPresetProfiles.get_from_short_key("sensor_data")
+        self._qos = fit(sensor_data, offers).profile
         self._qos.depth = _DEPTH
         self._subscription = Subscription(
             self._node.handle, self.message_class, self.topic, self._qos, self._receive, raw=self._raw

@@ -100,13 +100,13 @@ _NANO = 1e-9
 
 
 @dataclass(slots=True)
-class _Wish:
+class _Request:
     """The topics that a page lists, measures and opens."""
 
     listed: bool = False
     measured: frozenset[str] = frozenset()
     opened: frozenset[str] = frozenset()
-    told: TopicList | None = None
+    sent: TopicList | None = None
     due: set[str] = field(default_factory=set)
     """Opened topics with news for this page."""
 
@@ -119,7 +119,7 @@ class _Gauge:
         self.topic = topic
         self.window = TrafficWindow(_WINDOW_MESSAGES, _WINDOW_NS)
         self.last: tuple[bytes, float] | None = None
-        self.tap = TopicTap(context, topic, self._take, raw=True, changed=feature.measure_soon)
+        self.tap = TopicTap(context, topic, self._receive, raw=True, changed=feature.measure_soon)
 
     def message(self) -> TopicMessage | None:
         """The last message; None before there is one, or if its bytes cannot be decoded."""
@@ -140,7 +140,7 @@ class _Gauge:
             return TopicTraffic(self.topic, None, None, self.tap.error)
         return TopicTraffic(self.topic, figures.messages_per_second, figures.bytes_per_second, self.tap.error)
 
-    def _take(self, data: Any, info: MessageInfo) -> None:
+    def _receive(self, data: Any, info: MessageInfo) -> None:
         self.window.add(time.monotonic_ns(), len(data))
         self.last = (data, info.received_timestamp * _NANO)
         self._feature.came(self.topic)
@@ -151,68 +151,68 @@ class TopicsFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._wishes: dict[Page, _Wish] = {}
+        self._requests: dict[Page, _Request] = {}
         self._gauges: dict[str, _Gauge] = {}
         self._figures = Paced(self._send_figures, _FIGURES_PERIOD)
         self._messages = Paced(self._send_messages, _MESSAGES_PERIOD)
 
     def receive(self, page: Page, message: WatchTopics) -> None:
         """Replace the topics that a page lists, measures and opens."""
-        before = self._wishes.get(page, _Wish())
+        before = self._requests.get(page, _Request())
         opened = frozenset(message.opened)
-        wish = _Wish(message.listed, frozenset(message.measured), opened, before.told if message.listed else None)
-        wish.due = {topic for topic in opened if topic in self._gauges and self._gauges[topic].last}
-        self._wishes[page] = wish
-        self._keep(page)
+        request = _Request(message.listed, frozenset(message.measured), opened, before.sent if message.listed else None)
+        request.due = {topic for topic in opened if topic in self._gauges and self._gauges[topic].last}
+        self._requests[page] = request
+        self._update_subscriptions(page)
         if message.listed:
             self._send_lists()
 
     def page_gone(self, page: Page) -> None:
         """Forget the page's requests."""
-        if self._wishes.pop(page, None) is not None:
-            self._keep()
+        if self._requests.pop(page, None) is not None:
+            self._update_subscriptions()
 
     def close(self) -> None:
         """End all subscriptions."""
-        self._wishes.clear()
-        self._keep()
+        self._requests.clear()
+        self._update_subscriptions()
 
     def came(self, topic: str) -> None:
         """Note that a topic has a message for the pages that opened it."""
-        for wish in self._wishes.values():
-            if topic in wish.opened:
-                wish.due.add(topic)
+        for request in self._requests.values():
+            if topic in request.opened:
+                request.due.add(topic)
                 self._messages.ask()
 
     def measure_soon(self) -> None:
         """Send the figures of a topic with the next ones."""
         self._figures.ask()
 
-    def _keep(self, page: Page | None = None) -> None:
+    def _update_subscriptions(self, page: Page | None = None) -> None:
         """Open the subscriptions that pages need and close all others; answer the page with new requests."""
-        wishes = self._wishes.values()
-        wanted = set[str]().union(*(wish.measured | wish.opened for wish in wishes))
-        for topic in self._gauges.keys() - wanted:
+        requests = self._requests.values()
+        requested = set[str]().union(*(request.measured | request.opened for request in requests))
+        for topic in self._gauges.keys() - requested:
             self._gauges.pop(topic).tap.close()
-        for topic in sorted(wanted - self._gauges.keys()):
+        for topic in sorted(requested - self._gauges.keys()):
             self._gauges[topic] = _Gauge(self, self.context, topic)
-        if any(wish.listed for wish in wishes):
+        if any(request.listed for request in requests):
             self.context.graph_changes.listen(self._send_lists)
         else:
             self.context.graph_changes.ignore(self._send_lists)
-        if not wanted:
+        if not requested:
             self._figures.cancel()
             self._messages.cancel()
             return
         self._figures.ask()
-        if page is not None and self._wishes[page].due:
+        if page is not None and self._requests[page].due:
             self._messages.ask()
 
     def _send_lists(self) -> None:
         listed = TopicList(self._rows())
-        for page, wish in self._wishes.items():
-            if wish.listed and wish.told != listed:
-                wish.told = listed
+        for page, request in self._requests.items():
+            if request.listed and request.sent != listed:
+                request.sent = listed
                 page.send(listed)
 
     def _rows(self) -> list[TopicRow]:
@@ -231,8 +231,8 @@ class TopicsFeature(PageFeature):
         return [rows[name] for name in sorted(rows)]
 
     def _send_figures(self) -> None:
-        for page, wish in self._wishes.items():
-            gauges = self._in_order(wish.measured | wish.opened)
+        for page, request in self._requests.items():
+            gauges = self._in_order(request.measured | request.opened)
             if gauges:
                 page.send(TopicFigures([gauge.traffic() for gauge in gauges]))
         if self._gauges:
@@ -240,14 +240,14 @@ class TopicsFeature(PageFeature):
 
     def _send_messages(self) -> None:
         messages: dict[str, TopicMessage | None] = {}
-        for page, wish in self._wishes.items():
-            for gauge in self._in_order(wish.due):
+        for page, request in self._requests.items():
+            for gauge in self._in_order(request.due):
                 if gauge.topic not in messages:
                     messages[gauge.topic] = gauge.message()
                 message = messages[gauge.topic]
                 if message is not None:
                     page.send(message)
-            wish.due.clear()
+            request.due.clear()
 
     def _in_order(self, topics: Iterable[str]) -> list[_Gauge]:
         return [self._gauges[topic] for topic in sorted(topics)]

@@ -60,9 +60,9 @@ class VoiceFeature(PageFeature):
         self._audio: AudioTopics | None = None
         self._listen: Publisher[Any] | None = None
         self._holder: Page | None = None
-        self._told = 0
+        self._receivers = 0
         """The number of subscribers that have received the button's state."""
-        self._said = 0
+        self._text_count = 0
         self._proposes = False
         self._words = WordBook()
 
@@ -135,7 +135,7 @@ class VoiceFeature(PageFeature):
         self._holder = holder
 
     def _publish_held(self, publisher: Publisher[Any], *, held: bool) -> None:
-        self._told = publisher.get_subscription_count()
+        self._receivers = publisher.get_subscription_count()
         publisher.publish(publisher.msg_type(data=held))
 
     def _listeners_changed(self, event: QoSPublisherMatchedInfo) -> None:
@@ -143,9 +143,9 @@ class VoiceFeature(PageFeature):
 
         The topic is not latched, because manual publishers do not latch it either.
         """
-        if event.current_count > self._told and self._holder is not None and self._listen is not None:
+        if event.current_count > self._receivers and self._holder is not None and self._listen is not None:
             self._publish_held(self._listen, held=True)
-        self._told = min(self._told, event.current_count)
+        self._receivers = min(self._receivers, event.current_count)
 
     def _hear(self, page: Page, block: SoundBlock) -> None:
         budget = self._budgets.get(page)
@@ -169,11 +169,11 @@ class VoiceFeature(PageFeature):
             self._watchers[page] = None
         if self._watchers and not self._subscriptions:
             self._subscriptions = [
-                self._node.create_subscription("std_msgs/msg/String", topic, partial(self._tell, part), _DEPTH)
+                self._node.create_subscription("std_msgs/msg/String", topic, partial(self._send_text, part), _DEPTH)
                 for part, topic in _SAID.items()
             ]
             self._subscriptions.append(
-                self._node.create_subscription("std_msgs/msg/Bool", _PROPOSE, self._take_proposal, _DEPTH)
+                self._node.create_subscription("std_msgs/msg/Bool", _PROPOSE, self._handle_proposal, _DEPTH)
             )
             self._text_input = self._node.create_publisher("std_msgs/msg/String", _TEXT_INPUT, _DEPTH)
             self.context.graph_changes.listen(self._review)
@@ -188,12 +188,12 @@ class VoiceFeature(PageFeature):
                 self._text_input = None
         self._review()
 
-    def _tell(self, part: SaidPart, message: Any) -> None:
-        self._said += 1
+    def _send_text(self, part: SaidPart, message: Any) -> None:
+        self._text_count += 1
         for page in self._watchers:
-            page.send(VoiceSaid(self._said, part, message.data[:_LONGEST_TEXT]))
+            page.send(VoiceSaid(self._text_count, part, message.data[:_LONGEST_TEXT]))
 
-    def _take_proposal(self, message: Any) -> None:
+    def _handle_proposal(self, message: Any) -> None:
         self._proposes = message.data
         self._review()
 
@@ -206,9 +206,9 @@ class VoiceFeature(PageFeature):
         texts = graph.count_subscribers(_TEXT_INPUT)
         proposes = self._proposes and graph.count_publishers(_PROPOSE) > 0
         talker = self._floor.talker
-        for page, told in self._watchers.items():
+        for page, sent in self._watchers.items():
             talking: Talking = "nobody" if talker is None else "you" if talker is page else "another"
             state = VoiceState(talking, sound, texts, page in self._cut, proposes)
-            if state != told:
+            if state != sent:
                 self._watchers[page] = state
                 page.send(state)

@@ -68,7 +68,7 @@ class WordBook:
         match message:
             case WatchWords(watched=True):
                 self._watchers.add(page)
-                self._tell(page)
+                self._send(page)
             case WatchWords():
                 self._watchers.discard(page)
             case BeginTake(name=name):
@@ -124,29 +124,29 @@ class WordBook:
             change(words)
             words.write(words_path())
         except LinkwrightError as error:
-            self._tell(page, _text(error))
+            self._send(page, _text(error))
             return False
         except OSError as error:
             reason = foreign(error.strerror or error)
-            self._tell(page, phrase("cannot write '{path}': {reason}", path=display_path(words_path()), reason=reason))
+            self._send(page, phrase("cannot write '{path}': {reason}", path=display_path(words_path()), reason=reason))
             return False
-        for each in {*self._watchers, page}:
-            self._tell(each)
+        for watcher in {*self._watchers, page}:
+            self._send(watcher)
         return True
 
-    def _tell(self, page: Page, problem: str | None = None) -> None:
+    def _send(self, page: Page, problem: str | None = None) -> None:
         try:
             words = _read()
         except LinkwrightError as error:
             words, problem = Words(), problem or _text(error)
-        told = [EnrolledWord(name, len(words.takes(name))) for name in words.names]
-        page.send(VoiceWords(told, TAKES, display_path(words_path()), problem))
+        enrolled = [EnrolledWord(name, len(words.takes(name))) for name in words.names]
+        page.send(VoiceWords(enrolled, TAKES, display_path(words_path()), problem))
 
     def _send_file(self, page: Page) -> None:
         try:
             page.send(VoiceWordsFile(words_path().read_text(encoding="utf-8")))
         except (OSError, UnicodeDecodeError):
-            self._tell(page)  # which reports the error, or that there are no words
+            self._send(page)  # which reports the error, or that there are no words
 
 
 def _read() -> Words:
@@ -167,11 +167,13 @@ def _rename(words: Words, name: str, new_name: str) -> None:
     if reason is not None:
         message = phrase("a word cannot be called '{name}': {reason}", name=new_name, reason=reason)
         raise LinkwrightError(Diagnostic("VOICE204", message))
-    kept = {new_name if each == name else each: words.takes(each) for each in words.names}
-    for each, takes in kept.items():
-        words.remove(each)
+    takes_of = {
+        new_name if name_of_word == name else name_of_word: words.takes(name_of_word) for name_of_word in words.names
+    }
+    for name_of_word, takes in takes_of.items():
+        words.remove(name_of_word)
         for take in takes:
-            words.add(each, take)
+            words.add(name_of_word, take)
     if new_name != name:
         words.remove(name)
 
