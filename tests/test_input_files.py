@@ -113,7 +113,7 @@ def test_a_mesh_is_a_file(tmp_path: Path, ending: str) -> None:
     os.mkfifo(tmp_path / f"pipe{ending}")
     (tmp_path / f"device{ending}").symlink_to("/dev/zero")
     for name in ("pipe", "device"):
-        with pytest.raises(LinkwrightError, match="it is no regular file"):
+        with pytest.raises(LinkwrightError, match="it is not a regular file"):
             read_mesh(tmp_path / f"{name}{ending}")
 
 

@@ -46,7 +46,7 @@ def test_a_robot_that_is_well(in_graph, capsys):
 def test_nobody_publishes_joint_states(in_graph, capsys):
     in_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
     said = doctor(capsys, status=1)
-    assert "[DOC401]: nobody publishes joint states, so there is no transform of frame 'wheel'" in said
+    assert "[DOC401]: no node publishes joint states, so there is no transform of frame 'wheel'" in said
     assert "start joint_state_publisher" in said
 
 
@@ -54,7 +54,7 @@ def test_in_chinese(in_graph, capsys):
     in_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
     said = doctor(capsys, "--lang", "zh", status=1)
     assert "正在观察运行中的计算图，1 秒……\n" in said
-    assert "没有人发布关节状态，所以坐标系“wheel”没有变换" in said
+    assert "没有节点发布关节状态，所以坐标系“wheel”没有变换" in said
     assert "1 个问题；1 个节点、" in said
 
 
@@ -154,7 +154,7 @@ def test_twist_quality_of_service_and_lonely_clients(in_graph, capsys):
     assert "topic '/cmd_vel' carries Twist for some nodes and TwistStamped for others" in said
     apart = "reliability: '/lidar' offers BEST_EFFORT, '/base' requests RELIABLE" in said
     assert apart is dds.available()  # over Zenoh that keeps nobody apart
-    assert "nobody serves '/reset', which '/base' calls" in said
+    assert "no node provides '/reset', which '/base' calls" in said
 
 
 def test_simulated_time_for_some(in_graph, capsys):
@@ -164,7 +164,7 @@ def test_simulated_time_for_some(in_graph, capsys):
 
     in_graph(make)
     said = doctor(capsys, status=1)
-    assert "use_sim_time is true for '/one', but nobody publishes /clock" in said
+    assert "use_sim_time is true for '/one', but no node publishes /clock" in said
     assert "use_sim_time is true for '/one', but false for '/two'" in said
 
 

@@ -116,7 +116,7 @@ def test_a_domain_that_may_not_work():
 def test_no_state_publisher_at_all():
     seen = replace(WELL, transforms=(), endpoints=())
     found = only(seen, "DOC301")
-    assert found.message == "there is no transform of 3 frames, 'wheel', 'mast', 'copy': nobody publishes transforms"
+    assert found.message == "there is no transform of 3 frames, 'wheel', 'mast', 'copy': no node publishes transforms"
 
 
 def test_nobody_publishes_joint_states():
@@ -126,7 +126,7 @@ def test_nobody_publishes_joint_states():
         endpoints=tuple(endpoint for endpoint in WELL.endpoints if endpoint.name != "/joint_states"),
     )
     found = only(seen, "DOC401")
-    assert found.message == "nobody publishes joint states, so there is no transform of 2 frames, 'wheel', 'copy'"
+    assert found.message == "no node publishes joint states, so there is no transform of 2 frames, 'wheel', 'copy'"
     assert "joint_state_publisher" in found.hint
 
 
@@ -258,7 +258,7 @@ def test_frames_are_listed_with_chinese_quotes_in_chinese():
     seen = replace(WELL, descriptions=(robot,), joints=(), endpoints=(publisher(RSP, "/tf", TF),))
     (found,) = [each for each in examine(seen) if each.code == "DOC401"]
     names = "“l0”、“l1”、“l2”、“l3”、“l4”、“l5”和另外 2 个"
-    assert translate(found, "zh").message == f"没有人发布关节状态，所以 8 个坐标系（{names}）没有变换"
+    assert translate(found, "zh").message == f"没有节点发布关节状态，所以 8 个坐标系（{names}）没有变换"
 
 
 # descriptions and joints
@@ -329,7 +329,7 @@ def test_a_node_that_takes_either_type_does_not_hide_one_that_takes_another():
 def test_velocities_that_nobody_takes():
     found = only(more(WELL, publisher("/teleop", "/cmd_vel", TWIST)), "DOC207")
     assert (
-        found.message == "'/teleop' publishes velocities on '/cmd_vel', and nobody subscribes to it, so nothing moves"
+        found.message == "'/teleop' publishes velocities on '/cmd_vel', but no node subscribes to it, so nothing moves"
     )
     assert "running" in found.hint
 

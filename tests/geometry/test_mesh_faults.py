@@ -112,11 +112,11 @@ CASES = {
     "unclosed.dae": (COLLADA.replace("</mesh>", ""), "line 10: '</geometry>' does not close '<mesh>'"),
     "cut.dae": (COLLADA[:500], "line 8: this tag is never finished"),
     "robot.dae": ("<robot/>", "line 1: the file begins with <robot>, not with <COLLADA>"),
-    "word.dae": (COLLADA.replace("0 0 0 1 0 0", "0 0 O 1 0 0"), "line 5: 'O' in <float_array> is no finite number"),
+    "word.dae": (COLLADA.replace("0 0 0 1 0 0", "0 0 O 1 0 0"), "line 5: 'O' in <float_array> is not a finite number"),
     "infinite.dae": (COLLADA.replace("0 0 0 1 0 0", "0 0 INF 1 0 0"), "line 5: 'INF' in <float_array>"),
     "few.dae": (COLLADA.replace("1 0 0 0 1 0", "1 0 0"), "line 5: <float_array> has 6 numbers, where 9 are needed"),
     "index.dae": (COLLADA.replace("<p>0 1 2", "<p>0 1 7"), "line 9: there is no vertex 7; there are 3"),
-    "index_word.dae": (COLLADA.replace("<p>0 1 2", "<p>0 1 b"), "line 9: 'b' in <p> is no index"),
+    "index_word.dae": (COLLADA.replace("<p>0 1 2", "<p>0 1 b"), "line 9: 'b' in <p> is not an index"),
     "source.dae": (
         COLLADA.replace('source="#p"', 'source="#q"'),
         "line 8: <input> names '#q', which is not in the file",
@@ -148,7 +148,7 @@ CASES = {
     ),
     "beside.gltf": (
         json.dumps(document() | {"buffers": [{"byteLength": 42, "uri": "none.bin"}]}),
-        "the file 'none.bin' that it names is not there",
+        "the file 'none.bin' that it references does not exist",
     ),
 }
 

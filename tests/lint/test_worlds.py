@@ -46,7 +46,7 @@ def tensor(ixx, iyy, izz, more=""):
         (tensor(1, 0, 1), "LW311", "'iyy' of link 'l' is zero"),
         (tensor(1, 1, 1, "<ixy>0.8</ixy>"), "LW312", "'ixy' of link 'l' is larger than its moments allow: 0.8"),
         (tensor(1, 1, 3), "LW314", "'izz' of link 'l' is larger than the other two moments together"),
-        (tensor(1, "nan", 1), "SDF122", "the mass or inertia of link 'l' is no number"),
+        (tensor(1, "nan", 1), "SDF122", "the mass or inertia of link 'l' is not a finite number"),
     ],
 )
 def test_masses_that_no_body_has(told, inertial, code, message):

@@ -66,5 +66,5 @@ def test_a_folder_that_is_not_there(tmp_path):
 
 @pytest.mark.extra("diagram")
 def test_a_text_that_graphviz_cannot_read(tmp_path):
-    with pytest.raises(LinkwrightError, match="could not lay out"):
+    with pytest.raises(LinkwrightError, match="could not draw"):
         render("digraph {", tmp_path / "robot.svg")

@@ -56,14 +56,14 @@ def as_sdf(
     lump_fixed_joints: bool = True,
     folder: Path | None = None,
 ) -> Converted:
-    """A URDF, xacro or SDF file as one SDF that needs no other but meshes and textures.
+    """Convert a URDF, xacro or SDF file to one SDF that needs no other files except meshes and textures.
 
     Args:
         path: the file.
-        finder: where packages are.
+        finder: finds packages.
         arguments: values for the file's ``<xacro:arg>``.
-        lump_fixed_joints: of URDF, see `linkwright.sdf.from_urdf.model_from_robot`.
-        folder: where the SDF is to lie, from which paths to meshes are then written; that of the file by default.
+        lump_fixed_joints: for URDF, see `linkwright.sdf.from_urdf.model_from_robot`.
+        folder: the folder of the new SDF, to which paths of meshes are relative; that of the file by default.
 
     Raises:
         LinkwrightError: it is not XML, or it cannot be expanded.
@@ -106,12 +106,12 @@ def _from_folder(thing: Any, written_in: Path, folder: Path) -> Any:
 
 
 def with_addresses(thing: Any, written_in: Path, change: Callable[[str, Path], str]) -> Any:
-    """A part of SDF with other addresses of meshes, textures and the like.
+    """Return a part of SDF with other addresses of meshes, textures and the like.
 
     Args:
         thing: an object of `linkwright.sdf`, or a tuple of them.
-        written_in: the folder of the file that it stands in, where it does not know it itself.
-        change: what an address becomes, and the folder of the file that it is written in.
+        written_in: the folder of its file, if the object does not know it.
+        change: returns the new address for an address and the folder of the file that has it.
     """
     if isinstance(thing, tuple):
         return tuple(with_addresses(each, written_in, change) for each in thing)
@@ -136,7 +136,7 @@ def with_addresses(thing: Any, written_in: Path, change: Callable[[str, Path], s
 
 
 def _address(written: str, written_in: Path, folder: Path) -> str:
-    """An address; a path to a file that is there starts from another folder, or is whole where it lies outside."""
+    """Return an address; the path of an existing file becomes relative to a folder, or a file URI if outside."""
     file = Path(os.path.abspath(written_in / written))  # noqa: PTH100 - links stay what they are
     folder = folder.absolute()
     if not written or "://" in written or Path(written).is_absolute() or not file.exists():

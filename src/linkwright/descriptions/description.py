@@ -32,11 +32,11 @@ class Description:
 
     Attributes:
         name: the path as it was given, or `TEXT_NAME`.
-        document: the URDF document, expanded; every element knows the file and place where it was written.
-        reading: what the URDF reader made of it.
-        expansion: how xacro made the document; None for plain URDF.
-        overlay: the texts that stood for those of files.
-        problems: mistakes for which only parts of the description are here; there is no robot then.
+        document: the URDF document, expanded; every element has its source file and place.
+        reading: the result of the URDF reader.
+        expansion: xacro's record of making the document; None for plain URDF.
+        overlay: texts that replaced those of files.
+        problems: mistakes because of which only parts of the description are available; there is no robot then.
     """
 
     name: str
@@ -97,7 +97,7 @@ class Description:
         return found
 
     def provenance(self, element: Element) -> Provenance | None:
-        """How an element of the document came to be; None for plain URDF, where it is what is written.
+        """Return the macro calls and includes that made an element; None for plain URDF, where it is written as it is.
 
         Raises:
             LinkwrightError: XAC802, the files are no longer what they were.

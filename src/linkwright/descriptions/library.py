@@ -32,12 +32,12 @@ class DescriptionLibrary:
         self._finders: dict[str, PackageFinder] = {}
 
     def remember(self, description: Description, text: str | None = None, packages: PackageFinder | None = None) -> str:
-        """Keep a description, to be found by its text.
+        """Store a description, to be found by its text.
 
         Args:
             description: a description.
-            text: what stands for its text elsewhere, where that is another one.
-            packages: finds what it names, where that may be others than those of the rest of the program.
+            text: the text to find it by, if that is not its own.
+            packages: finds its packages, if these may differ from those of the rest of the program.
 
         Returns:
             The text.
@@ -52,11 +52,11 @@ class DescriptionLibrary:
         return text
 
     def packages(self, text: str) -> PackageFinder | None:
-        """The package finder of a remembered description; None where none was given."""
+        """Return the package finder of a stored description, or None if it has none."""
         return self._finders.get(text)
 
     def description(self, text: str) -> Description | None:
-        """The remembered description with a text; None where there is none."""
+        """Return the stored description with a text, or None if there is none."""
         return self._descriptions.get(text)
 
     def files(self, text: str) -> tuple[Path, ...]:
@@ -65,7 +65,7 @@ class DescriptionLibrary:
         return () if known is None else known.files
 
     def provenance(self, text: str, element: Element) -> Provenance | None:
-        """How an element of a remembered description came to be; None for a text that nobody tells about.
+        """Return the macro calls and includes that made an element of a stored description; None for an unknown text.
 
         Raises:
             LinkwrightError: XAC802, its files are no longer what they were.

@@ -35,7 +35,7 @@ class Model:
     revision: Revision | None = None
 
     def label(self) -> str:
-        """The file's name for readers."""
+        """Return the file's name for users."""
         return self.named(str(self.path))
 
     @property
@@ -44,7 +44,7 @@ class Model:
         return self.path.name if self.revision is None else f"{self.revision.name}:{self.path.name}"
 
     def named(self, file: str) -> str:
-        """What readers know one of its files by: ``HEAD:robots/arm.urdf``, or a path from the current folder."""
+        """Return a file's name for users: ``HEAD:robots/arm.urdf``, or a path from the current folder."""
         name = file if self.revision is None else self.revision.label(file)
         return display_path(name) if name == file else name
 
@@ -69,10 +69,10 @@ class Model:
         return robot
 
     def resolve(self, address: str) -> Path:
-        """The file that the address of a mesh means.
+        """Return the file of a mesh's address.
 
         Raises:
-            LinkwrightError: its package is not there.
+            LinkwrightError: its package is not found.
         """
         return self.finder.resolve(address, self.path.parent)
 

@@ -17,7 +17,7 @@ from linkwright.packages.sources import SourceScan
 from linkwright.scratch_folders import ScratchFolder
 
 _OF_HOOKS = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
-"""Variables with which git starts hooks; they would stand in the way of asking about the folder of a file."""
+"""Variables that git sets for hooks; they would override the repository of a file's folder."""
 
 
 class Revision:
@@ -44,7 +44,7 @@ class Revision:
         self.name = name
         real = path.resolve()
         if not real.is_file():
-            hint = phrase("name a file that is there; the commit is what comes after `--against`")
+            hint = phrase("name an existing file; the commit follows `--against`")
             raise LinkwrightError(
                 Diagnostic("CLI344", phrase("there is no file '{path}'", path=display_path(path)), hint=hint)
             )
@@ -116,7 +116,7 @@ def _top_of(path: Path) -> Path:
         hint = phrase("compare it with another file: `linkwright diff OLD NEW`")
         if "dubious ownership" in done.stderr:
             message = phrase("git does not trust the repository of '{path}'", path=display_path(path))
-            hint = phrase("another user owns it; git's safe.directory says which of those it trusts")
+            hint = phrase("another user owns it; git's safe.directory lists the ones that git trusts")
         raise LinkwrightError(Diagnostic("CLI342", message, hint=hint))
     return Path(done.stdout.rstrip("\r\n")).resolve()
 
@@ -161,7 +161,7 @@ def _git(folder: Path, *words: str, environment: Mapping[str, str] | None = None
     """Run git in a folder, in English."""
     variables = {name: value for name, value in os.environ.items() if name not in _OF_HOOKS}
     try:
-        return subprocess.run(  # noqa: S603 - no shell; what the user gave is no option
+        return subprocess.run(  # noqa: S603 - no shell; the user's word is not an option
             ["git", *words],  # noqa: S607 - the user's own git, found as the shell finds it
             cwd=folder,
             env={**variables, "LC_ALL": "C", **(environment or {})},

@@ -22,7 +22,7 @@ _URDF = ".urdf"
 """The ending of files that robot_state_publisher may be given as they are, whatever prefixes they declare."""
 
 _LEFT_OVER = "URDF102"
-"""Tags of xacro that nobody evaluated."""
+"""Tags of xacro that were not evaluated."""
 
 Packages = Union[Mapping[str, str | Path], "PackageFinder", None]
 
@@ -61,17 +61,17 @@ def examine(
     xacro: bool | None = None,
     partly: bool = False,
 ) -> Description:
-    """A URDF or xacro file or text, or one in SDF, with its robot and all findings about it; arguments as for `load`.
+    """Read a URDF, xacro or SDF file or text, with its robot and all findings; arguments as for `load`.
 
     Args:
         path_or_text: see `load`.
         arguments: see `load`.
         packages: see `load`.
-        overlay: texts that stand for those of files, for the file itself and all that it includes or loads.
-        xacro: whether to expand it; None for what the file says, see `is_xacro`. A plain URDF file is read as urdfdom
+        overlay: texts that replace those of files: of the file itself and of all files that it includes or loads.
+        xacro: whether to expand it; None to decide by the file, see `is_xacro`. A plain URDF file is read as urdfdom
             reads it.
-        partly: whether to make do with the parts that can be expanded when others cannot; `Description.problems` then
-            says what is wrong.
+        partly: whether to accept the parts that can be expanded if others cannot; `Description.problems` then has the
+            mistakes.
 
     Raises:
         LinkwrightError: it is not XML, or it cannot be expanded.
@@ -118,9 +118,9 @@ def _as_it_stands(
     *,
     is_told: bool = False,
 ) -> Description:
-    """The description that urdfdom makes of a document which nobody expands; `is_told` where the remarks say so.
+    """Return the description that urdfdom reads from an unexpanded document; `is_told` if the remarks report that.
 
-    Then what the file lacks may be in what xacro would add to it, such as the colours of an included file.
+    Then xacro might add the elements that the file lacks, such as the colours of an included file.
     """
     reading = read(document)
     said = tuple(diagnostic for diagnostic in reading.diagnostics if not is_told or _holds_unexpanded(diagnostic))
@@ -132,16 +132,16 @@ def _holds_unexpanded(found: Diagnostic) -> bool:
 
 
 def _has_open_names(robot: Robot) -> bool:
-    """Whether names of links wait for xacro to fill them in: nobody gives such a file to urdfdom."""
+    """Return whether names of links are to be completed by xacro: such a file is not meant for urdfdom."""
     return any("$(" in name or "${" in name for name in robot.links)
 
 
 def _as_warning(error: Diagnostic) -> Diagnostic:
-    """An error of the expansion in a file that is a robot for urdfdom as it stands."""
+    """Return an error of the expansion as a warning, for a file that urdfdom reads unexpanded."""
     note = Note(phrase("urdfdom reads the file without expanding it, and passes over what xacro would do"))
     return error.but(severity=Severity.WARNING, notes=(*error.notes, note))
 
 
 def is_xacro(name: str, root: Element) -> bool:
-    """Whether a document is to be expanded: its file is named so, or it declares the prefix of xacro."""
+    """Return whether to expand a document: by the name of its file, or because it declares the prefix of xacro."""
     return name.endswith(".xacro") or "xmlns:xacro" in root.attributes or root.tag.startswith("xacro:")

@@ -28,9 +28,9 @@ class WorldDescription:
 
     Attributes:
         path: the file.
-        sdf: what it says, with the included models in the places of their includes, and materials with the colours of
-            their scripts; None where it is no SDF.
-        diagnostics: everything that is wrong with it and with what it includes.
+        sdf: its content, with included models in place of the includes, and materials with the colours of their
+            scripts; None if it is not SDF.
+        diagnostics: all findings about it and its included models.
         files: the files that were read, the main file first.
     """
 
@@ -41,7 +41,7 @@ class WorldDescription:
 
 
 def is_world(name: str) -> bool:
-    """Whether a file is to be read as SDF: its name says so."""
+    """Return whether to read a file as SDF, by its name."""
     return name.endswith(_ENDINGS)
 
 
@@ -53,14 +53,14 @@ def examine_world(
     environment: Mapping[str, str] | None = None,
     overlay: Overlay | None = None,
 ) -> WorldDescription:
-    """A world or model in SDF, or in SDF that xacro makes, with all findings about it.
+    """Read a world or model in SDF, or in SDF that xacro makes, with all findings about it.
 
     Args:
         path: the file; one whose name ends in ``.xacro``, or that has tags of xacro, is expanded first.
         arguments: values for the file's ``<xacro:arg>``.
         packages: package name -> share folder, or a finder.
         environment: the variables with search paths (`linkwright.sdf.resources`); those of the process by default.
-        overlay: texts that stand for those of files.
+        overlay: texts that replace those of files.
 
     Raises:
         LinkwrightError: it is not XML, it cannot be expanded, or it has more links than are read (SDF163).
@@ -93,11 +93,11 @@ def examine_world(
 
 
 def robot_of_text(text: str, name: str) -> Reading:
-    """The robot of a text in SDF; what gz would warn of is not among the findings of one that has a robot.
+    """Read the robot of a text in SDF; if there is one, the findings leave out warnings that gz would print.
 
     Args:
         text: the text.
-        name: what stands in messages for its file.
+        name: its file name in messages.
     """
     from linkwright.sdf.includes import resolve_includes
     from linkwright.sdf.reader import read
@@ -114,7 +114,7 @@ def robot_of_text(text: str, name: str) -> Reading:
 
 
 def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """Findings, of each kind of element that is not read and of each model that is not there only the first."""
+    """Yield the findings, only the first about each kind of unread element and each missing model."""
     told: set[str] = set()
     for diagnostic in found:
         words = f"{diagnostic.code} {diagnostic.severity} {diagnostic.message}"
@@ -126,7 +126,7 @@ def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
 def _document(
     path: Path, arguments: Mapping[str, str] | None, finder: PackageFinder, overlay: Overlay | None
 ) -> tuple[Document, tuple[Diagnostic, ...], tuple[Path, ...]]:
-    """The document, what was remarked on the way, and the files it was made of."""
+    """Return the document, the diagnostics of reading it, and the files it was made of."""
     text = None if overlay is None else overlay.text(str(path))
     if path.suffix != ".xacro":
         document, warnings = _as_written(path, read_bytes(path) if text is None else text)

@@ -1,4 +1,4 @@
-"""Findings about a user's input: where, what, why, how to mend it; and how they are printed."""
+"""Findings about a user's input: what is wrong, where, why, and how to fix it; and how they are printed."""
 
 from linkwright.diagnostics.diagnostic import Diagnostic, LinkwrightError, Note, Severity, has_errors, in_one_line
 from linkwright.diagnostics.extras import install_hint, missing_extra, package_hint

@@ -30,17 +30,17 @@ class Note(NamedTuple):
 
 
 class Diagnostic:
-    """One finding: a stable code, what is wrong, where, why, and how to put it right; to be read, and never changed.
+    """One finding: a stable code, what is wrong, where, why, and how to fix it; immutable.
 
-    Two that say the same are equal.
+    Two with the same content are equal.
 
     Attributes:
         code: letters for the room and three digits, such as ``XAC101``; never reused for another meaning.
-        message: one sentence without a full stop at its end, naming the thing as the user wrote it.
-        span: the place, or None where there is none (a missing file).
+        message: one sentence without a full stop at its end, with names as the user wrote them.
+        span: the place, or None if there is none (a missing file).
         notes: what led to it: includes, macro calls, values.
-        hint: how to mend it, or None.
-        source: the text that the span is in, for an excerpt; None where it was not kept.
+        hint: how to fix it, or None.
+        source: the text that the span is in, for an excerpt; None if it was not stored.
     """
 
     __slots__ = ("code", "hint", "message", "notes", "severity", "source", "span")

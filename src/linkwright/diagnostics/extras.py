@@ -31,7 +31,7 @@ EXTRAS = {
 """Name of the extra -> the module that is missing without it."""
 
 APART = frozenset({"parquet", "ray", "train"})
-"""Extras that ``linkwright[all]`` is without; it has all others (decision 0022)."""
+"""Extras that ``linkwright[all]`` does not include; it includes all others (decision 0022)."""
 
 _BY_MODULE = {**{module: extra for extra, module in EXTRAS.items()}, "cv2": "vision"}
 
@@ -82,7 +82,7 @@ def _installation() -> Installation:
 
 
 def _newest_python(package: str) -> tuple[int, ...]:
-    """The first Python from which on no extra asks for a package, as it has no wheel; empty where there is none."""
+    """Return the first Python version for which no extra requires a package, as it has no wheel; empty for none."""
     from importlib.metadata import PackageNotFoundError, requires  # takes 10 ms, and is needed for errors alone
 
     try:

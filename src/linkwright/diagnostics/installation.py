@@ -1,7 +1,7 @@
 """How this Linkwright was installed, and the commands that add to it.
 
-Installers record that: ``direct_url.json`` (PEP 610) says where a distribution came from, and ``pipx_metadata.json``
-or ``uv-receipt.toml`` that the environment belongs to a tool, which makes it anew when it installs again.
+Installers record that: ``direct_url.json`` (PEP 610) names the origin of a distribution, and ``pipx_metadata.json`` or
+``uv-receipt.toml`` marks an environment that belongs to a tool, which recreates it when it installs again.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from linkwright.lean_typing import Any
 
 NAME = "linkwright"
 SOMEWHERE = "PATH_TO_LINKWRIGHT"
-"""Stands for a checkout or a wheel in a command, when the one that was installed is not there any more."""
+"""A placeholder in a command for a checkout or wheel that no longer exists."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Origin:
         return bool(self.place) and "://" not in self.place and not Path(self.place).exists()
 
     def words(self, extras: Iterable[str]) -> list[str]:
-        """What an installer is told in order to install it with extras."""
+        """Return the installer's arguments that install it with extras."""
         wanted = f"[{','.join(sorted(extras))}]" if extras else ""
         if "://" in self.place:
             return [f"{NAME}{wanted} @ {self.place}"]
@@ -100,7 +100,7 @@ def find_installation() -> Installation:
 
 
 def installation_in(prefix: Path, origin: Origin) -> Installation:
-    """What is known of an installation in an environment.
+    """Return the installation in an environment.
 
     Args:
         prefix: the environment's folder.
@@ -121,7 +121,7 @@ def installation_in(prefix: Path, origin: Origin) -> Installation:
 
 
 def origin_of(direct_url: Mapping[str, Any]) -> Origin:
-    """Where a distribution came from, by what its ``direct_url.json`` says."""
+    """Return the origin of a distribution from its ``direct_url.json``."""
     url = direct_url["url"]
     if version_control := direct_url.get("vcs_info"):
         revision = version_control.get("requested_revision")
@@ -146,7 +146,7 @@ def _origin() -> Origin:
 
 
 def _pip(prefix: Path, origin: Origin) -> tuple[str, ...]:
-    """What installs into an environment that belongs to nobody but its user."""
+    """Return the command that installs into an environment that does not belong to a tool."""
     if find_spec("pip"):
         found = shutil.which("pip")
         in_reach = found is not None and Path(found).parent == Path(sys.executable).parent

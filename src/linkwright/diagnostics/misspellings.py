@@ -1,7 +1,7 @@
-"""The known name that a misspelt one stands for: a slip of the pen, never a sibling's name.
+"""Find the known name that a misspelt one is meant to be: a typing error, never a sibling's name.
 
-``wheel_2`` is not a misspelling of ``wheel_1``, nor ``lwheel`` of ``rwheel``, nor ``stopKp`` of ``stopKd``: they are
-names of different things, and a fix that takes one for the other breaks the robot.
+``wheel_2`` is not a misspelling of ``wheel_1``, nor ``lwheel`` of ``rwheel``, nor ``stopKp`` of ``stopKd``: they name
+different parts, and a fix that confuses them breaks the robot.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def misspelling_of(name: str, known: Iterable[str]) -> str | None:
 
 
 def _is_slip(name: str, known: str) -> bool:
-    """Whether a name is a known one but for its case, its separators, or a slip in one of its words."""
+    """Return whether a name differs from a known one only in case, in separators, or by a typing error in a word."""
     words, others = words_of(name), words_of(known)
     if not words or not others:
         return False

@@ -1,7 +1,7 @@
-"""Translatable texts: an English template, and the arguments that were filled in.
+"""Translatable texts: an English template and its arguments.
 
-A `Phrase` is an ordinary string, the English text, wherever one is wanted. What reads it in another language looks its
-template up in that language's catalogue and fills that in with the same arguments, translated where they are phrases.
+A `Phrase` is an ordinary string, the English text. To translate it, a reader looks up its template in the catalogue of
+the other language and formats that with the same arguments, translated if they are phrases themselves.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ TERMS = "term"
 """The context of words that tables and files hold, such as ``link``, in catalogues."""
 
 FOREIGN = "foreign"
-"""The context of what other programs say: Python, the operating system, libraries."""
+"""The context of texts from other programs: Python, the operating system, libraries."""
 
 RULES = "rule"
-"""The context of what rules and other diagnostic codes report: the titles of their pages."""
+"""The context of the titles of the pages of rules and other diagnostic codes."""
 
 
 class Wording(Protocol):
@@ -187,24 +187,24 @@ class _Joined(Phrase):
 
 
 def phrase(template: str, **arguments: object) -> Phrase:
-    """A text that can be translated.
+    """Return a text that can be translated.
 
     Args:
-        template: in English, a literal: the catalogues are checked against what stands in the source. Each argument has
-            a placeholder by its name, with a format for numbers where wanted: ``{length:g} m``.
+        template: the English text, a literal: the catalogues are checked against the literals in the source. Each
+            argument has a placeholder by its name, optionally with a number format: ``{length:g} m``.
         arguments: the user's own words, numbers, or phrases, which are translated too.
     """
     return Phrase(template, arguments)
 
 
 def counted(one: str, several: str, count: int, **arguments: object) -> Phrase:
-    """A text about a number of things, which English says in one way of one thing and in another of several.
+    """Return a text with a count, whose English has a singular and a plural.
 
     Args:
-        one: the template for one thing; ``{count}`` stands for the number.
+        one: the template for the singular; ``{count}`` is the number.
         several: the template for any other number.
-        count: how many there are.
-        arguments: what else the templates name.
+        count: the number.
+        arguments: the other arguments of the templates.
     """
     return _Counted(one, {"count": count, **arguments}, several)
 
@@ -231,12 +231,12 @@ def quoted(name: object) -> Phrase:
 
 
 def joined(texts: Iterable[str], separator: str = ", ", last: str | None = None) -> Phrase:
-    """Texts in a row, such as ``a, b or c``.
+    """Join texts, as in ``a, b or c``.
 
     Args:
         texts: the user's own words or phrases.
-        separator: what stands between two of them.
-        last: what stands before the last one instead, such as ``" or "``.
+        separator: the text between two of them.
+        last: the separator before the last one, such as ``" or "``.
     """
     return _Joined(tuple(texts), separator, separator if last is None else last)
 

@@ -1,4 +1,4 @@
-"""Pointers of Git LFS: what stands in the place of a large file until it is fetched."""
+"""Pointers of Git LFS: the small text files that represent large files until these are fetched."""
 
 from __future__ import annotations
 

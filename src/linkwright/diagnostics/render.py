@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
 MOST_PRINTED = 500
-"""More findings than these nobody reads, and the errors among them would scroll away."""
+"""The most findings to print: no user reads more, and the errors among them would scroll away."""
 _TAB = "    "
 _WIDEST = 300
 _AROUND = 80
@@ -26,11 +26,11 @@ _SEEN_AS = {
     0x7F: 0x2421,
     **dict.fromkeys((*range(0x80, 0xA0), *range(0x202A, 0x202F), *range(0x2066, 0x206A)), 0xFFFD),
 }
-"""Characters that a terminal obeys, or that turn the order of what follows -> what is printed in their place."""
+"""Characters that control a terminal or the order of the text after them -> the text printed in their place."""
 
 
 def wants_colour(stream: IO[str]) -> bool:
-    """Whether to colour what goes to a stream: a terminal, unless NO_COLOR is set or TERM is dumb."""
+    """Return whether to colour the output to a stream: a terminal, unless NO_COLOR is set or TERM is dumb."""
     if os.environ.get("NO_COLOR"):
         return False
     return stream.isatty() and os.environ.get("TERM") != "dumb"
@@ -73,7 +73,7 @@ def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> Non
 
 
 def _most_severe(found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
-    """As many as somebody may read, errors before the rest, in their order."""
+    """Return at most `MOST_PRINTED` findings, errors before the rest, in their order."""
     if len(found) <= MOST_PRINTED:
         return found
     numbers = sorted(range(len(found)), key=lambda number: found[number].severity is not Severity.ERROR)
@@ -163,7 +163,7 @@ def _excerpt(diagnostic: Diagnostic, paint: _Paint) -> list[str]:
 
 
 def printable(text: str) -> str:
-    """The text as a terminal may print it: what would steer the terminal is replaced by what can be seen."""
+    """Return the text as a terminal may print it: control characters are replaced by visible ones."""
     return text.translate(_SEEN_AS)
 
 
@@ -189,7 +189,7 @@ def _indented(text: str) -> str:
 
 
 def display_path(path: str | Path) -> str:
-    """A path as messages show it: relative to the current folder where it lies below it."""
+    """Return a path as messages show it: relative to the current folder if it is below it."""
     text = str(path)
     relative = os.path.relpath(text)
     return text if relative.startswith("..") else relative

@@ -1,7 +1,7 @@
 """Source texts and places in them.
 
-Positions inside the program are character offsets, which cost nothing to carry. Lines and columns are worked out
-only when somebody asks for a `Span`.
+Positions inside the program are character offsets, which cost nothing to carry. Lines and columns are computed only for
+a `Span`.
 """
 
 from __future__ import annotations

@@ -20,14 +20,14 @@ _MOST_COMPARED = 1_000
 """Of more names than these, only those are compared that begin alike and are about as long."""
 _WORD = r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_]+"
 _SHORT = 2
-"""In words of so few letters a slip leaves nothing to know them by, but for two letters that are swapped."""
+"""Words of so few letters cannot be recognised after a typing error, except after two swapped letters."""
 
 
 def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
-    """The candidates that `name` may stand for, best first; upper and lower case count as alike.
+    """Return the candidates that may be meant by `name`, best first, ignoring case.
 
-    Names that look alike because they share a common word, such as those of two robots' descriptions, are not meant:
-    what differs must be slips of the pen, words left out, or words in another order.
+    A common word, such as in the names of two robots' descriptions, is not enough: the names may only differ by typing
+    errors, missing words, or the order of words.
     """
     from difflib import get_close_matches  # here, because most runs of a command end without a hint
 
@@ -49,7 +49,7 @@ def words_of(name: str) -> list[str]:
 
 
 def _is_alike(name: str, other: str) -> bool:
-    """Whether one name may stand for another: the words that they do not share are slips of the pen, or extra."""
+    """Return whether one name may mean another: the words that they do not share are typing errors, or extra."""
     words, others = words_of(name), words_of(other)
     if "".join(words) == "".join(others):
         return True
@@ -88,9 +88,9 @@ def _is_left_of(shorter: str, longer: str) -> bool:
 
 
 def is_misspelt(name: str, names: Iterable[str]) -> bool:
-    """Whether a name is one of others but for a letter: left out, added, another one, or swapped with its neighbour.
+    """Return whether a name differs from one of others by a letter: missing, extra, wrong, or swapped with the next.
 
-    In long names there may be more such slips, one for every ten letters.
+    Long names may have more such errors, one for every ten letters.
     """
     return any(_is_within(name, other, 1 + len(name) // 10) for other in names)
 
@@ -123,7 +123,7 @@ def _meant(names: Sequence[str]) -> Phrase | None:
 
 
 def _like(name: str, names: Iterable[str]) -> list[str]:
-    """The names of files that may be meant, by what stands before the ending: 'a.urdf' is not like 'robot.urdf'."""
+    """Return the names of files that may be meant, compared without extension: 'a.urdf' is not like 'robot.urdf'."""
     stem, ending = _parts(name)
     stems: dict[str, list[str]] = {}
     for other in names:

@@ -32,7 +32,7 @@ def _simulated(seen: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC602",
             phrase(
-                "use_sim_time is true for {on}, but nobody publishes /clock, so time stands still for them",
+                "use_sim_time is true for {on}, but no node publishes /clock, so their time does not advance",
                 on=listed(on),
             ),
             hint=phrase("start the simulation or play the bag with --clock, or set use_sim_time to false"),
@@ -58,7 +58,7 @@ def _simulated(seen: Observation) -> Iterator[Diagnostic]:
             "DOC601",
             phrase("use_sim_time is true for {on}, but false for {off}", on=listed(on), off=listed(off)),
             severity=Severity.WARNING,
-            notes=(Note(phrase("their stamps lie far apart, and transforms and messages do not meet")),),
+            notes=(Note(phrase("their stamps are far apart, so transforms and messages do not match")),),
             hint=phrase("set it for all of them: SetParameter('use_sim_time', True) in the launch file"),
         )
     if len(senders) > 1:
@@ -120,5 +120,5 @@ def _stamps(seen: Observation) -> Iterator[Diagnostic]:
 
 def _why(sender: str, seen: Observation) -> tuple[Note, ...]:
     if seen.sim_time.get(sender):
-        return (Note(phrase("'{sender}' goes by simulated time", sender=sender)),)
+        return (Note(phrase("'{sender}' uses simulated time", sender=sender)),)
     return ()

@@ -76,7 +76,7 @@ def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
                 frames=_frames(children),
                 senders=listed(senders),
             ),
-            notes=(Note(phrase("what is shown jumps between what they say")),),
+            notes=(Note(phrase("the frames jump between the poses that they publish")),),
             hint=phrase("end one of them, or have it leave these frames out (such as publish_tf: false)"),
         )
 
@@ -125,7 +125,7 @@ def _missing(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
         frames = [robot.frame(joint.child) for joint in without]
         yield Diagnostic(
             "DOC301",
-            phrase("there is no transform of {frames}: nobody publishes transforms", frames=_frames(frames)),
+            phrase("there is no transform of {frames}: no node publishes transforms", frames=_frames(frames)),
             notes=(
                 Note(
                     phrase(
@@ -176,7 +176,7 @@ def _without_state(seen: Observation, robot: RobotSeen, joints: Sequence[Joint])
     if not senders:
         yield Diagnostic(
             "DOC401",
-            phrase("nobody publishes joint states, so there is no transform of {frames}", frames=_frames(frames)),
+            phrase("no node publishes joint states, so there is no transform of {frames}", frames=_frames(frames)),
             notes=(Note(phrase("joints of the robot that move: {names}", names=listed(names))),),
             hint=phrase("start joint_state_publisher, joint_state_publisher_gui, or the robot's driver"),
         )
@@ -227,7 +227,7 @@ def _not_followed(seen: Observation, robot: RobotSeen, joints: Sequence[Joint]) 
     )
     if not heard:
         hint = phrase(
-            "nobody subscribes to {topics}: remap robot_state_publisher's joint_states to it", topics=listed(topics)
+            "no node subscribes to {topics}: remap robot_state_publisher's joint_states to it", topics=listed(topics)
         )
     else:
         hint = phrase(
@@ -256,7 +256,7 @@ def _trees(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnosti
     roots = sorted({transform.parent for transform in seen.transforms} - children)
     if len(roots) < 2:
         return
-    # A robot's own missing transforms were told above; they need no second finding.
+    # A robot's own missing transforms were reported above; they need no second finding.
     broken = {robot.frame(joint.child) for robot in robots for joint in robot.joints} - children
     apart = [root for root in roots if root not in broken]
     if len(apart) < 2:

@@ -12,7 +12,7 @@ _RULE = "-" * 60
 
 
 def greeting(host: str) -> str:
-    """What a computer says; that of ros2doctor is understood, and understands this."""
+    """Return the greeting of a computer, which ros2doctor understands."""
     return f"{_GREETING}{host}"
 
 
@@ -24,14 +24,14 @@ def host_of(text: str) -> str:
 
 @dataclass
 class Greetings:
-    """What was sent and heard since the table was printed last.
+    """The greetings sent and received since the table was last printed.
 
     Attributes:
         own: the name of this computer, whose own greetings do not count.
-        published: how many went out over the topic.
-        sent: how many went out by multicast.
-        subscribed: how many came over the topic, by computer.
-        received: how many came by multicast, by computer.
+        published: the number of messages published on the topic.
+        sent: the number of multicast packets sent.
+        subscribed: the number of messages received on the topic, by computer.
+        received: the number of multicast packets received, by computer.
     """
 
     own: str

@@ -11,7 +11,7 @@ from linkwright.graph.names.rules import join
 
 TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 UNKNOWN_NODE = "an unknown node"
-"""The name of who sent something, where discovery does not tell."""
+"""The name of a sender that discovery does not report."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,9 +68,9 @@ class StampSeen:
     """The stamps of one node on one topic.
 
     Attributes:
-        topic: where they came.
-        sender: full name of the node that published it.
-        behind_ns: how far the last stamp lay behind the clock when it came; negative when ahead.
+        topic: the topic.
+        sender: the full name of the publishing node.
+        behind_ns: how far the last stamp was behind the clock on arrival; negative when ahead.
         zero: whether the stamp was 0, that is, never set.
     """
 
@@ -128,8 +128,8 @@ class FixedFrame:
     """The fixed frame of a viewer.
 
     Attributes:
-        name: of the frame.
-        source: who says so: a file, or a node.
+        name: the name of the frame.
+        source: the file or node that sets it.
     """
 
     name: str
@@ -138,24 +138,24 @@ class FixedFrame:
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """Everything that was observed.
+    """All observations of a graph.
 
     Attributes:
-        seconds: for how long was looked.
-        nodes: full names, each as often as there are nodes of it.
+        seconds: the duration.
+        nodes: full names, each as often as there are nodes with it.
         endpoints: publishers, subscriptions, services and clients.
-        transforms: what was published of frames.
-        joints: what was published of joints.
+        transforms: the transforms published.
+        joints: the joint states published.
         descriptions: the robot descriptions published.
-        stamps: of topics whose messages have a header.
-        frames: those that messages are in, of topics whose messages have a header.
+        stamps: the stamps of topics whose messages have a header.
+        frames: the frames of messages, for topics whose messages have a header.
         disputed: topics with several drivers at once.
-        clock: what ``/clock`` told; None when it told nothing.
+        clock: the observations of ``/clock``; None if it has no messages.
         sim_time: ``use_sim_time`` of the nodes that answered, by full name.
         lifecycle: states of the managed nodes, by full name.
-        fixed_frames: those that viewers go by.
-        environment: the variables that say who sees whom.
-        over_zenoh: whether it was looked for over Zenoh, where no QoS keeps endpoints apart, and not over DDS.
+        fixed_frames: the Fixed Frames of viewers.
+        environment: the environment variables that decide about discovery.
+        over_zenoh: whether the graph was observed over Zenoh, where no QoS keeps endpoints apart, and not over DDS.
     """
 
     seconds: float = 0.0

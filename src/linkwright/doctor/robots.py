@@ -20,9 +20,9 @@ class RobotSeen:
 
     Attributes:
         topic: the topic.
-        sender: full name of the node that published the description.
+        sender: the full name of the node that published the description.
         model: the description, read.
-        prefix: what stands before the links' names in the frames' (``frame_prefix``).
+        prefix: the prefix of frame names before the links' names (``frame_prefix``).
     """
 
     topic: str
@@ -75,7 +75,7 @@ def robots_in(seen: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
             Diagnostic(
                 "DOC501",
                 phrase(
-                    "the description that '{sender}' publishes on '{topic}' is no URDF: {first}",
+                    "the description that '{sender}' publishes on '{topic}' is not URDF: {first}",
                     sender=description.sender,
                     topic=description.topic,
                     first=foreign(first),
@@ -119,7 +119,7 @@ def _several_descriptions(seen: Observation) -> Iterator[Diagnostic]:
             severity=Severity.ERROR if differ else Severity.WARNING,
             notes=(
                 Note(
-                    phrase("the descriptions differ; who listens shows the last one")
+                    phrase("the descriptions differ; subscribers use the last one")
                     if differ
                     else phrase("they are the same")
                 ),

@@ -12,12 +12,12 @@ from linkwright.graph.qos.compatibility import incompatible_policies
 from linkwright.graph.qos.profile import QoSPolicyKind
 
 _COMMAND = "cmd_vel"
-"""The last part of the names of topics that velocities are commanded on; others may be for nobody yet."""
+"""The last part of the names of topics for velocity commands; other topics may well lack a subscriber."""
 _VELOCITIES = (TWIST, TWIST_STAMPED)
 _EVERYWHERE = frozenset({"/parameter_events", "/rosout", "/clock"})
-"""Topics that nodes subscribe to whether or not somebody publishes them."""
+"""Topics that nodes subscribe to whether or not a node publishes them."""
 _MOST_DIFFERENT = 3
-"""The greatest difference in length of two names of which one is misspelt."""
+"""The greatest difference in length between a name and its misspelling."""
 
 
 def examine_topics(seen: Observation) -> Iterator[Diagnostic]:
@@ -81,7 +81,7 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _without_takers_of_all(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
-    """The endpoints of a topic by type, without nodes that subscribe to all that is published; none if all do."""
+    """Return a topic's endpoints by type, without nodes that subscribe to all published types; none if all do."""
     every = [endpoint for endpoints in types.values() for endpoint in endpoints]
     published = {endpoint.type_name for endpoint in every if endpoint.kind is EndpointKind.PUBLISHER}
     heard: dict[str, set[str]] = {}
@@ -195,7 +195,7 @@ def _misnamed(seen: Observation) -> Iterator[tuple[str, str, list[EndpointInfo],
             wanting.setdefault((endpoint.name, endpoint.type_name), []).append(endpoint)
     heard = {endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)}
     for (topic, type_name), endpoints in sorted(wanting.items()):
-        # What somebody hears already is probably meant for them, and a node does not mean to hear itself.
+        # A topic that has a subscriber is probably meant for it, and a node does not mean to hear itself.
         takers = set(nodes_of(endpoints))
         unheard = [
             name
@@ -213,7 +213,7 @@ def _unpublished(seen: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC204",
             phrase(
-                "nobody publishes topic '{topic}', which {nodes_of} subscribes to, but '{like}' is published",
+                "no node publishes topic '{topic}', which {nodes_of} subscribes to, but '{like}' is published",
                 topic=topic,
                 nodes_of=listed(nodes_of(endpoints)),
                 like=like,
@@ -236,7 +236,7 @@ def _unpublished(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
-    """Findings on velocities that nobody receives."""
+    """Yield findings on velocity commands that no node receives."""
     heard = {endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)}
     told = {like for _, _, _, like in _misnamed(seen)}
     taking = {
@@ -261,7 +261,7 @@ def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC207",
             phrase(
-                "{nodes_of} publishes velocities on '{topic}', and nobody subscribes to it, so nothing moves",
+                "{nodes_of} publishes velocities on '{topic}', but no node subscribes to it, so nothing moves",
                 nodes_of=listed(nodes_of(publishers)),
                 topic=topic,
             ),
@@ -320,7 +320,7 @@ def _unserved(seen: Observation) -> Iterator[Diagnostic]:
         near = [each for each in same_type if each.rpartition("/")[2] == last] or nearest(name, same_type)
         yield Diagnostic(
             "DOC206",
-            phrase("nobody serves '{name}', which {callers} calls", name=name, callers=callers),
+            phrase("no node provides '{name}', which {callers} calls", name=name, callers=callers),
             severity=Severity.WARNING,
             notes=(Note(phrase("it is of type {type_name}", type_name=type_name)),),
             hint=phrase(

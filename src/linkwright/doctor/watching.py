@@ -59,7 +59,7 @@ _ENVIRONMENT = (
 _ANSWER_WITHIN = 1.0
 """Seconds for a node to answer what is asked of it; one that hangs is passed over."""
 _NAMED_WITHIN = 1.0
-"""Seconds for a process to tell whose its endpoints are; those of no ROS node never are anybody's."""
+"""Seconds for a process to announce the nodes of its endpoints; those of other programs never have one."""
 _FIXED_FRAME = "fixed_frame"
 _LOOK_AGAIN = 0.01
 _TRANSFORMS_WITHIN = 5.0
@@ -87,11 +87,11 @@ async def observe(
     """Observe a graph.
 
     Args:
-        graph: joined with what runs outside; on the running event loop.
-        node: of this graph; its own part in it is left out of what is seen.
-        seconds: for how long to look.
-        fixed_frames: what is known of viewers, beside those that tell their Fixed Frame in a parameter.
-        environment: this process's when left out.
+        graph: the graph, joined with other processes; on the running event loop.
+        node: the observing node of this graph, which the observation leaves out.
+        seconds: the duration.
+        fixed_frames: the Fixed Frames of viewers that do not have them in a parameter.
+        environment: the environment variables; those of this process by default.
     """
     watcher = _Watcher(graph, node)
     end = time.monotonic() + seconds
@@ -143,7 +143,7 @@ class _Watcher:
         self.clock: ClockSeen | None = None
 
     def nodes(self) -> list[str]:
-        """Full names of the nodes but for the watcher's own and other tools' hidden ones."""
+        """Return the full names of the nodes, except the watcher's own and other tools' hidden ones."""
         names = (join(identity.namespace, identity.name) for identity in self._graph.identities())
         return sorted(name for name in names if not _is_tool(name) and name != self._own)
 
@@ -156,9 +156,9 @@ class _Watcher:
         ]
 
     async def until_named(self) -> None:
-        """Wait until the node of every endpoint is known: of a new one it is discovered a moment later.
+        """Wait until the node of every endpoint is known, which is discovered a moment after the endpoint.
 
-        Another command's endpoints would be taken for a part of what runs until then.
+        Until then another command's endpoints would count as a part of the graph.
         """
         end = time.monotonic() + _NAMED_WITHIN
         while time.monotonic() < end:
@@ -167,7 +167,7 @@ class _Watcher:
             await asyncio.sleep(_LOOK_AGAIN)
 
     def waits_for_transforms(self) -> bool:
-        """Whether transforms are published of which none came: on a busy machine the first take seconds."""
+        """Return whether published transforms have not arrived yet: on a busy machine the first take seconds."""
         heard = {topic for senders, _, _ in self._transforms.values() for topic in senders}
         return not self._awaited <= heard
 

@@ -46,7 +46,7 @@ class Bounds(NamedTuple):
         return x, y, z
 
     def distance(self, point: Vector3) -> float:
-        """How far a point lies outside, in m; 0 inside."""
+        """Return the distance of a point from the box, in m; 0 inside."""
         return self.gap(Bounds(point, point))
 
     def moved(self, frame: Placement) -> Bounds:
@@ -72,7 +72,7 @@ def bounds_of(shape: SimpleShape) -> Bounds:
 
 
 def union(boxes: Iterable[Bounds]) -> Bounds | None:
-    """The box around several; None without any."""
+    """Return the box around several boxes, or None if there are none."""
     listed = list(boxes)
     if len(listed) < 2:
         return listed[0] if listed else None

@@ -1,6 +1,6 @@
-"""Reading the scene of usual COLLADA files: importing trimesh takes longer than reading most.
+"""Reading the scene of usual COLLADA files: importing trimesh takes longer than reading most files.
 
-What stands in the tree is read here, and numbers by arrays (`collada`) or, for small files, by plain Python
+This module reads the tree; numbers are read with arrays (`collada`) or, for small files, in plain Python
 (`collada_lists`).
 """
 

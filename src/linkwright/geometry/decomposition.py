@@ -15,9 +15,9 @@ THICKNESS = 0.02
 _NEARLY_CONVEX = 0.95
 """A closed surface that fills so much of its hull is taken for its hull."""
 _ONE_PLANE = 1e-4
-"""Two triangles lie in one plane when the cosine between their normals is no further from 1."""
+"""Two triangles are coplanar if the cosine between their normals differs from 1 by at most this."""
 _MOST_CORNERS = 2000
-"""The hull of more corners is not looked at: it is no box and no wall."""
+"""A hull with more corners is not examined: it is neither a box nor a wall."""
 
 
 def convex_pieces(vertices: Array, faces: Faces, most: int) -> list[Array]:
@@ -59,7 +59,7 @@ def convex_pieces(vertices: Array, faces: Faces, most: int) -> list[Array]:
 
 
 def thickened(corners: Array) -> Array:
-    """Corners with those of the same surface a little behind it, where they lie in one plane or nearly so."""
+    """Return corners, thickened by copies a little behind the surface if they are nearly coplanar."""
     middle = corners.mean(axis=0)
     _, sizes, axes = np.linalg.svd(corners - middle, full_matrices=False)
     extent = np.ptp((corners - middle) @ axes[2]) if len(corners) > 2 and len(sizes) > 2 else 0.0
@@ -127,7 +127,7 @@ def _plate(corners: Array, normal: Array) -> Array:
 
 
 def _flat_groups(faces: Faces, normals: Array) -> list[NDArray[np.int64]]:
-    """Triangles that share edges and lie in one plane, as indices."""
+    """Return groups of coplanar triangles that share edges, as indices."""
     edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     owner = np.repeat(np.arange(len(faces)), 3)
     order = np.lexsort((edges[:, 1], edges[:, 0]))

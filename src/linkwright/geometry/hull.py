@@ -15,20 +15,20 @@ from linkwright.geometry.arrays import Array
 from linkwright.geometry.polyhedron import Faces
 
 _NEAR = 1e-9
-"""Points nearer to a face than this part of the whole size lie on it."""
+"""Points nearer to a face than this part of the whole size are on it."""
 
 Indices = NDArray[np.int64]
 Triangle = tuple[int, int, int]
 
 
 def convex_hull(points: Array) -> Faces | None:
-    """The triangles of the convex hull, turning outwards.
+    """Return the triangles of the convex hull, facing outwards.
 
     Args:
         points: shape (points, 3).
 
     Returns:
-        Indices into the points, shape (faces, 3); None when the points lie in a plane and there is no volume.
+        Indices into the points, shape (faces, 3); None if the points are coplanar and there is no volume.
     """
     if len(points) < 4:
         return None
@@ -40,11 +40,11 @@ def convex_hull(points: Array) -> Faces | None:
 
 
 class _Hull:
-    """A hull on its way from the first tetrahedron to the last face.
+    """A hull under construction, from the first tetrahedron to the last face.
 
     Attributes:
-        edges: start and end of each directed edge -> the face it belongs to. The edge the other way is a neighbour's.
-        outside: face -> the points that lie outside it, each with one face only.
+        edges: start and end of each directed edge -> its face. The edge in the other direction is a neighbour's.
+        outside: face -> the points outside it, each with one face only.
     """
 
     def __init__(self, points: Array, start: tuple[int, int, int, int], near: float) -> None:
@@ -133,7 +133,7 @@ def _edges(triangle: Triangle) -> Iterable[tuple[int, int]]:
 
 
 def _tetrahedron(points: Array, near: float) -> tuple[int, int, int, int] | None:
-    """Four points far apart, the fourth below the plane of the others; None when all lie in a plane."""
+    """Return four points far apart, the fourth below the plane of the others, or None if all points are coplanar."""
     axis = int(np.ptp(points, axis=0).argmax())
     a, b = int(points[:, axis].argmin()), int(points[:, axis].argmax())
     along = (points[b] - points[a]) / np.linalg.norm(points[b] - points[a])

@@ -1,7 +1,7 @@
-"""Diagnosing mesh files that their parser refuses: which line, element or number is wrong.
+"""Diagnose mesh files that their parser refuses: name the line, element or number that is wrong.
 
-The parser says it in words of its own, or of Python. This looks only into files that it could not read, for the
-faults that files have: cut short, not what their ending says, numbers that are none, names of what is not there.
+The parser's own messages are those of its code, or of Python. This module examines only files that the parser could
+not read, for common faults: a truncated file, another format than the extension, malformed numbers, missing references.
 """
 
 from __future__ import annotations
@@ -154,7 +154,7 @@ def _element_faults(element: Element, known: set[str]) -> Iterator[Phrase]:
             if "offset" not in each.attributes:
                 yield _of(each, phrase("<{tag}> has no attribute '{name}'", tag="input", name="offset"))
     if element.tag == "float_array" or element.tag in _NUMBERS_OF:
-        yield from _list_faults(element, _is_number, phrase("finite number"))
+        yield from _list_faults(element, _is_number, phrase("a finite number"))
         count = element.attributes.get("count") if element.tag == "float_array" else str(_NUMBERS_OF[element.tag])
         there = len(element.text().split())
         if count != str(there):
@@ -166,7 +166,7 @@ def _element_faults(element: Element, known: set[str]) -> Iterator[Phrase]:
             )
             yield _of(element, message)
     elif element.tag in ("p", "vcount"):
-        yield from _list_faults(element, str.isdecimal, phrase("index"))
+        yield from _list_faults(element, str.isdecimal, phrase("an index"))
 
 
 def _index_faults(mesh: Element) -> Iterator[Phrase]:
@@ -185,7 +185,7 @@ def _index_faults(mesh: Element) -> Iterator[Phrase]:
 def _list_faults(element: Element, is_good: Callable[[str], bool], what: Phrase) -> Iterator[Phrase]:
     for word in element.text().split():
         if not is_good(word):
-            message = phrase("'{word}' in <{tag}> is no {what}", word=word, tag=element.tag, what=what)
+            message = phrase("'{word}' in <{tag}> is not {what}", word=word, tag=element.tag, what=what)
             yield _of(element, message)
 
 

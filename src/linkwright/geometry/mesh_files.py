@@ -28,17 +28,17 @@ from linkwright.xmltree.tinyxml import parse_as_tinyxml
 MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
 """The formats that are read, as RViz and Gazebo read them."""
 _FACE_LINES = {".stl": b"facet normal", ".obj": b"\nf "}
-"""The beginning of a line that stands once for each triangle, or polygon, in files of text."""
+"""The beginning of the line that occurs once for each triangle, or polygon, in text files."""
 
 
 class PlacedMesh(NamedTuple):
-    """One mesh of a file at one of its places.
+    """One instance of a mesh of a file.
 
     Attributes:
-        mesh: the `trimesh.Trimesh`, or the `PlainMesh` that stands for one; it has triangles.
+        mesh: the `trimesh.Trimesh`, or a `PlainMesh` instead; it has triangles.
         matrix: its frame in that of the file, homogeneous, in the file's unit; shape (4, 4).
-        unit: metres for each unit of the file.
-        names: what the file calls the mesh and the place.
+        unit: metres per unit of the file.
+        names: the names of the mesh and of the instance in the file.
     """
 
     mesh: Any
@@ -66,20 +66,20 @@ class BadMeshError(Exception):
 
 
 def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: Any) -> list[PlacedMesh]:
-    """The triangle meshes of an STL, COLLADA, OBJ or glTF file; lines and points are left out.
+    """Return the triangle meshes of an STL, COLLADA, OBJ or glTF file, without lines and points.
 
-    STL and OBJ say nothing of their unit; URDF takes their numbers as metres. The unit of COLLADA is told, its up axis
-    is not applied, as in RViz.
+    STL and OBJ have no unit; URDF takes their numbers as metres. The unit of COLLADA is returned, its up axis is not
+    applied, as in RViz.
 
     Args:
         data: the file.
-        kind: its ending, without the dot.
-        is_plain: whether nothing but triangles is wanted: no colours, no normals, no names. Then most files are read
-            without trimesh, whose import takes longer.
-        options: for `trimesh.load_scene`.
+        kind: its extension, without the dot.
+        is_plain: whether to read only triangles: no colours, no normals, no names. Then most files are read without
+            trimesh, whose import takes longer.
+        options: options of `trimesh.load_scene`.
 
     Raises:
-        BadMeshError: it cannot be read, has no triangles, or numbers that are none.
+        BadMeshError: it cannot be read, has no triangles, or has malformed numbers.
         ModuleNotFoundError: a library for the format is not installed.
     """
     try:
@@ -144,7 +144,7 @@ def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
 
     logger = logging.getLogger("trimesh")
     if not logger.handlers:
-        logger.addHandler(logging.NullHandler())  # what it warns of is no concern of the user
+        logger.addHandler(logging.NullHandler())  # its warnings do not concern the user
     scene: Any = _collada_scene(data, **options) if kind == "dae" else _scene(data, kind, **options)
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
@@ -162,10 +162,10 @@ def _scene(data: bytes, kind: str, **options: Any) -> Any:
 
 
 def _collada_scene(data: bytes, **options: Any) -> Any:
-    """The scene of a COLLADA file; what refers to a material that cannot be read comes without one.
+    """Return the scene of a COLLADA file; geometry with a material that cannot be read comes without a material.
 
-    pycollada can pass over what is broken, and passes over the geometry that wears it, too. So it is asked to be strict
-    first, and a file that it refuses is read again without those references.
+    pycollada can skip broken materials, but also skips the geometry that uses them. So it reads strictly first, and a
+    file that it refuses is read again without those references.
     """
     from collada.common import DaeError  # type: ignore[import-untyped]  # pycollada has no types
 
@@ -210,7 +210,7 @@ def _without_broken_materials(data: bytes) -> bytes:
 def said_by_parser(error: Exception) -> Phrase:
     """The first line of a parser's error, where nothing better is known."""
     if isinstance(error, FileNotFoundError):
-        return phrase("the file '{name}' that it names is not there", name=str(error.filename or error))
+        return phrase("the file '{name}' that it references does not exist", name=str(error.filename or error))
     lines = str(error).strip().splitlines()
     return phrase("its parser says: {said}", said=foreign(lines[0] if lines else type(error).__name__))
 

@@ -21,11 +21,11 @@ class Triangles:
     """A surface.
 
     Attributes:
-        positions: shape (N, 3), metres.
-        indices: three of each triangle, counterclockwise from outside; flat.
+        positions: the corners in m, shape (N, 3).
+        indices: three per triangle, counterclockwise from outside; flat.
         normals: shape (N, 3), or None for flat triangles.
-        coordinates: of a texture, shape (N, 2), from its upper left corner; None without.
-        colors: red, green, blue and alpha of each corner, 0 to 1, shape (N, 4); None without.
+        coordinates: texture coordinates from its upper left corner, shape (N, 2), or None.
+        colors: red, green, blue and alpha of each corner, 0 to 1, shape (N, 4), or None.
     """
 
     positions: Array
@@ -36,7 +36,7 @@ class Triangles:
 
 
 UNCOLOURED = 0.6
-"""The grey of a mesh that says nothing of its colour."""
+"""The grey of a mesh without a colour."""
 
 _UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 """glTF's y up turned to z up."""
@@ -92,7 +92,7 @@ def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
         raise missing_extra("INR104", error) from None
     except BadMeshError:
         raise
-    except Exception as error:  # noqa: BLE001 - of a foreign picture or material anything may come
+    except Exception as error:  # noqa: BLE001 - a foreign image or material may raise anything
         raise BadMeshError(said_by_parser(error)) from None
 
 

@@ -67,9 +67,9 @@ class TriangleMesh:
 
     @cached_property
     def solid(self) -> MassProperties:
-        """Mass properties for a density of 1 kg/m3: of the mesh if it is watertight, else of its convex hull.
+        """Return mass properties for a density of 1 kg/m3: of the mesh if it is watertight, else of its convex hull.
 
-        Without mass when all triangles lie in one plane.
+        The mass is 0 if all triangles are coplanar.
         """
         vertices, faces = self._merged
         if self.is_watertight:
@@ -94,14 +94,13 @@ class TriangleMesh:
 
 
 def read_mesh(path: Path) -> TriangleMesh:
-    """The triangles of an STL, COLLADA, OBJ or glTF file.
+    """Return the triangles of an STL, COLLADA, OBJ or glTF file.
 
-    STL and OBJ say nothing of their unit; URDF takes their numbers as metres. The unit of COLLADA is applied, its up
-    axis is not, as in RViz. Materials and textures are not read, and of other files only
-    what a glTF keeps beside itself.
+    STL and OBJ have no unit; URDF takes their numbers as metres. The unit of COLLADA is applied, its up axis is not, as
+    in RViz. Materials and textures are not read, and of other files only the buffers of a glTF.
 
     Raises:
-        LinkwrightError: INR101 there is no such file, INR102 its ending is not known, INR103 it cannot be read,
+        LinkwrightError: INR101 there is no such file, INR102 its extension is not known, INR103 it cannot be read,
             INR104 trimesh is not installed.
     """
     kind = path.suffix.lower()
@@ -113,7 +112,7 @@ def read_mesh(path: Path) -> TriangleMesh:
     try:
         facts = path.stat()
         if not stat.S_ISREG(facts.st_mode):
-            raise unreadable(path, phrase("it is no regular file"))
+            raise unreadable(path, phrase("it is not a regular file"))
         if facts.st_size > LARGEST_FILE:
             raise unreadable(path, phrase("it is larger than {largest_file} MiB", largest_file=LARGEST_FILE >> 20))
         data = path.read_bytes()

@@ -1,7 +1,7 @@
-"""The outlines of mesh files: what checks of descriptions ask of a mesh. Those of small files need no numpy.
+"""The outlines of mesh files, for checks of descriptions. Those of small files need no numpy.
 
-Importing numpy takes longer than the rest of a check of a robot with a small mesh. What is large or out of the
-ordinary is left to `linkwright.geometry.meshes`, which works out the same by arrays.
+Importing numpy takes longer than the rest of a check of a robot with a small mesh. Large or unusual files are left to
+`linkwright.geometry.meshes`, which computes the same with arrays.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ CORNERS = (8, 9, 10, 12, 13, 14, 16, 17, 18)
 """The places of the numbers of its corners among them."""
 
 COLLADA_PADDING = b" \t\r\n\0"
-"""What exporters leave around the XML of a COLLADA file, and other readers pass over."""
+"""The bytes that exporters leave around the XML of a COLLADA file, and that other readers skip."""
 _MOST_TRIANGLES = 20_000
 """A small COLLADA file may place its meshes any number of times."""
 
@@ -37,7 +37,7 @@ _Triangle = tuple[int, int, int]
 
 
 class Outline(Protocol):
-    """What checks ask of a mesh."""
+    """The properties of a mesh that checks use."""
 
     @property
     def bounds(self) -> Bounds:
@@ -111,17 +111,17 @@ class SmallMesh:
 
 
 def read_small(data: bytes, kind: str) -> SmallMesh | None:
-    """The triangles of a usual STL, OBJ or COLLADA file; None for any other.
+    """Return the triangles of a usual STL, OBJ or COLLADA file, or None for any other.
 
     Args:
         data: the file.
-        kind: its ending, without the dot.
+        kind: its extension, without the dot.
     """
     try:
         if kind == "stl":
             return _binary_stl(data) or _text_stl(data)
         return _obj(data) if kind == "obj" else _collada(data) if kind == "dae" else None
-    except ValueError:  # what stands for a number is none, or a name no UTF-8
+    except ValueError:  # a malformed number, or a name that is not UTF-8
         return None
 
 
@@ -155,7 +155,7 @@ def _of_corners(numbers: list[float]) -> SmallMesh | None:
 
 def _obj(data: bytes) -> SmallMesh | None:
     if b"\\" in data:
-        return None  # a line may go on in the next one
+        return None  # a line may continue on the next one
     lines = data.splitlines()
     rows = [line[2:].split() for line in lines if line.startswith(b"v ")]
     polygons = [line[2:].split() for line in lines if line.startswith(b"f ")]

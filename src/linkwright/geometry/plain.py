@@ -37,7 +37,7 @@ def numbers(text: str | None, kind: type[Any]) -> Any:
         Unusual: there is anything else in it, or a number that is not finite.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("error", DeprecationWarning)  # what numpy says of words that are no numbers
+        warnings.simplefilter("error", DeprecationWarning)  # numpy's warning about words that are not numbers
         try:
             found = np.fromstring((text or "").strip(), dtype=kind, sep=" ")
         except (DeprecationWarning, ValueError):

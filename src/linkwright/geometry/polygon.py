@@ -43,7 +43,7 @@ def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
 
 
 def within_polygon(points: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which points lie in a polygon, by the number of its edges that a ray crosses (even-odd rule).
+    """Return which points are inside a polygon, by the number of its edges that a ray crosses (even-odd rule).
 
     Args:
         points: of shape (..., 2).

@@ -74,7 +74,7 @@ def rpy_from_quaternion(quaternion: Quaternion) -> Vector3:
 
 
 def normalized(x: float, y: float, z: float, w: float, *, least: float = 0.0) -> Quaternion:
-    """A quaternion with length 1; one whose squared length is 0, or less than `least`, stands for no rotation."""
+    """Return a quaternion with length 1: the identity if the squared length is 0, or less than `least`."""
     squared = x * x + y * y + z * z + w * w
     if squared == 0.0 or squared < least:
         return 0.0, 0.0, 0.0, 1.0

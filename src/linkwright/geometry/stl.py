@@ -50,7 +50,7 @@ def _text(data: bytes) -> PlainMesh | None:
         return None
     try:
         return _mesh(facets[:, list(CORNERS)].astype(np.float64), name.strip().decode())
-    except ValueError:  # what stands for a number is none, or the name no UTF-8
+    except ValueError:  # a malformed number, or a name that is not UTF-8
         return None
 
 

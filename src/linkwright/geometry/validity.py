@@ -88,7 +88,7 @@ def is_positive_definite(tensor: Array | Matrix) -> bool:
 
 
 def is_indefinite(tensor: Array | Matrix, rounding: float = 0.0) -> bool:
-    """Return whether a principal moment is negative by more than what rounding can have made of zero.
+    """Return whether a principal moment is negative by more than rounding of a zero can explain.
 
     Args:
         tensor: in kg m2; shape (3, 3).

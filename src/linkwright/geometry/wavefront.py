@@ -10,13 +10,13 @@ from linkwright.geometry.polyhedron import Faces
 from linkwright.lean_patterns import lazy_pattern
 
 _OF_TEXTURES = lazy_pattern(rb"/\S*")
-"""What stands behind the number of a vertex: those of its texture and its normal."""
+"""The numbers after that of a vertex: those of its texture coordinates and its normal."""
 
 
 def read_obj(data: bytes) -> PlainMesh | None:
     """The triangles of an OBJ file; None for one with anything out of the ordinary, which trimesh is to read."""
     if b"\\" in data:
-        return None  # a line may go on in the next one
+        return None  # a line may continue on the next one
     lines = data.splitlines()
     vertices = [line[2:] for line in lines if line.startswith(b"v ")]
     polygons = [line[2:] for line in lines if line.startswith(b"f ")]

@@ -18,4 +18,4 @@ __getattr__ = deferred(
         "mesh_library": ("MeshLibrary",),
     },
 )
-"""What needs numpy, and the library of meshes, which a check uses alone."""
+"""Names whose modules need numpy, and the library of meshes, which a check uses alone."""

@@ -24,17 +24,17 @@ _NOTHING = 1e-18
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """The estimate of a link, and what was left out of it.
+    """The estimate of a link, and the shapes that it leaves out.
 
     Attributes:
         link: the link's name.
         properties: in the link frame; None when there is no shape with a volume.
-        kind: which shapes were taken; None without any.
-        shapes: how many of them went in.
+        kind: the kind of shapes that it uses; None if there are none.
+        shapes: the number of shapes that it uses.
         basis: where the mass comes from: ``mass`` (asked for), ``density`` (asked for or the default), ``present`` (the
             link's own ``<mass>``).
-        density: the mean density in kg/m3 that results; 0 without properties.
-        notes: what a reader should know: a hull in place of a mesh, a shape left out.
+        density: the resulting mean density in kg/m3; 0 without properties.
+        notes: remarks for the user: a hull in place of a mesh, a shape left out.
     """
 
     link: str

@@ -44,10 +44,10 @@ class MeshLibrary:
         self._outlines: dict[str, SmallMesh | None] = {}
 
     def locate(self, uri: str, element: Element | None = None) -> Path:
-        """The file that a URI means; whether it exists is not asked.
+        """Return the file of a URI, whether or not it exists.
 
         Args:
-            uri: ``package://``, ``file://`` or a path; a relative one starts at the folder of the file it stands in.
+            uri: ``package://``, ``file://`` or a path; a relative one starts at the folder of the file that has it.
             element: the element that it is written in.
 
         Raises:
@@ -128,7 +128,7 @@ _KEPT: Kept[tuple[str, int, int], TriangleMesh] = Kept(_MOST_KEPT, _size_of)
 
 
 def _unchanged(path: Path, real: str) -> TriangleMesh:
-    """The triangles of a file, read before or now; glTF is read anew, since parts of it may lie in other files."""
+    """Return the triangles of a file, read once; glTF is read each time, since parts of it may be in other files."""
     from linkwright.geometry.meshes import read_mesh  # not above: checks of small meshes need no numpy
 
     if path.suffix.lower() in (".glb", ".gltf"):
@@ -146,7 +146,7 @@ def _unchanged(path: Path, real: str) -> TriangleMesh:
 
 
 _SMALL_MESHES: dict[tuple[str, int, int], SmallMesh] = {}
-"""The meshes of files that were read without arrays, by what `_KEPT` has its own by."""
+"""The meshes of files that were read without arrays, with the keys of `_KEPT`."""
 
 
 def _small(real: str, kind: str) -> SmallMesh | None:

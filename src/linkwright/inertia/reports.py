@@ -45,13 +45,13 @@ _BASES = {
 def as_text(
     robot: Robot, estimates: Sequence[Estimate], written: Written | None = None, detailed: Collection[str] = ()
 ) -> str:
-    """A table of the links' mass properties, the worst first, and a verdict on each; in the reader's language.
+    """Return a table of the links' mass properties, the worst first, with verdicts, in the user's language.
 
     Args:
         robot: the robot.
-        estimates: of its links.
-        written: what came of writing; the verdicts are on what was in the file before.
-        detailed: links whose computed ``<inertial>`` follows the table, with where it comes from.
+        estimates: the estimates of its links.
+        written: the result of writing; the verdicts are on the values in the file before it.
+        detailed: links whose computed ``<inertial>`` follows the table, with its origin.
     """
     verdicts = _verdicts(robot, estimates)
     ordered = sorted(estimates, key=lambda estimate: verdicts[estimate.link].place)
@@ -65,7 +65,7 @@ def as_text(
 
 
 def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
-    """The lines of a table with its head; cells stand below each other on the left."""
+    """Yield the lines of a table with its head; cells are aligned to the left."""
     lines = [tuple(map(localized, _HEAD)), *rows]
     widths = [max(map(shown_width, column)) for column in zip(*lines, strict=True)]
     for line in lines:

@@ -53,14 +53,14 @@ def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[
 
 
 def written_element(element: Element | None, tag: str) -> Element:
-    """An element as it stands in its file, before any expansion.
+    """Return an element as it is written in its file, before any expansion.
 
     Args:
-        element: of the expanded description.
-        tag: what it has to be there, too.
+        element: the element of the expanded description.
+        tag: the tag that it must also have in the file.
 
     Raises:
-        NotWritableError: it comes from a macro or an expression, or from no file.
+        NotWritableError: it comes from a macro or an expression, or not from a file.
     """
     if element is None or element.source is None:
         raise NotWritableError(phrase("it is not written in a file"))
@@ -76,10 +76,10 @@ def written_element(element: Element | None, tag: str) -> Element:
 
 
 def written_link(link: Link) -> Element:
-    """The ``<link>`` as it stands in its file, where nothing in its shapes is left to xacro.
+    """Return the ``<link>`` as it is written in its file, if xacro decides nothing in its shapes.
 
     Raises:
-        NotWritableError: as `written_element` does, and where numbers would not follow expressions of its shapes.
+        NotWritableError: as for `written_element`, or its shapes have expressions that new numbers would not follow.
     """
     written = written_element(link.element, "link")
     dynamic = next((child.tag for child in written.elements() if child.tag.startswith("xacro:")), None)

@@ -46,12 +46,12 @@ class Verdict:
     """The verdict on a link's ``<inertial>``.
 
     Attributes:
-        standing: how good it is.
-        words: why, as a clause.
-        badness: by how much it is off; comparable where the standing is the same.
-        present: what the file says, in the link frame; None without, and where its numbers cannot be computed with.
-        density: of the link's shapes with the file's mass, in kg/m3; None where they do not tell.
-        comparison: of the file with the shapes; None where there is nothing to compare.
+        standing: the grade.
+        words: the reason, as a clause.
+        badness: the size of the error; comparable between verdicts of the same standing.
+        present: the values of the file, in the link frame; None if there are none, or none that can be computed with.
+        density: the density of the link's shapes with the file's mass, in kg/m3; None if it is not known.
+        comparison: the comparison of the file with the shapes; None if there is nothing to compare.
     """
 
     standing: Standing
@@ -108,7 +108,7 @@ def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
     if computed is None:
         return Verdict(Standing.UNJUDGED, phrase("there is no shape to compare with"), 0.0, present)
     if not alone:
-        words = phrase("its mass stands for links that are fixed to it, too")
+        words = phrase("its mass includes links that are fixed to it")
         return Verdict(Standing.UNJUDGED, words, 0.0, present, None, comparison)
     return Verdict(Standing.FITS, phrase("fits its shapes"), 0.0, present, density, comparison)
 

@@ -24,8 +24,8 @@ class Written:
     """The result of writing.
 
     Attributes:
-        files: the files that were changed, in the order of their links.
-        links: the links whose ``<inertial>`` stands in one of them now.
+        files: the files that changed, in the order of their links.
+        links: the links whose ``<inertial>`` was written to one of them.
         refused: link -> why it cannot be written, as a clause.
     """
 
@@ -58,10 +58,10 @@ def write_edits(edits_of: Mapping[str, Callable[[], tuple[SourceText, list[Repla
     """Apply edits in several places, to each file once.
 
     Args:
-        edits_of: name -> what to change in which text, as it was read; it may raise `NotWritableError`.
+        edits_of: name -> a function that returns a text as it was read, and its edits; may raise `NotWritableError`.
 
     Returns:
-        What came of it, the names in the place of links.
+        The result, with these names in the place of links.
 
     Raises:
         LinkwrightError: INR201 when a file cannot be written.

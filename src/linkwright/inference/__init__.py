@@ -1,4 +1,4 @@
-"""What a description lacks to be driven in a simulated world: inferring it, with reasons, and adding it."""
+"""Infer the elements that a description lacks to be driven in a simulated world, with reasons, and add them."""
 
 from linkwright.inference.infer import infer
 from linkwright.inference.model import DRIVE_KINDS, Drive, DriveKind, Finding, Inference, Wheel

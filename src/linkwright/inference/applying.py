@@ -1,4 +1,4 @@
-"""A description with what was inferred about it added, in memory."""
+"""Add the inferred elements to a description, in memory."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from linkwright.inference.model import Inference
 from linkwright.xmltree import Document, Element
 
 SINGLE = ("inertial", "axis")
-"""What a link or joint holds once only; a new one stands in place of the old one."""
+"""Elements that a link or joint holds only once; a new one replaces the old one."""
 
 
 def completed(document: Document, inference: Inference) -> Document:
-    """A description with all elements that were inferred, so that a simulator can read it.
+    """Return a description with all inferred elements, so that a simulator can read it.
 
     Args:
-        document: the expanded description that the robot of the inference was read from; it stays as it is.
-        inference: what was inferred about that robot; one about another reading of the same file does not fit.
+        document: the expanded description that the robot of the inference was read from; it is not changed.
+        inference: the inference about that robot; one from another reading of the same file does not fit.
 
     Returns:
-        A document whose new elements have the place in the file of the element that they were added to.
+        A document whose new elements have the source place of the element that they were added to.
     """
     added: dict[int, list[Element]] = {}
     for finding in inference.findings:
@@ -47,7 +47,7 @@ def _grown(element: Element, added: dict[int, list[Element]]) -> Element:
 
 
 def _placed(element: Element, owner: Element) -> Element:
-    """A copy of a new element that says it is written where its owner is, so that findings about it have a place."""
+    """Return a copy of a new element at the source place of its owner, so that findings about it have a place."""
     placed = Element(element.tag, dict(element.attributes), owner.source, owner.offset, owner.origin)
     placed.children = [_placed(child, owner) if isinstance(child, Element) else child for child in element.children]
     return placed

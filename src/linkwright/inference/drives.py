@@ -1,4 +1,4 @@
-"""The kind of drive that wheels tell of. Where they do not, that is said, and which option decides."""
+"""The kind of drive that the wheels of a robot suggest. If they suggest none, a finding names the option to use."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.inference.model import Drive, DriveKind, Wheel
 from linkwright.inference.undercarriage import Survey, Undercarriage
 
 _IN_LINE = 0.06
-"""How far a left wheel may stand before or behind its right one, as a part of the distance between them."""
+"""The greatest offset of a left wheel to the front or rear of its right one, as a part of their distance."""
 
 _ALIKE = 0.05
 """How far the radii of a pair may differ, as a part of the larger."""
@@ -21,12 +21,12 @@ _MUCH_SMALLER = 0.8
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What the wheels tell.
+    """The drive that the wheels suggest.
 
     Attributes:
-        drive: the drive; None where it cannot be told.
-        reason: why it is that one, or why it cannot be told; a clause.
-        extra_casters: the links of wheels that turn out to be casters, seen beside the others.
+        drive: the drive; None if it is unknown.
+        reason: the reason for the drive, or why it is unknown; a clause.
+        extra_casters: the links of wheels that turn out to be casters beside the other wheels.
     """
 
     drive: Drive | None
@@ -40,13 +40,13 @@ Pair = tuple[Wheel, Wheel]
 def judge(
     survey: Survey, under: Undercarriage, wanted: DriveKind | None = None, chosen: Sequence[Wheel] = ()
 ) -> Verdict:
-    """The drive of a robot with wheels.
+    """Return the drive of a robot with wheels.
 
     Args:
         survey: the robot.
-        under: what it stands on.
-        wanted: the kind that the user asks for; None to tell it from the wheels.
-        chosen: the driven wheels that the user names; none to find them.
+        under: its undercarriage.
+        wanted: the kind that the user asks for; None to infer it from the wheels.
+        chosen: the driven wheels that the user names; empty to find them.
     """
     wheels = tuple(chosen) or under.wheels
     if not chosen and under.crooked and wanted is None:
@@ -89,7 +89,7 @@ def _of_pairs(survey: Survey, fixed: list[Pair], steered: list[Pair], wanted: Dr
 
 
 def _kind_of(survey: Survey, fixed: list[Pair], steered: list[Pair]) -> DriveKind | None:
-    """The kind that pairs of wheels tell of; None where they tell of several or none."""
+    """Return the kind of drive that the wheel pairs suggest; None if they suggest several kinds or none."""
     if steered:
         return "ackermann" if len(steered) == 1 and fixed else None
     if not fixed:
@@ -115,7 +115,7 @@ def _why_none(fixed: list[Pair], steered: list[Pair]) -> Phrase:
 
 
 def _lacking(kind: DriveKind, fixed: list[Pair], steered: list[Pair]) -> Phrase | None:
-    """What a kind of drive lacks; None for nothing."""
+    """Return what a kind of drive lacks, or None if it lacks nothing."""
     if kind == "ackermann" and len(steered) != 1:
         return phrase(
             "it takes one pair of wheels that vertical joints steer, and there are {count}", count=len(steered)
@@ -150,7 +150,7 @@ def _reason(drive: Drive) -> Phrase:
 
 
 def _pairs(wheels: Sequence[Wheel]) -> tuple[list[Pair], list[Wheel]]:
-    """Left and right wheels that stand opposite each other, the foremost pair first; and the wheels left over."""
+    """Return the pairs of opposite left and right wheels, the foremost first, and the remaining wheels."""
     left = sorted((wheel for wheel in wheels if wheel.center[1] > 0.0), key=lambda each: -each.center[0])
     right = [wheel for wheel in wheels if wheel.center[1] <= 0.0]
     pairs: list[Pair] = []

@@ -28,31 +28,31 @@ _SIMULATED = "linkwright.simulated_plugins"
 _SIMULATORS = re.compile(r"gz|gazebo|ign|mujoco|isaac", re.IGNORECASE)
 
 _ACCELERATION = 1.0
-"""What wheels are given to speed up with, in m/s2, so that they do not spin on the spot."""
+"""The greatest acceleration of wheels, in m/s2, so that they do not spin on the spot."""
 
 _FRICTION = "0.0"
-"""That of a caster: a ball that turns about one axis only slides where it would roll."""
+"""The friction of a caster: a ball that turns about only one axis slides where it would roll."""
 
 _GRAVITY = 9.81
 _SPEED = 1.0
-"""What a wheel's motor turns the wheel with against the damping of its joint, in m/s at the rim."""
+"""The rim speed, in m/s, that a wheel's motor reaches against the damping of its joint."""
 _SCRUBBING = 4.0
-"""How many times the torque that makes wheels slip motors have where a robot turns by slipping; measured: with
-less they stall."""
+"""The motor torque of a robot that turns by slipping, as a multiple of the torque at which the wheels slip;
+measured: with less they stall."""
 
 _RATE = "50"
 
 
 def own_drive(robot: Robot) -> Element | None:
-    """The plugin by which a description says itself how it is driven, and which works here."""
+    """Return the plugin with which a description drives the robot itself, if it works here."""
     return next((plugin for plugin in _drives(robot) if _works(plugin)), None)
 
 
 def idle_drive(robot: Robot) -> Element | None:
-    """The plugin or ``<ros2_control>`` by which a description says how it is driven, and which does nothing here.
+    """Return the plugin or ``<ros2_control>`` with which a description drives the robot, if it has no effect here.
 
-    Such are controllers of ROS 1, those whose parameter file is not there, and a ``<ros2_control>`` for a simulator
-    without the plugin that runs it, which is often in a file for launches.
+    Examples are controllers of ROS 1, those whose parameter file does not exist, and a ``<ros2_control>`` for a
+    simulator without the plugin that runs it, which is often in a separate file for launches.
     """
     idle = next((plugin for plugin in _drives(robot) if not _works(plugin)), None)
     if idle is not None:
@@ -121,7 +121,7 @@ def controlled_joints(robot: Robot) -> frozenset[str]:
 
 
 def has_friction(robot: Robot, link: str) -> bool:
-    """Whether a ``<gazebo>`` says how slippery a link is."""
+    """Return whether a ``<gazebo>`` sets the friction of a link."""
     return any(
         extension.tag == "gazebo"
         and extension.attributes.get("reference") == link
@@ -131,7 +131,7 @@ def has_friction(robot: Robot, link: str) -> bool:
 
 
 def slippery(link: str) -> Element:
-    """What makes a caster slide."""
+    """Return the element that makes a caster slide."""
     element = Element("gazebo", {"reference": link})
     element.children += [_with_text("mu1", _FRICTION), _with_text("mu2", _FRICTION)]
     return element
@@ -165,7 +165,7 @@ def joint_states(joints: Sequence[str]) -> Element:
 
 
 def joint_controllers(joints: Iterable[str]) -> Element:
-    """Plugins that hold joints where they are, and move them where they are told to."""
+    """Return plugins that hold the positions of joints and move them on command."""
     return _gazebo(
         *(
             _plugin(

@@ -18,22 +18,20 @@ _MOVING = ("revolute", "continuous", "prismatic")
 _WORLD = "world"
 """The root that simulators do not move."""
 
-_OPTION = phrase(
-    "say which it is with `--drive KIND`, and which joints turn the driven wheels with `--wheels LEFT,RIGHT`"
-)
+_OPTION = phrase("choose the drive with `--drive KIND`, and the joints of the driven wheels with `--wheels LEFT,RIGHT`")
 
 
 def infer(robot: Robot, meshes: MeshLibrary, *, kind: DriveKind | None = None, wheels: Sequence[str] = ()) -> Inference:
-    """What a description lacks to be driven in a simulated world.
+    """Infer the elements that a description lacks to be driven in a simulated world.
 
-    What the description says itself is kept: a link's own collisions and masses, and the plugin or ``<ros2_control>``
-    of a simulator that drives it.
+    Elements of the description take precedence: a link's own collisions and masses, and the simulator plugin or
+    ``<ros2_control>`` that drives the robot.
 
     Args:
-        robot: the robot; its elements are those that the findings point to.
-        meshes: where its meshes come from.
-        kind: the kind of drive, where the user says so; then what the description says of it does not count.
-        wheels: the joints, or the links, of the driven wheels, where the user names them.
+        robot: the robot; the findings point to its elements.
+        meshes: the library of its meshes.
+        kind: the kind of drive that the user chooses, which overrides that of the description.
+        wheels: the joints, or the links, of the driven wheels that the user names.
 
     Raises:
         LinkwrightError: DRIVE210 there is no such wheel, DRIVE211 the wheels do not make a drive of that kind.
@@ -118,15 +116,15 @@ class _Inferring:
         )
 
     def _moved(self, held: tuple[str, ...], mass: float) -> Iterator[Finding]:
-        """What there is to say of the drive, the casters and the joints."""
+        """Yield the findings on the drive, the casters and the joints."""
         root = self._robot.element
         if self._idle is not None:
             message = phrase(
-                "'{what}', by which '{robot}' says how it is driven, has no effect here", **self._named(self._idle)
+                "'{what}', the drive that '{robot}' declares, has no effect here", **self._named(self._idle)
             )
             yield Finding(_at(self._idle, "DRIVE205", message))
         if self._own is not None:
-            message = phrase("'{robot}' says itself how it is driven, by '{what}'", **self._named(self._own))
+            message = phrase("'{robot}' declares its own drive, '{what}'", **self._named(self._own))
             yield Finding(_at(self._own, "DRIVE202", message))
             yield from self._holding(held)
             return
@@ -161,7 +159,8 @@ class _Inferring:
     def _holding(self, held: tuple[str, ...]) -> Iterator[Finding]:
         if held:
             message = phrase(
-                "nothing drives {joints}: each is held in place until it is told to move", joints=quoted_names(held)
+                "nothing drives {joints}: each holds its position until it receives a command",
+                joints=quoted_names(held),
             )
             yield Finding(self._at_root("DRIVE114", message), self._robot.element, (gazebo.joint_controllers(held),))
 
@@ -173,9 +172,7 @@ class _Inferring:
         if not any(joint.type in _MOVING for joint in self._robot.joints.values()):
             message = phrase("no joint of '{robot}' moves: there is nothing to drive", robot=self._robot.name)
             return Finding(self._at_root("DRIVE203", message))
-        message = phrase(
-            "how '{robot}' is driven cannot be told: {why}", robot=self._robot.name, why=self._verdict.reason
-        )
+        message = phrase("the drive of '{robot}' is unknown: {why}", robot=self._robot.name, why=self._verdict.reason)
         return Finding(self._at_root("DRIVE201", message, Severity.WARNING, _OPTION))
 
     def _turned_axes(self, drive: Drive) -> Iterator[Finding]:
@@ -200,7 +197,7 @@ class _Inferring:
             if element is None or gazebo.has_friction(self._robot, name) or self._rolls_freely(name):
                 continue
             message = phrase(
-                "link '{link}' stands on the ground and is not driven: it slides without friction", link=name
+                "link '{link}' touches the ground and is not driven: it slides without friction", link=name
             )
             yield Finding(_at(element, "DRIVE112", message), self._robot.element, (gazebo.slippery(name),))
 
@@ -212,7 +209,7 @@ class _Inferring:
     def _unsupported(self, drive: Drive) -> Iterator[Finding]:
         if drive.kind == "differential" and not self._casters and len(self._under.wheels) == 2:
             message = phrase(
-                "only the two driven wheels of '{robot}' stand on the ground: it tips until something else does",
+                "only the two driven wheels of '{robot}' touch the ground: it tips over until another part does",
                 robot=self._robot.name,
             )
             hint = phrase("add a caster, a ball that reaches the ground before or behind the wheels")
@@ -238,7 +235,7 @@ def _at(
 
 
 def _verdict(survey: Survey, under: Undercarriage, kind: DriveKind | None, chosen: Sequence[Wheel]) -> Verdict:
-    """What is to be driven: wheels, or joints of a robot that stands still."""
+    """Return what is driven: wheels, or the joints of a robot with a fixed base."""
     if kind == "joints":
         return Verdict(Drive("joints"), phrase("its joints are to be moved"))
     if kind is None and not chosen and survey.robot.root == _WORLD:
@@ -304,7 +301,7 @@ def _joint_of(robot: Robot, link: str) -> Joint | None:
 
 
 def _anchor(robot: Robot) -> Iterator[Element]:
-    """What fixes a robot to the world: simulators do not move a root of that name."""
+    """Yield the link and joint that fix a robot to the world: simulators do not move a root link named ``world``."""
     yield Element("link", {"name": _WORLD})
     joint = Element("joint", {"name": f"{_WORLD}_joint", "type": "fixed"})
     joint.children += [Element("parent", {"link": _WORLD}), Element("child", {"link": robot.root})]

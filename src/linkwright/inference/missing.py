@@ -1,7 +1,7 @@
 """The collisions and masses that links lack to be simulated.
 
-What moves as one is looked at as one: a link without a mass may get it from one that is fixed to it. A robot whose
-author gave shapes for contacts to some links is taken to lack none but on what it rolls, and its chassis.
+Links that move as one body count together: a link without a mass may get it from a link that is fixed to it. If the
+author gave collisions to some links, only wheels, casters and the chassis are assumed to lack them.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _HEAVIEST = 1000.0
 """Masses in kg between which an inferred one is kept."""
 
 _FRAME = MassProperties(0.01, np.zeros(3), np.eye(3) * 1e-5)
-"""What a moving body of nothing but frames gets: a ball of 10 g and 5 cm radius."""
+"""The mass properties of a moving body that has only frames: those of a ball of 10 g and 5 cm radius."""
 
 _LARGE_MESH = 20_000
 """A mesh with more corners is replaced by the box around it."""
@@ -126,12 +126,12 @@ def _collision(visual: Shape, link: Link, wheel: Wheel | None, survey: Survey) -
 
 
 def missing_masses(survey: Survey, wheels: Iterable[str], *, fixed_base: bool) -> Iterator[Finding]:
-    """The ``<inertial>`` of links whose body has no mass.
+    """Yield the ``<inertial>`` of links whose body has no mass.
 
     Args:
         survey: the robot.
-        wheels: the links of wheels and casters, which are solid; so are all links of a robot that stands still.
-        fixed_base: whether the root does not move, and so needs no mass.
+        wheels: the links of wheels and casters, which are solid; so are all links of a robot with a fixed base.
+        fixed_base: whether the root does not move, so that it needs no mass.
     """
     solid = set(wheels)
     root = survey.bodies.of(survey.robot.root)

@@ -1,4 +1,4 @@
-"""What is inferred about a robot, each with its reason, and the text that says it in URDF."""
+"""The inferences about a robot, each with its reason and its URDF elements."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.xmltree import Element
 
 DriveKind = Literal["differential", "skid", "ackermann", "mecanum", "joints"]
 """Two driven wheels; four or more that turn by slipping; two steered and two driven; wheels with rollers, which go
-every way; and no wheels: the base stands still and the joints are held where they are told to be."""
+every way; and no wheels: the base does not move, and the joints hold their commanded positions."""
 
 DRIVE_KINDS: tuple[DriveKind, ...] = ("differential", "skid", "ackermann", "mecanum", "joints")
 
@@ -29,7 +29,7 @@ class Wheel:
         axis: the unit vector of its joint in the base frame, as the file has it.
         radius: in m.
         width: in m; None for a ball.
-        steering: the joint above it that steers it or lets it swivel; None without.
+        steering: the joint above it that steers it or lets it swivel; None if there is none.
     """
 
     joint: str
@@ -71,11 +71,11 @@ class Finding:
     """One inference.
 
     Attributes:
-        diagnostic: what is inferred and why, at the place in the user's file that it is about.
-        owner: the element of the description that the new ones come into: a ``<link>``, a ``<joint>`` or the root;
-            None where nothing is to be written.
-        added: the new elements; one of a kind that the owner may hold only once stands in place of the one there.
-        inertial: of a new ``<inertial>``, what it says, in the link frame.
+        diagnostic: the inference and its reason, at the place of its subject in the user's file.
+        owner: the element of the description that gets the new elements: a ``<link>``, a ``<joint>`` or the root; None
+            if nothing is written.
+        added: the new elements; one of a kind that the owner holds only once replaces the existing one.
+        inertial: the values of a new ``<inertial>``, in the link frame.
     """
 
     diagnostic: Diagnostic
@@ -86,18 +86,18 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Inference:
-    """All that is inferred about a robot.
+    """All inferences about a robot.
 
     Attributes:
-        drive: how it is moved; None where its file says so itself, or where that cannot be told.
-        findings: what was inferred and what could not be, in the order of the file for each kind.
-        base_frame: the frame that odometry is told for: ``base_footprint``, ``base_link`` or the root.
+        drive: the inferred drive; None if its file has one, or if it is unknown.
+        findings: the successful and failed inferences, in the order of the file for each kind.
+        base_frame: the child frame of the odometry: ``base_footprint``, ``base_link`` or the root.
         casters: the links that touch the ground and only slide or roll along.
-        held: the joints beside those of the wheels that are held in place and can be moved, in file order.
+        held: the joints, other than those of wheels, that hold their position and can be moved, in file order.
         fixed_base: whether the robot's root is fixed to the world.
-        ground: the z of the ground in the root's frame, in m, with all joints at zero; where it stands by its lowest
-            point. A robot is put into a world at minus this height.
-        masses: link -> mass in kg that it has or gets.
+        ground: the z of the ground in the root's frame, in m, with all joints at zero: that of the lowest point. A
+            robot is placed in a world at minus this height.
+        masses: link -> its mass in kg, own or inferred.
     """
 
     drive: Drive | None
@@ -111,5 +111,5 @@ class Inference:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What there is to say, in order."""
+        """Return the diagnostics of the findings, in order."""
         return tuple(finding.diagnostic for finding in self.findings)

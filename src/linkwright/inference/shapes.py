@@ -1,4 +1,4 @@
-"""What the shapes of links tell: how low they reach, and whether they are round about an axis."""
+"""Properties of the shapes of links: how low they reach, and whether they are round about an axis."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ALONG = cos(radians(5.0))
 """From this cosine on two axes count as parallel: people write 1.57 for a right angle."""
 
 _OFF_AXIS = 0.1
-"""How far the middle of a round shape may lie from its axis, as a part of its radius."""
+"""The greatest distance of the middle of a round shape from its axis, as a part of its radius."""
 
 _ROUND = 0.92
 """A mesh whose least reach in any direction across its axis is this part of the greatest is round: a dodecagon is, a

@@ -1,7 +1,7 @@
-"""What a robot stands and rolls on: wheels, casters, and where the ground is.
+"""The undercarriage of a robot: wheels, casters, and the height of the ground.
 
-All joints are at zero. Places are in the base frame: that of ``base_link``, or of the root where there is none; REP 103
-has x forward in it, y to the left and z up.
+All joints are at zero. Positions are in the base frame: that of ``base_link``, or of the root if there is none. By
+REP 103 x points forward in it, y to the left and z up.
 """
 
 from __future__ import annotations
@@ -30,25 +30,25 @@ _UPRIGHT = 0.94
 """From this cosine on, 20 degrees, an axis counts as vertical, or as pointing to the side."""
 
 _ENDLESS = 1000.0
-"""Limits of a revolute joint further apart than this, in rad, stand for none."""
+"""Limits of a revolute joint further apart than this, in rad, count as no limits."""
 
 _TOUCHING = 0.01
-"""What is within this height of the ground, in m, stands on it once the robot has settled."""
+"""Parts within this height of the ground, in m, touch it once the robot has settled."""
 
 
 @dataclass(frozen=True, slots=True)
 class Undercarriage:
-    """What a robot stands and rolls on.
+    """The undercarriage of a robot.
 
     Attributes:
-        wheels: the wheels that may be driven, by the side or steered, in file order.
-        crooked: wheels that touch the ground and roll neither forward nor are steered.
+        wheels: the wheels that may be driven, at the sides or steered, in file order.
+        crooked: wheels that touch the ground, do not roll forward and are not steered.
         casters: the wheels and balls on joints that only roll along, and the links that slide.
         swivelling: the joints that let casters swivel, and those of their wheels.
         ground: the z of the ground in the base frame, in m; None for a robot without shapes.
-        lowest_link: the link that reaches lowest; empty without shapes.
-        hanging: wheels that do not reach the ground, with how far it is below them, in m.
-        unread: link -> a mesh of it that cannot be read, of those that may be wheels.
+        lowest_link: the lowest link; empty without shapes.
+        hanging: wheels that do not reach the ground, with their height above it, in m.
+        unread: link that may be a wheel -> one of its meshes that cannot be read.
     """
 
     wheels: tuple[Wheel, ...]
@@ -93,7 +93,7 @@ class Survey:
 
     @cached_property
     def rolling(self) -> tuple[Wheel, ...]:
-        """All that is round about the level axis of a joint that turns without end, in file order."""
+        """The links that are round about the level axis of a joint that turns without limits, in file order."""
         return tuple(filter(None, map(self.wheel_on, self.robot.joints.values())))
 
     def wheel_on(self, joint: Joint) -> Wheel | None:
@@ -121,7 +121,7 @@ class Survey:
         return self._frames[link]
 
     def undercarriage(self) -> Undercarriage:
-        """What it stands and rolls on."""
+        """Return the undercarriage of the robot."""
         rolling = self.rolling
         if not self.heights:
             return Undercarriage((), (), (), frozenset(), None, "", (), dict(self._unread))
@@ -145,7 +145,7 @@ class Survey:
         )
 
     def is_mecanum(self, wheels: tuple[Wheel, ...]) -> bool:
-        """Whether names of wheels, of their meshes, macros or files, or of the robot tell of mecanum wheels."""
+        """Return whether names of wheels, of their meshes, macros or files, or of the robot suggest mecanum wheels."""
         return all(_MECANUM.search(" ".join(self._words_about(wheel))) for wheel in wheels) or bool(
             _MECANUM.search(self.robot.name)
         )
@@ -182,7 +182,7 @@ class Survey:
         return None
 
     def _is_caster(self, wheel: Wheel) -> bool:
-        """Whether a wheel only rolls along: it says so, or it swivels without limits and without being steered."""
+        """Return whether a wheel is a caster: by its name, or because it swivels without limits and is not steered."""
         names = f"{wheel.joint} {wheel.link}"
         if _CASTER.search(names):
             return True
@@ -193,7 +193,7 @@ class Survey:
         return bool(_CASTER.search(names)) or (is_endless(above) and not _STEER.search(names))
 
     def _sliding(self, ground: float) -> Iterator[str]:
-        """The links that are fixed to the base, stand on the ground, and so slide there; the chassis is none."""
+        """Yield the links that slide: fixed to the base and touching the ground, except the chassis."""
         for name, height in self.heights.items():
             root = self.bodies.of(self.robot.root)
             if root is not None and name in root.frames and name != self.chassis and height - ground <= _TOUCHING:

@@ -1,4 +1,4 @@
-"""Writing what was inferred into the files that the description is written in; all else in them stays as it is."""
+"""Write inferences into the source files of a description, and leave everything else in them unchanged."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from linkwright.xmltree.patches import Replacement, inserted
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """What came of writing.
+    """The result of writing.
 
     Attributes:
-        files: the files that were changed.
-        count: how many inferences stand in them now.
-        refused: a finding (DRIVE301) for each that does not, with the reason.
+        files: the files that changed.
+        count: the number of inferences written.
+        refused: a finding (DRIVE301) with the reason, for each inference that was not written.
     """
 
     files: tuple[Path, ...]
@@ -39,13 +39,13 @@ class Written:
 
 
 def write_inference(robot: Robot, inference: Inference) -> Written:
-    """Put what was inferred into the files that the robot is written in.
+    """Write an inference into the source files of the robot.
 
-    Into xacro files only where an element is written there as it is: what a macro or an expression makes is refused.
+    In xacro files only literal elements are changed: an element that a macro or an expression makes is refused.
 
     Args:
         robot: read from a file, maybe through xacro.
-        inference: what was inferred about it.
+        inference: the inference about it.
 
     Raises:
         LinkwrightError: INR201 when a file cannot be written.
@@ -62,7 +62,7 @@ def write_inference(robot: Robot, inference: Inference) -> Written:
 
 
 class _Writer:
-    """Finds the edits for what was inferred.
+    """Finds the edits of an inference.
 
     Args:
         robot: read from a file, maybe through xacro.
@@ -77,10 +77,10 @@ class _Writer:
         self._times = Counter(_place(element) for element in elements if element is not None)
 
     def edits(self, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
-        """What to change for the findings of one owner.
+        """Return the text and the edits for the findings of one owner.
 
         Raises:
-            NotWritableError: the owner is not written in a file as it is.
+            NotWritableError: the owner is not a literal element of a file.
         """
         owner = findings[0].owner
         assert owner is not None, "findings without an owner add nothing"

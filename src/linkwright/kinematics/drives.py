@@ -91,7 +91,7 @@ class CarDrive:
     radius: float
 
     def steering_angle(self, forward: float, turning: float) -> float:
-        """The angle of a wheel in the middle of the steered axle in rad; 0 for a robot that stands."""
+        """Return the angle of a wheel in the middle of the steered axle in rad; 0 for a robot at rest."""
         return 0.0 if forward == 0.0 else atan(turning * self.wheelbase / forward)
 
     def steering_angles(self, angle: float) -> tuple[float, float]:
@@ -123,11 +123,11 @@ class CarDrive:
 
 
 def steered_apart(slope: float, track: float) -> tuple[float, float]:
-    """The angles of the left and the right steered wheel in rad with which both roll about one point.
+    """Return the angles in rad at which the left and the right steered wheel roll about one point.
 
     Args:
         slope: the tangent of the angle of a wheel in the middle; to the left positive.
-        track: the way between the wheels over the radius of the circle that the middle of the other axle goes on.
+        track: the distance between the wheels, divided by the radius of the circle of the other axle's middle.
     """
     return atan2(slope, 1.0 - track / 2.0), atan2(slope, 1.0 + track / 2.0)
 

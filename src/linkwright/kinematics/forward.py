@@ -1,8 +1,8 @@
-"""The two ways to compute link frames: one configuration in few steps, many in few passes over memory.
+"""Two ways to compute link frames: one configuration in few steps, many in few passes over memory.
 
-One configuration is all overhead, so the number of array operations counts: frames are composed along paths that double
-in length with each step. For many, memory counts: configurations lie along the last axis, level after level of the tree
-is computed for a block of them that fits in the cache, and results are written once.
+For one configuration overhead dominates, so the number of array operations counts: frames are composed along paths that
+double in length with each step. For many, memory counts: the last axis is that of the configurations, the tree is
+computed level by level for a block of them that fits in the cache, and results are written once.
 """
 
 from __future__ import annotations

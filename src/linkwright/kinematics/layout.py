@@ -1,6 +1,6 @@
 """A robot laid out for computing: its bodies, the constants between them, and which joints mimic others.
 
-Links joined by fixed joints move as one. So only moving joints matter: each carries a body, whose own frame lies in the
+Links joined by fixed joints move as one. So only moving joints matter: each carries a body, whose own frame is at the
 joint with z along the joint's axis. Then a joint turns its body about z or slides it along z, whatever its axis is:
 
     body in root = parent body in root * mount * turn or slide

@@ -122,7 +122,7 @@ class KinematicTree:
         if not len(self.joint_names):
             positions = np.zeros((*positions.shape[:-1], 1))
         followed = positions.take(np.maximum(self._sources, 0), axis=-1)
-        followed[..., self._sources < 0] = 0.0  # followers of a joint that stands still
+        followed[..., self._sources < 0] = 0.0  # followers of a joint that does not move
         followed *= self._factors
         followed += self._offsets
         return followed

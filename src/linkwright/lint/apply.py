@@ -1,4 +1,4 @@
-"""Applying fixes to files: as many as fit together, then again, until nothing is left to mend."""
+"""Apply fixes to files: as many as fit together, then again, until nothing is left to fix."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Mended:
 
     Attributes:
         texts: path -> new text of every file that changes.
-        counts: code -> how many findings were mended.
+        counts: code -> the number of findings that were fixed.
     """
 
     texts: dict[str, str] = field(default_factory=dict)
@@ -41,17 +41,17 @@ class Mended:
 
 
 def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = True) -> Mended:
-    """Mend what can be mended of a description.
+    """Fix what can be fixed in a description.
 
-    Only files of its package are changed, or, where it lies in none, those at and below its folder. A pass applies
-    all fixes that do not overlap; the next one looks at what came of it.
+    Only files of its package are changed or, without a package, those in and below its folder. A pass applies all fixes
+    that do not overlap; the next pass checks the result.
 
     Args:
         path: the description.
-        check: checks it; called with the new text of `path` where nothing is written, else with None.
-        unsafe: whether to apply fixes too that may change what was meant.
-        write: whether to change the files; else the result tells what would change. Then a file that the description
-            includes is looked at once.
+        check: checks it; called with the new text of `path` if nothing is written, else with None.
+        unsafe: whether to apply fixes too that may change the meaning.
+        write: whether to change the files; otherwise only the result has the changes, and an included file is fixed in
+            one pass.
 
     Raises:
         LinkwrightError: LINT201, a file cannot be written.

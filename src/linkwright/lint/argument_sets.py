@@ -34,11 +34,11 @@ UNUSED = "XAC215"
 _NEEDED = "LINT303"
 _MISSING_FILES = frozenset({"XML101", "XAC506"})
 _MOST_TRIED = 12
-"""Of more values that a description compares its arguments with, the others are not tried."""
+"""The most values to try of those that a description compares its arguments with."""
 _ANY_VALUE = "value"
-"""What stands for a value that nobody knows, to see which errors hang on it."""
+"""A substitute for an unknown value, to see which errors depend on it."""
 _FEW = 4
-"""So many arguments are named."""
+"""The number of arguments that messages name."""
 _NO_VALUES = ArgumentSet({})
 
 Key = tuple[str, Span | None, object]
@@ -50,8 +50,8 @@ class _Run:
 
     Attributes:
         given: the values.
-        checked: what came of it.
-        errors: those of the expansion and of the reader.
+        checked: the result.
+        errors: the errors of the expansion and of the reader.
         hanging: those of them that may be due to arguments whose values only the caller knows.
     """
 
@@ -67,7 +67,7 @@ class _Run:
         return frozenset(place for place in places if place[0] in self.errors)
 
     def is_fine(self, common: frozenset[Key]) -> bool:
-        """Whether it has no errors but those that all runs have, none of which what is open may have made."""
+        """Return whether it only has errors that all runs have, and none that may be due to unknown values."""
         return self.errors <= common and not self.hanging
 
 
@@ -77,10 +77,10 @@ class SetCheck:
 
     Args:
         path: the file.
-        finder: where packages are.
-        examine: checks the file with some values, expanded where that is True, or as the file says where it is None.
-        settings: those in force for the file.
-        is_named: whether the user named the file, who then wants to know why it cannot be expanded as it stands.
+        finder: finds packages.
+        examine: checks the file with some values; expands it if the flag is True, or as the file asks if it is None.
+        settings: the settings for the file.
+        is_named: whether the user named the file, so that a failure to expand it without arguments is reported.
     """
 
     path: Path
@@ -92,7 +92,7 @@ class SetCheck:
     _is_expanded: bool = field(default=False, init=False)
 
     def with_configured(self, sets: Sequence[Mapping[str, str]]) -> Checked:
-        """The check with the sets of a configuration, which stand for everything that callers give."""
+        """Return the check with the sets of a configuration, which replace all those of callers."""
         return self._together([self._run(ArgumentSet(values)) for values in sets], ())
 
     def with_callers(self, find_sets: Callable[[], Sequence[ArgumentSet]]) -> Checked:
@@ -143,7 +143,7 @@ class SetCheck:
         return default
 
     def _run(self, given: ArgumentSet) -> _Run:
-        # What was expanded once is expanded with arguments, and nobody need look again whether it is xacro.
+        # A file that was expanded once is expanded with arguments, too, without another test whether it is xacro.
         checked = self.examine(given.values, True if given.values and self._is_expanded else self._xacro)
         self._is_expanded = checked.subject is not None and checked.subject.expansion is not None
         if given.values:  # a caller may give what other descriptions take
@@ -161,7 +161,7 @@ class SetCheck:
         changed = self._changed(run, opened) if opened else frozenset()
         return replace(run, hanging=changed | {place for place in errors if _may_hang_on(place[0])})
 
-    # --- what is told -----------------------------------------------------------------------------------------
+    # --- findings ---------------------------------------------------------------------------------------------
 
     def _together(self, runs: Sequence[_Run], more: Iterable[Diagnostic]) -> Checked:
         """The findings of several runs, each once, and the robot of the first that has one."""
@@ -218,7 +218,7 @@ class SetCheck:
     def _remarked(
         self, default: _Run, runs: Sequence[_Run], common: frozenset[Key], sets: Sequence[ArgumentSet]
     ) -> Checked:
-        """The check with the defaults where callers give values that nobody can tell."""
+        """Return the check with the defaults for callers that give unknown values."""
         names = _opened(sets)
         if not names:
             return self._without_values(default, sets)
@@ -226,7 +226,7 @@ class SetCheck:
         return self._only(default, lambda error: _place(error) in told, names, _when(sets))
 
     def _without_values(self, default: _Run, sets: Sequence[ArgumentSet]) -> Checked:
-        """The check where no caller gives a value that is known: what nobody declares or fills in, somebody gives."""
+        """Return the check for callers without known values: they give the arguments without a declaration or value."""
         asked = [name for diagnostic in default.checked.diagnostics if (name := asked_argument(diagnostic))]
         if asked:
             hanging = self._changed(default, dict.fromkeys(asked, _ANY_VALUE))
@@ -272,7 +272,7 @@ def _sources(checked: Checked) -> Sequence[Document]:
 
 
 def _has_expressions(checked: Checked) -> bool:
-    """Whether a file that is read as it stands has expressions of xacro in it."""
+    """Return whether a file that is read without expansion has xacro expressions."""
     if checked.subject is None or checked.subject.expansion is not None:
         return False
     texts = [document.source.text for document in _sources(checked) if document.source is not None]
@@ -337,7 +337,7 @@ def _condition(run: _Run, runs: Sequence[_Run]) -> Note:
 
 
 def asked_argument(diagnostic: Diagnostic) -> str | None:
-    """The argument that a finding says nothing declares, unless it may be a misspelt one."""
+    """Return the argument that a finding reports as undeclared, unless it may be misspelt."""
     if diagnostic.code != UNDECLARED or as_phrase(diagnostic.hint or "").template.startswith("did you mean"):
         return None
     return str(as_phrase(diagnostic.message).arguments.get("name", ""))

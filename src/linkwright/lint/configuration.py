@@ -1,6 +1,6 @@
 """Settings from files: ``linkwright.toml``, or ``[tool.linkwright]`` in ``pyproject.toml``, found upwards of a file.
 
-What is wrong with a configuration is told with its place, and the rest of it holds all the same.
+Mistakes in a configuration are reported with their place, and the rest of it applies all the same.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _HEADER = lazy_pattern(r"^[ \t]*\[(?!\[)([^\]\n]+)\]", re.MULTILINE)
 _PLACE = lazy_pattern(r"\(at line (\d+), column (\d+)\)")
 _KINDS = {
     bool: phrase("true or false"),
-    int: phrase("a whole number"),
+    int: phrase("an integer"),
     float: phrase("a number"),
     str: phrase("a text"),
     list: phrase("a list of texts"),

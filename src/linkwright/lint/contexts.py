@@ -1,8 +1,8 @@
-"""What checks share at one moment: packages, and what was found in descriptions that come out the same.
+"""Data that checks share at one moment: packages, and results for descriptions with the same expansion.
 
-A description is checked with every set of values that its arguments are given. Most sets read the same files, and many
-give the same robot: an address or a rate is for the driver alone. So rules about files as they are written run once for
-them (`Rule.of_sources`), and all rules once for sets whose expansions are alike.
+A description is checked with every set of values that callers give its arguments. Most sets read the same files, and
+many give the same robot: an address or a rate only matters to the driver. So rules about files as they are written run
+once for them (`Rule.of_sources`), and all rules once for sets with the same expansion.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ class _Done(NamedTuple):
 
 
 class Contexts:
-    """What checks of several files, and of one file with several sets of arguments, share at one moment.
+    """Data that checks of several files, and of one file with several sets of arguments, share at one moment.
 
     Attributes:
-        packages: the packages that were met, by their folders.
+        packages: the packages found so far, by folder.
     """
 
     def __init__(self) -> None:
@@ -41,14 +41,14 @@ class Contexts:
         self._last: OfFile | None = None
 
     def of_file(self, path: Path) -> OfFile:
-        """What checks of a file with one and the same settings share; only that of the last file is kept."""
+        """Return the data that checks of a file with the same settings share; only that of the last file is stored."""
         if self._last is None or self._last.path != path:
             self._last = OfFile(path)
         return self._last
 
 
 class OfFile:
-    """What checks of a file with several sets of arguments share.
+    """Data that checks of a file with several sets of arguments share.
 
     Attributes:
         path: the file.
@@ -73,10 +73,10 @@ class OfFile:
         return known
 
     def done(self, facts: XacroFacts, root: Element, *, is_whole: bool) -> dict[Any, Any]:
-        """What was worked out of a description that is alike, to be added to; nothing where it is the first.
+        """Return the results for a description with the same expansion, to be extended; empty for the first one.
 
         Args:
-            facts: those of its files, as `facts` returns them.
+            facts: the facts of its files, as `facts` returns them.
             root: the root element of its expansion.
             is_whole: whether no part is missing.
         """
@@ -92,9 +92,9 @@ class OfFile:
         return known.setdefault(self._content(root), done).results
 
     def _content(self, root: Element) -> tuple[object, ...]:
-        """All that an expanded element is, with the numbers of the places that its elements come from.
+        """Return the whole content of an expanded element, with numbers for the origins of its elements.
 
-        What it was made of is known by its identity; the elements that are kept hold it.
+        Sources are identified by `id`; the stored elements keep them alive.
         """
         found: list[object] = []
         numbers: dict[int, int] = {}

@@ -90,10 +90,10 @@ def examine(
         arguments: see `check`.
         packages: see `check`.
         settings: see `check`.
-        overlay: texts that stand for those of files, such as ones that are not saved yet.
-        scopes: the rules to run.
-        xacro: whether to expand a robot; None for what the file says.
-        contexts: what checks at one moment share.
+        overlay: texts that replace those of files, such as unsaved ones.
+        scopes: the scopes of the rules to run.
+        xacro: whether to expand a robot; None to decide by the file.
+        contexts: data that checks share at one moment.
     """
     path = Path(path)
     trouble: tuple[Diagnostic, ...] = ()
@@ -193,13 +193,13 @@ def _may_run(rule: Rule, subject: Subject) -> bool:
 
 
 def _of_library(described: Description) -> Iterator[Diagnostic]:
-    """The findings on a file that others include: those that hold for each part, and that it is no robot."""
+    """Yield the findings on a file for others to include: those that hold for each part, and that it is not a robot."""
     yield from (*described.problems, *described.remarks)
     root = described.document.root
     whole = root.span()
     yield from (each for each in described.reading.diagnostics if each.code in TRUE_OF_PARTS and each.span != whole)
     hint = phrase("check the file that includes it")
-    message = phrase("this file holds parts for others to include and is no robot by itself")
+    message = phrase("this file has parts for others to include and is not a robot by itself")
     yield Diagnostic("LINT302", message, whole, Severity.INFO, hint=hint, source=root.source)
 
 
@@ -223,14 +223,14 @@ def examine_package(
     overlay: Overlay | None = None,
     contexts: Contexts | None = None,
 ) -> Checked:
-    """Check a package by itself; for its rules the file is the manifest and the description an empty one.
+    """Check a package by itself; its rules get the manifest as the file, and an empty description.
 
     Args:
-        folder: of the package.
-        settings: the settings in force for it.
-        finder: where packages are.
-        overlay: texts that stand for those of files.
-        contexts: what checks at one moment share.
+        folder: the folder of the package.
+        settings: the settings for it.
+        finder: finds packages.
+        overlay: texts that replace those of files.
+        contexts: data that checks share at one moment.
     """
     path = folder / MANIFEST
     empty = Document(Element("robot", {"name": folder.name}))

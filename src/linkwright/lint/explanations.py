@@ -30,13 +30,13 @@ _HEADINGS = frozenset(
         *("properties", "property", "parameters", "parameter", "the", "and", "value", "values", "for", "collision"),
     }
 )
-"""Words that say what the line is, and nothing of why its value is what it is."""
+"""Words that describe the line, but do not explain its value."""
 
 
 def is_explained(element: Element | None, tag: str) -> bool:
-    """Return whether a comment beside or right above a child of an element, or right above the element, says why.
+    """Return whether a comment beside or above a child of an element, or above the element, explains its value.
 
-    Commented-out elements, suppressions, and headings that only say what stands there explain nothing.
+    Commented-out elements, suppressions, and headings that only name the child explain nothing.
     """
     if element is None:
         return False

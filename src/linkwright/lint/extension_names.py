@@ -47,7 +47,7 @@ CHILDREN: Mapping[str, tuple[str, ...]] = {
         "axis2",
     ),
 }  # fmt: skip
-"""Path from ``<robot>`` -> the elements that somebody reads there."""
+"""Path from ``<robot>`` -> the elements that some program reads there."""
 
 ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
     "gazebo": ("reference", "name", "version"),
@@ -63,7 +63,7 @@ ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
     "transmission/joint": ("name",),
     "transmission/actuator": ("name",),
 }
-"""Path from ``<robot>`` -> the attributes that somebody reads there."""
+"""Path from ``<robot>`` -> the attributes that some program reads there."""
 
 OF_JOINTS = frozenset(
     {
@@ -72,7 +72,7 @@ OF_JOINTS = frozenset(
         "initialJointPosition",
     }
 )
-"""What ``<gazebo reference="...">`` says of a joint."""
+"""Elements of a ``<gazebo reference="...">`` for a joint."""
 
 OF_LINKS = frozenset(
     {
@@ -80,11 +80,11 @@ OF_LINKS = frozenset(
         *("turnGravityOff", "dampingFactor", "laserRetro", "visual", "collision", "inertial", "velocity_decay"),
     }
 )
-"""What it says of a link."""
+"""Elements of a ``<gazebo reference="...">`` for a link."""
 
 INTERFACES = (
     "position", "velocity", "effort", "acceleration", "torque", "force", "current", "temperature", "voltage",
     "stiffness", "damping", "mechanical_gain", "position.x", "position.y", "position.z", "orientation.x",
     "orientation.y", "orientation.z", "orientation.w",
 )  # fmt: skip
-"""The names of interfaces that controllers ask for; hardware may have others."""
+"""The names of interfaces that controllers request; hardware may have others."""

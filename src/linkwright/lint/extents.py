@@ -28,7 +28,7 @@ WEIGHTLESS = 1e-5
 """The mass in kg below which a value is a placeholder: simulators and exporters ask for some mass."""
 
 _MANY = 200
-"""Links of a body from which on it is not measured anew for each of them."""
+"""The number of links from which a body is measured only once, not for each link."""
 
 _ORIGIN = Placement(IDENTITY, (0.0, 0.0, 0.0))
 
@@ -61,7 +61,7 @@ class Extents:
 
     @cached_property
     def measured(self) -> list[tuple[Link, Inertial, Bounds]]:
-        """The links whose body turns, can be measured and is no marker, with the box around it in the link's frame."""
+        """The links whose body turns, can be measured and is not a marker, with the body's box in the link's frame."""
         turning = (each for each in self.heavy if self._bodies.turns(each[0].name))
         boxes = ((link, inertial, self.body_bounds(link)) for link, inertial in turning)
         return [(link, inertial, box) for link, inertial, box in boxes if box is not None and box.diagonal > MARKER]
@@ -91,7 +91,7 @@ class Extents:
         return self._measured[key]
 
     def link_bounds(self, link: Link) -> Bounds | None:
-        """The box around all shapes of a link in its frame; None without shapes, or when one cannot be measured."""
+        """Return the box around all shapes of a link in its frame; None if it has none, or one cannot be measured."""
         return self._bounds([*link.visuals, *link.collisions])
 
     def kinds_of_bounds(self, link: Link) -> list[Bounds]:

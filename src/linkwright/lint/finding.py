@@ -16,7 +16,7 @@ class Finding(Diagnostic):
     """A diagnostic of a rule.
 
     Attributes:
-        fix: what would mend it, or None where only the author can know.
+        fix: a change of the source that fixes it, or None if only the author can know.
         element: the element it is about; the engine adds the macro calls and includes that produced it.
     """
 
@@ -43,7 +43,7 @@ class Finding(Diagnostic):
 
 
 def with_others(first: Diagnostic, others: Sequence[Diagnostic]) -> Diagnostic:
-    """A finding that stands for others of one cause, with these in its notes."""
+    """Return a finding that represents others with the same cause, with these in its notes."""
     if not others:
         return first
     notes = tuple(Note(other.message, other.span) for other in others[:_MOST_NOTES])

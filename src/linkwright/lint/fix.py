@@ -1,4 +1,4 @@
-"""Changes to source files that mend a finding, and the edits that rules need most.
+"""Changes to source files that fix a finding, and the edits that rules need most.
 
 An edit replaces a range of characters of one file. Everything else, formatting and comments included, stays as it is.
 """
@@ -82,7 +82,7 @@ def rename_element(element: Element, tag: str, *, safe: bool = True) -> Fix | No
 
 
 def remove_element(element: Element, *, safe: bool = True) -> Fix | None:
-    """Take an element out with all it holds, and with its line where nothing else stands there."""
+    """Remove an element with its content, and its line if nothing else is on it."""
     source = element.source
     found = element_range(element)
     if source is None or found is None:

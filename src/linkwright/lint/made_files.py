@@ -31,14 +31,14 @@ _MAKES = lazy_pattern(
 
 
 def is_made_later(package: PackageContext, path: str) -> bool:
-    """Return whether a file that a package lacks is likely to be made by a program or a user.
+    """Return whether a missing file of a package is probably made by a program or a user later.
 
     Such a file is ignored by git, made by CMake, a map (which mapping saves), or mentioned by another file of the
-    package: a script that writes it, or a README that says how to make it. Launch files do not count.
+    package: a script that writes it, or a README that describes how to make it. Launch files do not count.
 
     Args:
         package: the package.
-        path: of the file, relative to the package.
+        path: the path of the file, relative to the package.
     """
     return (
         not _MAPS.isdisjoint(path.split("/")[:-1])

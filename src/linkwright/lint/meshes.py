@@ -43,13 +43,13 @@ class MeshUse:
 class MeshFacts:
     """The facts about the meshes of one description.
 
-    Nothing is looked up before a rule asks for it. A URI that leads nowhere gives no path, and a file that cannot be
-    read no triangles; the rules about files tell of them, all others leave such a mesh alone.
+    Nothing is looked up before a rule asks for it. A URI without a file has no path, and an unreadable file no
+    triangles; the rules about files report them, all others skip such a mesh.
 
     Args:
-        links: the links whose visuals and collisions are looked at.
-        finder: for ``package://`` addresses.
-        folder: what relative addresses start from.
+        links: the links whose visuals and collisions are checked.
+        finder: finds the packages of ``package://`` addresses.
+        folder: the base of relative addresses.
     """
 
     def __init__(self, links: Iterable[Link], finder: PackageFinder, folder: Path) -> None:
@@ -86,7 +86,7 @@ class MeshFacts:
         return None
 
     def outline(self, shape: Visual | Collision) -> Outline | None:
-        """The outline of a shape's mesh, scaled, in the shape's frame; None without a readable mesh."""
+        """Return the outline of a shape's mesh, scaled, in the shape's frame; None if it has no readable mesh."""
         if not isinstance(shape.geometry, Mesh):
             return None
         try:

@@ -1,4 +1,4 @@
-"""Included files that are not here although nobody made a mistake: the build makes them, or another program looks."""
+"""Included files that are missing without a mistake: the build makes them, or another program finds them."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _of_built(diagnostic: Diagnostic) -> Diagnostic | None:
     package = find_package(path.parent)
     if package is None or not is_made_later(package, path.relative_to(package.folder).as_posix()):
         return None
-    hint = phrase("the build or a program makes it; what needs it is left out until then")
+    hint = phrase("the build or a program makes it; until then the parts that need it are left out")
     return diagnostic.but(severity=Severity.INFO, hint=hint)
 
 

@@ -1,4 +1,4 @@
-"""Packages that are not here: those that a package says it depends on are missing on this machine, and no mistake."""
+"""Missing packages: a declared dependency is only missing on this machine, and is not a mistake."""
 
 from __future__ import annotations
 
@@ -28,12 +28,14 @@ def judged(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
         if package is None or not is_declared(package, name):
             yield diagnostic
             continue
-        hint = phrase("install '{name}', or check it together with this package; what needs it is left out", name=name)
+        hint = phrase(
+            "install '{name}', or check it together with this package; the parts that need it are left out", name=name
+        )
         yield diagnostic.but(severity=Severity.WARNING, hint=hint)
 
 
 def is_declared(package: PackageContext, name: str) -> bool:
-    """Whether a package, or one beside it, declares another; who builds one of them builds them all."""
+    """Return whether a package, or one beside it, which is built together with it, declares another."""
     beside = (PackageContext(manifest.parent) for manifest in sorted(package.folder.parent.glob(f"*/{MANIFEST}")))
     manifests = (package_context.manifest for package_context in (package, *beside))
     return any(manifest is not None and manifest.declares(name) for manifest in manifests)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from linkwright.lean_dataclasses import dataclass
 
 OptionValue = bool | int | float | str | list[str]
-"""What an option of a rule may be, as TOML has it."""
+"""The TOML types that an option of a rule may have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,8 +13,8 @@ class Option:
     """A setting of a rule, written in ``[options.RULE-NAME]`` of the configuration.
 
     Attributes:
-        name: in kebab-case.
-        default: the value in force when nobody sets it; another value must be of its type.
+        name: the name in kebab-case.
+        default: the default; another value must have the same type.
         meaning: one phrase for the documentation, with the unit.
     """
 

@@ -28,12 +28,12 @@ _DESCRIPTIONS = (".xacro", ".urdf")
 def find_package(
     path: Path, overlay: Overlay | None = None, known: dict[Path, PackageContext] | None = None
 ) -> PackageContext | None:
-    """The package that a file or folder lies in: the nearest folder upwards with a ``package.xml``; or None.
+    """Return the package of a file or folder: the nearest folder upwards with a ``package.xml``; or None.
 
     Args:
         path: the file or folder.
-        overlay: texts that stand for those of files.
-        known: packages by their folders, to look the package up in and to add it to, where there is no overlay.
+        overlay: texts that replace those of files.
+        known: a cache of packages by folder, which is not used with an overlay.
     """
     path = path.absolute()
     for folder in (path, *path.parents):
@@ -45,13 +45,13 @@ def find_package(
 
 
 class PackageContext:
-    """A ROS package. Files are read when somebody asks, and nothing in them is run.
+    """A ROS package. Files are read on first use, and never run.
 
-    The readers are imported then too: a check of one robot needs few of them.
+    The readers are imported on first use, too: a check of one robot needs few of them.
 
     Args:
         folder: the folder with the ``package.xml``.
-        overlay: texts that stand for those of files.
+        overlay: texts that replace those of files.
 
     Attributes:
         folder: the same, absolute.
@@ -117,7 +117,7 @@ class PackageContext:
 
     @cached_property
     def setup(self) -> SetupFile | None:
-        """Its ``setup.py``, or None where CMake builds the package and nobody reads one."""
+        """Its ``setup.py``, or None if CMake builds the package, which does not read one."""
         if self.manifest is not None and self.manifest.build_type == "ament_cmake" and self.has("CMakeLists.txt"):
             return None
         from linkwright.packages.readers.setup_py import read_setup
@@ -148,7 +148,7 @@ class PackageContext:
 
     @cached_property
     def descriptions(self) -> Mapping[Path, Document]:
-        """Its URDF and xacro files as they are written: path -> document; those that are no XML are left out."""
+        """Its URDF and xacro files as they are written: path -> document; without files that are not XML."""
         from linkwright.xacro import sources
 
         found: dict[Path, Document] = {}

@@ -46,7 +46,7 @@ def unusable_rules() -> tuple[Diagnostic, ...]:
 
 
 def has_rules_of_others() -> bool:
-    """Whether another package brings rules, of which nobody knows what they look at."""
+    """Return whether another package adds rules, which may check anything."""
     return any(not rule.code.startswith(_OURS) for rule in _found(whole=False)[0])
 
 
@@ -151,5 +151,5 @@ def _unusable(entry: EntryPoint, error: Exception) -> Diagnostic:
         module=entry.value,
         reason=foreign(f"{type(error).__name__}: {error}"),
     )
-    hint = phrase("mend or uninstall the package that brings them")
+    hint = phrase("fix or uninstall the package that provides them")
     return Diagnostic("LINT301", message, severity=Severity.WARNING, hint=hint)

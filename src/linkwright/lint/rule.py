@@ -28,26 +28,26 @@ class Scope(Enum):
 
 
 class Rule:
-    """A lint rule: one small subclass for each; its docstring is its page in the documentation.
+    """A lint rule: each is a small subclass whose docstring is its page in the documentation.
 
-    The first line of the docstring says what the rule reports. Then come ``## Why``, ``## Example`` and
-    ``## Use instead``.
+    The first line of the docstring names what the rule reports. ``## Why``, ``## Example`` and ``## Use instead``
+    follow.
 
     Attributes:
         code: ``LW`` and three digits, never reused for another meaning; rules of other packages have another prefix.
-        name: in kebab-case; a name may be used wherever a code may.
-        severity: of its findings, where a finding does not say otherwise.
-        default: whether the rule is on when nobody selects it; pedantic rules are not.
-        scope: what it looks at.
-        holds_for_parts: whether what it finds is true of a description of which parts are missing, since it looks at
-            one element, or one text, by itself.
-        holds_for_libraries: whether it looks at files as they are written, so that it has something to say of one that
-            only defines macros. Rules that hold for parts do too.
-        of_sources: whether what it finds follows from the files as they are written, their package and the names of the
-            arguments: it then runs once for all sets of arguments with which the same files are read.
-        needs_all_sets: whether a finding is true only where every set of arguments shows it: something is never used.
+        name: the name in kebab-case, which may be used wherever a code may.
+        severity: the default severity of its findings.
+        default: whether the rule is on by default; pedantic rules are not.
+        scope: what it checks.
+        holds_for_parts: whether its findings hold for a description with missing parts, because it checks single
+            elements or texts.
+        holds_for_libraries: whether it checks files as they are written, so that it applies to a file that only defines
+            macros. Rules that hold for parts apply too.
+        of_sources: whether its findings depend only on the files as they are written, their package and the names of
+            the arguments: it then runs once for all sets of arguments that read the same files.
+        needs_all_sets: whether a finding is true only if every set of arguments has it: something is never used.
         options: its settings.
-        replaces: codes of findings that one of this rule stands for, where both are at one place.
+        replaces: the codes of findings that a finding of this rule replaces at the same place.
     """
 
     code: ClassVar[str]
@@ -67,12 +67,12 @@ class Rule:
         raise NotImplementedError(f"{self.code} cannot check {subject.path}")
 
     def option(self, subject: Subject, name: str, kind: type[Value]) -> Value:
-        """The value of an option in the settings for a subject, or its default.
+        """Return the value of an option in the settings for a subject, or its default.
 
         Args:
-            subject: what is checked.
-            name: of the option, one of `options`.
-            kind: its type; ``float`` takes a whole number too.
+            subject: the subject.
+            name: the name of the option, one of `options`.
+            kind: its type; ``float`` accepts an integer too.
         """
         declared = next(option for option in self.options if option.name == name)
         value = subject.settings.options.get(self.name, {}).get(name, declared.default)
@@ -94,18 +94,18 @@ class Rule:
         fix: Fix | None = None,
         severity: Severity | None = None,
     ) -> Finding:
-        """A finding of this rule.
+        """Return a finding of this rule.
 
         Args:
-            message: one sentence without a full stop at its end, naming the thing as the user wrote it.
-            element: what it is about; it gives the place, and the macro calls and includes that led there.
+            message: one sentence without a full stop at its end, with names as the user wrote them.
+            element: its subject, which gives the place, and the macro calls and includes that led there.
             attribute: the attribute of the element whose value is the place.
-            span: the place, where it is not that of an element or attribute.
+            span: the place, if it is not that of an element or attribute.
             source: the text that `span` is in, for the excerpt.
             notes: facts behind it, with their places.
-            hint: how to mend it.
-            fix: what would mend it.
-            severity: where it is not the rule's.
+            hint: how to fix it.
+            fix: a change of the source that fixes it.
+            severity: the severity, if it is not the rule's.
         """
         if element is not None:
             if span is None:

@@ -23,7 +23,7 @@ class Switched(Protocol):
 
     @property
     def default(self) -> bool:
-        """Whether it is on when nobody says anything about it."""
+        """Whether it is on by default."""
         ...
 
 
@@ -58,11 +58,11 @@ class Settings:
         return self.selects(rule.code, default=rule.default)
 
     def selects(self, code: str, *, default: bool = True) -> bool:
-        """Whether findings of a code are reported.
+        """Return whether findings of a code are reported.
 
         Args:
-            code: of the finding.
-            default: whether they are when nobody says anything about them.
+            code: the code of the finding.
+            default: whether they are reported by default.
         """
         if self.select is None and not self.extend_select and not self.ignore:
             return default  # as in most projects; it is asked for each rule of each check

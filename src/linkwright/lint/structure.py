@@ -1,4 +1,4 @@
-"""The elements of a description by the schema of URDF: those that have a place in it, and those that nobody reads."""
+"""The elements of a description by the schema of URDF: those with a place in it, and unread ones."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Place(NamedTuple):
 
     @property
     def of_owner(self) -> str:
-        """What follows the tag of a part in a message: `` of joint 'elbow'``."""
+        """The text after the tag of a part in a message: `` of joint 'elbow'``."""
         return "" if self.owner is None or self.owner is self.element else f" of {_owner_name(self.owner)}"
 
     def __str__(self) -> str:
@@ -51,17 +51,17 @@ class Structure:
 
     @cached_property
     def places(self) -> list[Place]:
-        """Every element that URDF has a place for, in document order; none where the root is no ``<robot>``."""
+        """The elements that URDF has a place for, in document order; none if the root is not a ``<robot>``."""
         return self._walked[0]
 
     @cached_property
     def unknown_elements(self) -> list[tuple[Place, Element]]:
-        """The elements that URDF has no place for where they stand, but for those of other tools and namespaces."""
+        """The elements in places that URDF does not have, except those of other tools and namespaces."""
         return [(place, child) for place, child in self._walked[1] if not _is_expected(place, child)]
 
     @cached_property
     def unknown_attributes(self) -> list[tuple[Place, str]]:
-        """The attributes that their elements do not have, but for those of other namespaces."""
+        """The attributes that their elements do not have, except those of other namespaces."""
         return [
             (place, name)
             for place in self.places

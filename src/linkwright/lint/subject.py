@@ -29,13 +29,13 @@ if TYPE_CHECKING:
 Value = TypeVar("Value")
 
 _DEFINITIONS = {"material", "xacro:macro", "xacro:property"}
-"""What a file for others to include may hold without anything that makes a robot."""
+"""Elements that a file for others to include may have without being a robot."""
 
 
 class Subject:
-    """One description on the table.
+    """One description under check.
 
-    What is expensive is worked out when a rule first asks for it and kept for the next one.
+    Expensive properties are computed when a rule first asks for them, and cached for the next one.
 
     Args:
         description: what is checked.
@@ -99,7 +99,7 @@ class Subject:
 
     @cached_property
     def _done(self) -> dict[Any, Any]:
-        """What was worked out of this subject, or of one with other arguments that is alike."""
+        """The results for this subject, or for one with other arguments and the same expansion."""
         if self._shared is None:
             return {}
         return self._shared.done(self.xacro, self.root, is_whole=self.is_whole)
@@ -157,7 +157,7 @@ class Subject:
 
     @cached_property
     def structure(self) -> Structure:
-        """The elements of the description, those that URDF knows and those that nobody reads."""
+        """The elements of the description, those that URDF knows and unread ones."""
         from linkwright.lint.structure import Structure
 
         return Structure(self.root)
@@ -180,7 +180,7 @@ class Subject:
 
     @property
     def _shared(self) -> OfFile | None:
-        """What the checks of an expanded file share with those of other sets of arguments."""
+        """The data that the checks of an expanded file share with those of other sets of arguments."""
         if self._contexts is None or self.expansion is None or self.description.overlay is not None:
             return None
         return self._contexts.of_file(self.path)
@@ -216,7 +216,7 @@ class Subject:
 
     @cached_property
     def package(self) -> PackageContext | None:
-        """The ROS package that the file lies in, or None."""
+        """The ROS package of the file, or None."""
         from linkwright.lint.package import find_package
 
         known = None if self._contexts is None else self._contexts.packages

@@ -38,14 +38,14 @@ _SELECTOR = lazy_pattern(r"[^\s,]+")
 
 @dataclass(slots=True)
 class Directive:
-    """One comment that suppresses.
+    """One suppression comment.
 
     Attributes:
-        source: the text it stands in.
+        source: the text that has it.
         start: character offset of the comment.
-        end: character offset behind it.
+        end: character offset after it.
         selectors: what it suppresses, each with its offset; none means everything.
-        ranges: the character offsets it holds for; None means the whole file.
+        ranges: the character offsets that it applies to; None means the whole file.
         used: the selectors that suppressed something.
     """
 
@@ -148,7 +148,7 @@ class Suppressions:
             if len(unused) == max(len(directive.selectors), 1):
                 fix = Fix((_removal(directive),))
             yield rule.report(
-                phrase("this comment is to ignore {what}, of which there is nothing here", what=what),
+                phrase("this comment ignores {what}, which is not found here", what=what),
                 span=directive.source.span(directive.start, directive.end),
                 source=directive.source,
                 hint=phrase("remove it") if fix else phrase("remove {what} from it", what=what),

@@ -1,4 +1,4 @@
-"""Elements and attributes that nobody reads, and what may be meant by them."""
+"""Elements and attributes that no program reads, and what may be meant by them."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ _TELLING_ATTRIBUTES = (
 def is_expected_element(tag: str) -> bool:
     """Return whether an author expects something of an element here: URDF or a format around it has such words.
 
-    Any other name is somebody's own, such as what a vendor's software reads.
+    Any other name is a private extension, such as one that a vendor's software reads.
     """
     return tag in _TELLING_ELEMENTS or not HOMES.keys().isdisjoint(words_of(tag))
 
@@ -94,7 +94,7 @@ def is_expected_attribute(name: str) -> bool:
 
 
 def told_by_reader(subject: Subject) -> dict[Span | None, str]:
-    """What the reader said, by place: its hint names what is misspelt."""
+    """Return the hints of the reader by place, which name misspelt words."""
     return {found.span: found.hint or "" for found in subject.reading.diagnostics}
 
 

@@ -52,7 +52,7 @@ SURROUNDINGS = frozenset(("world", "map", "odom"))
 BOUNDED = ("revolute", "prismatic")
 """The types of joints that have bounds."""
 UNBOUNDED = 1000.0
-"""Bounds further out than this, in rad or m, stand for 'none'."""
+"""Bounds further out than this, in rad or m, mean no limits."""
 
 
 def limits(subject: Subject, *types: str) -> Iterator[tuple[Joint, Element]]:
@@ -63,7 +63,7 @@ def limits(subject: Subject, *types: str) -> Iterator[tuple[Joint, Element]]:
 
 
 def bounds(limit: Element) -> tuple[float, float] | None:
-    """Lower and upper as urdfdom reads them, an absent one as 0; None where one is no number."""
+    """Return lower and upper as urdfdom reads them, an absent one as 0; None if one is not a number."""
     ends = [value(limit, name) if name in limit.attributes else 0.0 for name in ("lower", "upper")]
     return None if ends[0] is None or ends[1] is None else (ends[0], ends[1])
 
@@ -80,7 +80,7 @@ def value(element: Element, attribute: str) -> float | None:
 
 
 def values(element: Element, attribute: str) -> tuple[float, ...]:
-    """The numbers an attribute says; none where it is absent or one of them is no number."""
+    """Return the numbers of an attribute; empty if it is absent or one of them is not a number."""
     text = element.attributes.get(attribute)
     if text is None:
         return ()

@@ -1,6 +1,6 @@
 """Findings on worlds and models that can be read.
 
-What robots are checked for too has the rule, the code and the words that it has there.
+Checks that also exist for robots have the same rule, code and message as there.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _FLAWS = {
 }
 _ADDRESSES = ("uri", "filename")
 _LEFT_OUT = frozenset({"SDF160", "SDF162"})
-"""Findings on models and meshes that are not on this machine; what is missing there is one thing to mend."""
+"""Findings on models and meshes that are not on this machine; all of them have one fix."""
 _RESERVED = "SDF111"
 """A reserved name; a warning where Gazebo classic takes it."""
 _PACKAGES_OF_CLASSIC = ("gazebo_ros", "gazebo_ros_pkgs", "gazebo_plugins", "gazebo_dev", "gazebo_ros2_control")
@@ -65,9 +65,9 @@ def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
 
 
 def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Put what a world misses into one finding for models and one for their meshes, with the others in its notes.
+    """Combine the findings on missing models of a world, and those on their meshes, with the others in the notes.
 
-    What Gazebo fetches by itself is not among what has to be mended, and has findings of its own.
+    Files that Gazebo fetches by itself need no fix, and have findings of their own.
     """
     kept: list[Diagnostic] = []
     groups: dict[tuple[str, Severity], list[Diagnostic]] = {}
@@ -145,7 +145,7 @@ def _axes_of(model: Model) -> Iterator[tuple[Joint, Axis | None, str]]:
 
 
 def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator[Diagnostic]:
-    """Meshes and heightmaps that are not there, each address once."""
+    """Yield missing meshes and heightmaps, each address once."""
     known: set[str] = set()
     for shape in (shape for model in models for shape in shapes_of(model)):
         geometry, element = shape.geometry, shape.element
@@ -168,7 +168,7 @@ def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator
 
 
 def _inertial(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
-    """What robots are told of their masses; what no number is, is left to those who work with it."""
+    """Yield the findings that a robot's inertial would have, and one on values that are not finite."""
     tensor = inertial.inertia
     found = urdf.Inertial(
         inertial.mass,
@@ -181,7 +181,7 @@ def _inertial(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
         element=inertial.element,
     )
     if not all(map(isfinite, (found.mass, found.ixx, found.ixy, found.ixz, found.iyy, found.iyz, found.izz))):
-        message = phrase("the mass or inertia of link '{name}' is no number", name=link.name)
+        message = phrase("the mass or inertia of link '{name}' is not a finite number", name=link.name)
         yield _warning("SDF122", message, inertial.element, phrase("masses are in kg, moments in kg m2"))
         return
     if found.mass <= 0:

@@ -61,7 +61,7 @@ class Definition:
 
     @property
     def is_conditional(self) -> bool:
-        """Whether it stands in ``xacro:if`` or ``xacro:unless``."""
+        """Whether it is inside ``xacro:if`` or ``xacro:unless``."""
         return any(parent.tag in ("xacro:if", "xacro:unless") for parent in self.parents)
 
 
@@ -122,17 +122,17 @@ class FileFacts:
 
     @cached_property
     def calls_by_macro(self) -> Mapping[int, Sequence[Definition]]:
-        """The calls that stand in each macro, by the identity of the macro's element."""
+        """The calls inside each macro, by the identity of the macro's element."""
         return _by_macro(self.calls)
 
     @cached_property
     def uses_by_macro(self) -> Mapping[int, Sequence[Use]]:
-        """What is mentioned in each macro, by the identity of the macro's element."""
+        """The names used in each macro, by the identity of the macro's element."""
         return _by_macro(self.uses)
 
     @cached_property
     def uses_of_parameters(self) -> Mapping[int, Sequence[Use]]:
-        """What the parameters of each macro mention, by the identity of the macro's element."""
+        """The names used in the parameters of each macro, by the identity of the macro's element."""
         found: dict[int, list[Use]] = {}
         for use in self.uses:
             if use.attribute == "params":
@@ -263,10 +263,10 @@ class XacroFacts:
     Attributes:
         path: the checked file.
         given: name -> final value of every argument that was given or declared.
-        package: the package that it lies in, or None.
-        is_library: whether it makes no robot of its own: it is there for others to include.
+        package: the package of the file, or None.
+        is_library: whether it does not make a robot, but is meant for others to include.
         files: path -> facts, the checked file first.
-        found: code -> findings of the rules that look at nothing else (`Rule.of_sources`), as far as they ran.
+        found: code -> findings of the rules that depend on nothing else (`Rule.of_sources`), as far as they ran.
     """
 
     def __init__(
@@ -308,7 +308,7 @@ class XacroFacts:
 
     @cached_property
     def pastes(self) -> bool:
-        """Whether an expression pastes a value into another, so that names may come of the values of arguments."""
+        """Whether an expression pastes a value into another, so that the values of arguments may become names."""
         return any(facts.pasted for facts in self._all())
 
     @cached_property
@@ -334,17 +334,17 @@ class XacroFacts:
 
     @cached_property
     def is_open(self) -> bool:
-        """Whether a property may be used by a name that cannot be told, or by a file that was not read."""
+        """Whether a property may be used by a computed name, or in a file that was not read."""
         return any(facts.is_open for facts in self._all()) or self._misses_files
 
     @cached_property
     def arguments_open(self) -> bool:
-        """Whether an argument may be used by a name that cannot be told, or by a file that was not read."""
+        """Whether an argument may be used by a computed name, or in a file that was not read."""
         return any(facts.arguments_open for facts in self._all()) or self._misses_files
 
     @cached_property
     def calls_open(self) -> bool:
-        """Whether a macro may be called by a name that cannot be told, or by a file that was not read."""
+        """Whether a macro may be called by a computed name, or in a file that was not read."""
         return any(facts.calls_open for facts in self._all()) or self._misses_files
 
     @cached_property
@@ -372,7 +372,7 @@ def is_global(name: str) -> bool:
 
 
 def parameter_span(macro: Element, parameter: Parameter) -> Span | None:
-    """The place of a parameter's name in the definition of a macro; None where that cannot be told."""
+    """Return the place of a parameter's name in the definition of a macro, or None if it is not found."""
     source = macro.source
     if source is None:
         return None

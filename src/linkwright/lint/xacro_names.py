@@ -1,7 +1,7 @@
-"""Which properties, arguments and packages a text with ``${...}`` and ``$(...)`` mentions, without evaluating it.
+"""Find the properties, arguments and packages that a text with ``${...}`` and ``$(...)`` uses, without evaluating it.
 
-The lexer is that of the xacro room and the expressions are parsed by Python itself. A text that makes a name out of
-other values is *open*: nobody can tell before evaluating it what it mentions.
+The lexer is that of the xacro room, and Python parses the expressions. A text that makes a name out of other values is
+*open*: what it uses is not known before it is evaluated.
 """
 
 from __future__ import annotations

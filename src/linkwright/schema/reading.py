@@ -143,7 +143,7 @@ def _compiled(source: str, rule: ElementRule, scope: dict[str, Any]) -> Read:
 def _read_value(
     element: Element, rule: ElementRule, attribute: AttributeRule, version: Version, owner: Element, report: Report
 ) -> Any:
-    """One value of an element; what is wrong with it is told."""
+    """Return one value of an element, and report its mistakes."""
     text = element.attributes.get(attribute.name) if attribute is not rule.text else element.text().strip() or None
     if attribute.since > version:
         if text is not None:

@@ -9,7 +9,7 @@ from linkwright.schema.rules import AttributeRule, ElementRule
 from linkwright.xmltree import Element
 
 UNREADABLE: Final = type("Unreadable", (), {"__repr__": lambda _: "UNREADABLE"})()
-"""Stands for what cannot be read; what is wrong with it has been reported."""
+"""The value of something unreadable, whose mistake has been reported."""
 
 
 class Report(Protocol):
@@ -24,19 +24,19 @@ class Report(Protocol):
     count: int
 
     def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """A required attribute, or text inside, is not there."""
+        """Report that a required attribute, or the text inside, is missing."""
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
-        """An attribute, or the text inside, cannot be parsed; returns the value to go on with, or `UNREADABLE`."""
+        """Report a malformed attribute or text, and return the value to continue with, or `UNREADABLE`."""
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
         """An attribute is ignored, because it came with a later version of the language."""
 
     def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:
-        """A required child is not there."""
+        """Report that a required child is missing."""
 
     def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
-        """None of several children is there."""
+        """Report that none of several children exists."""
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
         """A child stands where one of several is expected, and is none of them in this version of the language."""

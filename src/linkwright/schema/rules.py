@@ -16,9 +16,9 @@ class ValueType:
     """The type of a value in a file.
 
     Attributes:
-        name: as messages and documentation say it: ``3 numbers``.
-        read: the value that a text says; raises `ValueError` where it says none.
-        write: the text for a value; None for a value that no text says.
+        name: the name in messages and documentation: ``3 numbers``.
+        read: parses a text; raises `ValueError` if it has no such value.
+        write: formats a value; returns None for a value without a text.
     """
 
     name: str
@@ -36,13 +36,13 @@ class AttributeRule:
         meaning: one phrase for hints, hover texts and documentation.
         unit: SI unit, or an empty string.
         required: whether the element cannot be read without it.
-        default: the value that stands for an absent one, as text; None where there is none.
-        since: the version that brought it; files of older versions ignore it.
+        default: the value of an absent attribute, as text; None if there is none.
+        since: the version that added it; files of older versions ignore it.
         until: the version that made a required attribute optional, or None.
-        later_default: a version, and the value that stands for an absent one from then on.
-        usual: whether one writes it although it is not required.
-        field: the field of the object that has its value; by default that of the attribute's name.
-        get: takes the value to write from the object, where that is not simply its field.
+        later_default: a version, and the default from that version on.
+        usual: whether it is usually written although it is not required.
+        field: the field of the object for its value; the attribute's name by default.
+        get: returns the value to write from the object, if that is not simply its field.
     """
 
     name: str
@@ -80,33 +80,33 @@ class AttributeRule:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ElementRule:
-    """One element in its place: what it may carry and contain, and what it is read into.
+    """One element in its place: its attributes, its children, and the object that it is read into.
 
     Attributes:
         tag: the element's name.
         meaning: one phrase for hover texts and documentation.
         attribute_rules: the rules of its attributes by name.
-        child_rules: the rules of the elements inside by tag, its own among them where it nests.
-        attributes: in the order in which documentation lists them.
-        children: the elements inside that are read, in the order in which they are written.
-        required: whether the element around it cannot be read without it.
-        many: whether all of them count; otherwise only the first is read.
-        since: the version that brought it.
-        text: what the text inside says, where the element has its value there.
-        choice: whether the first element inside decides which of the children is meant, and its object is this one's.
-        make: makes the object, which must not be false, of the fields of attributes and children, given by name; None
-            where they are fields of the object around it, as those of ``<mass value="1"/>`` are.
+        child_rules: the rules of its children by tag, including its own tag if it nests.
+        attributes: the rules of its attributes, in the order of the documentation.
+        children: the rules of the children that are read, in the order in which they are written.
+        required: whether the parent element cannot be read without it.
+        many: whether all elements of the tag count; otherwise only the first is read.
+        since: the version that added it.
+        text: the rule of the text inside, for an element with its value there.
+        choice: whether the first child selects one of several kinds, and its object is this element's object.
+        make: makes the object, which must not be false, from keyword arguments: the fields of attributes and children;
+            None if they are fields of the parent's object, as for ``<mass value="1"/>``.
         located: whether `make` takes the element, as ``element``.
-        field: the field of the object around it; by default that of the tag's name.
-        get: takes what to write from the object around it, where that is not simply its field.
-        default: what stands for an absent element: an object, or the tuple of values that are fields of the object
-            around it.
-        owns: whether messages name the place of what is inside by it, as that of a colour by its material.
-        keeps: whether there is an object of an element with unreadable parts, with what is absent in their place;
-            of parts of which all count, it gets `UNREADABLE` for each of those.
+        field: the field of the parent's object; the tag's name by default.
+        get: returns the value to write from the parent's object, if that is not simply its field.
+        default: the default of an absent element: an object, or the tuple of values for the fields of the parent's
+            object.
+        owns: whether messages name the places inside it by it, as a colour by its material.
+        keeps: whether an element with unreadable parts still makes an object, with defaults for these parts; among the
+            parts that may occur many times, an unreadable one is `UNREADABLE`.
         nests: whether it may contain elements of its own kind.
-        check: looks at a value that was read, with its element, its owner and the report; what it returns is taken in
-            its place, `UNREADABLE` for none.
+        check: checks a value, with its element, its owner and the report; returns the value to use instead, or
+            `UNREADABLE`.
     """
 
     tag: str

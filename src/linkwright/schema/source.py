@@ -1,6 +1,6 @@
-"""The source of functions that read elements, written from their rules.
+"""Generate the source of functions that read elements, from their rules.
 
-For ``<mass>`` of URDF it is, but for the names of the values:
+For ``<mass>`` of URDF it is, except for the names of the values:
 
     def read(element, owner, report):
         given = element.attributes
@@ -27,7 +27,7 @@ and for ``<inertial>``, which has children, it begins like this:
                 continue
             ...
 
-Names that are not local, such as ``child0_read``, are for the caller to define.
+The caller defines the names that are not local, such as ``child0_read``.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from collections.abc import Iterator
 from linkwright.schema.rules import AttributeRule, ElementRule, Version
 
 _REMEMBERED = 4096
-"""After so many different elements of a kind, what was remembered of them is forgotten."""
+"""The memory of a kind of element is cleared after this many different elements."""
 
 
 def is_remembered(rule: ElementRule) -> bool:
@@ -47,9 +47,9 @@ def is_remembered(rule: ElementRule) -> bool:
 
 
 def flat_source(rule: ElementRule, version: Version) -> str:
-    """The text of ``read(element, owner, report)`` for elements without children.
+    """Return the source of ``read(element, owner, report)`` for elements without children.
 
-    What has something wrong is left to ``explain``; what gave no findings is kept in ``memory``.
+    An element with a mistake is left to ``explain``; the result of one without findings is stored in ``memory``.
     """
     lines = ["given = element.attributes", "before = report.count"]
     values = []

@@ -13,12 +13,12 @@ Completion = Callable[[Element, ElementRule, Any], None]
 
 
 def write_element(rule: ElementRule, instance: Any, complete: Completion | None = None) -> Element:
-    """The element of an object, which reads back as an equal one.
+    """Return the element of an object, which reads back as an equal object.
 
-    What is as by default is left out, unless one usually writes it.
+    Default values are omitted, except those that are usually written.
 
     Args:
-        rule: what the element is like.
+        rule: the rule of the element.
         instance: the object, with a field for each attribute and child.
         complete: called for each object that has an element of its own, with that element and its rule.
     """

@@ -63,4 +63,4 @@ __all__ = [
 ]
 
 __getattr__ = deferred(__name__, {"gv": ("to_gv",), "listing": ("tree_text",), "writer": ("save",)})
-"""What is asked of a robot that was read."""
+"""Functions for a robot that was read, imported when they are first used."""

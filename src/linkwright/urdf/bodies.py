@@ -13,7 +13,7 @@ from linkwright.lean_dataclasses import dataclass
 from linkwright.urdf.model import Joint, Link, Robot
 
 WORLD = "world"
-"""What is fixed to this link never moves, and no mass matters there."""
+"""Links that are fixed to this link never move, and their masses do not matter."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +35,7 @@ class Body:
 
 
 class Bodies:
-    """The bodies of a robot; none without one."""
+    """The bodies of a robot; empty if there is no robot."""
 
     def __init__(self, robot: Robot | None) -> None:
         self._robot = robot
@@ -79,7 +79,7 @@ class Bodies:
 
     @cached_property
     def _standing_for_others(self) -> frozenset[str]:
-        """The links with a mass that touch links without, of which one has a shape; frames between them do not part."""
+        """The links with a mass next to massless links, one of which has a shape; frames between them do not matter."""
         links = self._robot.links if self._robot is not None else {}
         neighbours: dict[str, list[str]] = {name: [] for name in links}
         for joint in self._robot.joints.values() if self._robot is not None else ():

@@ -1,6 +1,6 @@
-"""Rules of urdfdom's that the table of elements cannot say.
+"""Rules of urdfdom that the table of elements cannot express.
 
-Each function gets a value that was read and says what is wrong with it beyond its form; what it returns is taken.
+Each function gets a value that was read, reports its mistakes beyond its form, and returns the value to use.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Graphviz text laid out as a picture."""
+"""Graphviz text rendered as an image."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PICTURE_ENDINGS = (".pdf", ".svg", ".png")
 
 
 def render(gv_text: str, path: str | Path) -> None:
-    """Lay out Graphviz text with dot and write the picture; the file's ending picks PDF, SVG or PNG.
+    """Render Graphviz text with dot to an image file; the file's extension selects PDF, SVG or PNG.
 
     Raises:
         LinkwrightError: URDF201 for another ending, URDF202 without a usable pygraphviz, URDF203 when Graphviz fails
@@ -34,7 +34,7 @@ def render(gv_text: str, path: str | Path) -> None:
         )
         raise LinkwrightError(
             Diagnostic(
-                "URDF201", phrase("a picture cannot be written as '{ending}'", ending=ending or path.name), hint=hint
+                "URDF201", phrase("an image cannot be written as '{ending}'", ending=ending or path.name), hint=hint
             )
         )
     try:
@@ -67,5 +67,5 @@ def render(gv_text: str, path: str | Path) -> None:
         ) from error
     except Exception as error:
         raise LinkwrightError(
-            Diagnostic("URDF203", phrase("Graphviz could not lay out the diagram: {error}", error=foreign(error)))
+            Diagnostic("URDF203", phrase("Graphviz could not draw the diagram: {error}", error=foreign(error)))
         ) from error

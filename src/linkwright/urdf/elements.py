@@ -1,8 +1,8 @@
 """Reading links, their materials, and joints, by urdfdom's rules.
 
-A joint that cannot be read makes urdfdom refuse the whole model; all that is wrong with it is told. A part of a link
-that cannot be read does not: the link stays, without that part and without all that comes after it in the order
-inertial, visuals, collisions. So does ours; the error is reported.
+A joint that cannot be read makes urdfdom refuse the whole model; all its mistakes are reported. A part of a link that
+cannot be read does not: the link stays, without that part and without the parts after it in the order inertial,
+visuals, collisions. Linkwright does the same, and reports the error.
 
 Of materials the first definition of a name in the file wins, those at robot level before those in links, even over
 the colour written in the visual itself. A definition in a later link does not help an earlier one.
@@ -147,13 +147,13 @@ class MaterialTable:
 
 
 def read_material(element: Element, owner: Element, findings: UrdfReport) -> Material | None:
-    """A material as it is written; None without a name."""
+    """Return a material as it is written, or None if it has no name."""
     material: Material = reader_of(MATERIAL, findings.version).read(element, owner, findings)
     return None if material is UNREADABLE else material
 
 
 def read_joint(element: Element, findings: UrdfReport) -> Joint:
-    """A joint; where something in it cannot be read, the findings say so and are marked as rejecting the model.
+    """Return a joint; if it cannot be read, report that and mark the findings as rejecting the model.
 
     Without the tag ``<axis>`` the axis is 1 0 0 and, oddly but as in urdfdom, 0 0 0 for a tag without 'xyz'.
     """

@@ -6,7 +6,7 @@ from linkwright.urdf.model import Robot
 from linkwright.urdf.tree import children_of, walk
 
 DEEPEST = 200
-"""How many levels are told apart by blanks."""
+"""The number of levels that are indented."""
 
 
 def tree_text(robot: Robot) -> str:

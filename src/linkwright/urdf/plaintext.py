@@ -17,7 +17,7 @@ from linkwright.xmltree.tinyxml import blanked, parse_as_tinyxml
 
 _READ_ALL_THE_SAME = phrase("urdfdom reads it all the same; xacro and other XML readers refuse the file")
 _LATE_DECLARATION = lazy_pattern(r"\s+<\?xml\s[^>]*\?>")
-# A blank after which a value goes on with a number or ends; in other values blanks do not matter. Each pattern starts
+# A blank followed by a number or the end of the value; in other values blanks do not matter. Each pattern starts
 # with a fixed character, which makes the search ten times as fast as one pattern for all three would be.
 _INSIDE_VALUE = {blank: lazy_pattern(rf"""{blank}[-+0-9eE. ]*["']""") for blank in "\n\t\r"}
 

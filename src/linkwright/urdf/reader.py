@@ -1,7 +1,7 @@
-"""Reading a URDF document into a robot, with everything that is wrong with it told at once.
+"""Reading a URDF document into a robot, and reporting all its mistakes at once.
 
 It accepts what urdfdom 3.0.1 accepts and, for files of version 1.1 and 1.2, what urdfdom 6.0.0 accepts. Where urdfdom
-stops at the first error, it goes on.
+stops at the first error, it continues.
 """
 
 from __future__ import annotations

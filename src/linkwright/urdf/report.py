@@ -62,7 +62,7 @@ class UrdfReport(Findings):
     __slots__ = ()
 
     def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """A required attribute is not there."""
+        """Report that a required attribute is missing."""
         hint = _missing_attribute_hint(element, rule, attribute)
         if attribute.name == "name" and rule.tag == "link":
             message, hint = phrase("a link has no 'name'"), phrase('add name="..."')
@@ -77,7 +77,7 @@ class UrdfReport(Findings):
         self.error("URDF120", message, element, hint=hint)
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
-        """An attribute does not say what it must; a colour of too few numbers is black, one of others is none."""
+        """Report a malformed attribute; a colour of too few numbers is black, one of other words is unreadable."""
         name, value = attribute.name, element.attributes[attribute.name]
         told = {"name": name, "tag": rule.tag, "owner": owner_name(owner), "value": value}
         if attribute.type is JOINT_TYPE:
@@ -124,7 +124,7 @@ class UrdfReport(Findings):
     def missing_child(
         self, element: Element, rule: ElementRule, child: ElementRule, owner: Element, kind: str = ""
     ) -> None:
-        """A required child is not there; `kind` is the type of a joint where only such joints want it."""
+        """Report that a required child is missing; `kind` is the type of a joint if only such joints need it."""
         candidates = [each for each in element.elements() if each.tag not in rule.child_rules]
         like = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
         misspelt = next((candidate for candidate in candidates if candidate.tag in like), None)
@@ -179,7 +179,7 @@ class UrdfReport(Findings):
             text=text,
         )
         self.warning("URDF122", message, color, "rgba", hint=hint)
-        return BLACK  # urdfdom says nothing here and paints it black
+        return BLACK  # urdfdom is silent here and paints it black
 
 
 def _number_hint(rule: ElementRule, attribute: AttributeRule, value: str) -> Phrase | None:
@@ -189,7 +189,7 @@ def _number_hint(rule: ElementRule, attribute: AttributeRule, value: str) -> Phr
 
 
 def _joint_type_hint(written: str) -> Phrase:
-    """How to mend an unknown joint type."""
+    """Return how to fix an unknown joint type."""
     folded = written.strip().casefold()
     if folded in JOINT_TYPES:
         return phrase("write '{folded}'", folded=folded)
@@ -202,7 +202,7 @@ def _joint_type_hint(written: str) -> Phrase:
 
 
 def _shape_hint(written: str, shapes: tuple[ElementRule, ...]) -> Phrase:
-    """How to mend an unknown shape."""
+    """Return how to fix an unknown shape."""
     if written.startswith("xacro:"):
         return phrase("xacro did not evaluate this: expand the file with xacro first")
     names = [shape.tag for shape in shapes]

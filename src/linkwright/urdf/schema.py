@@ -1,7 +1,7 @@
 """The language as data: every element and attribute that urdfdom reads, with type, default, unit and meaning.
 
-Reader, writer, the hints of errors, hover texts, documentation and linting all go by this table; the few rules that a
-table cannot say are in `linkwright.urdf.checks`. Source: urdfdom 3.0.1 for URDF 1.0, urdfdom 6.0.0 for 1.1 and 1.2.
+Reader, writer, the hints of errors, hover texts, documentation and linting all use this table; the few rules that a
+table cannot express are in `linkwright.urdf.checks`. Source: urdfdom 3.0.1 for URDF 1.0, urdfdom 6.0.0 for 1.1 and 1.2.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _LABEL = AttributeRule("name", TEXT, "a name for people and tools", default="")
 
 ORIGIN = ElementRule(
     "origin",
-    "where the frame stands in its parent frame; the identity when absent",
+    "the pose of the frame in its parent frame; the identity when absent",
     (
         AttributeRule("xyz", VECTOR3, "translation", "m", default="0 0 0"),
         AttributeRule(
@@ -156,7 +156,7 @@ VISUAL = ElementRule(
         ),
     ),
     many=True,
-    make=dict,  # the link makes the visual, once it knows which material the name stands for
+    make=dict,  # the link makes the visual, once it knows the material of the name
     located=True,
     field="visuals",
 )
@@ -179,7 +179,7 @@ LINK = ElementRule(
     (_NAME,),
     (INERTIAL, VISUAL, COLLISION),
     many=True,
-    make=dict,  # urdfdom leaves out what comes after an unreadable part
+    make=dict,  # urdfdom leaves out the parts after an unreadable one
     keeps=True,
     located=True,
     get=lambda robot: robot.links.values(),

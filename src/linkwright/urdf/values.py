@@ -62,10 +62,10 @@ def number(text: str) -> float:
 
 @lru_cache(maxsize=_REMEMBERED)
 def vector3(text: str) -> Vector3:
-    """Three numbers separated by spaces.
+    """Parse three numbers separated by spaces.
 
     Raises:
-        ValueError: another count, or one of them is no number.
+        ValueError: the count is not 3, or one of them is not a number.
     """
     if _PLAIN(text):
         x, y, z = map(float, text.split())
@@ -80,16 +80,16 @@ def vector3(text: str) -> Vector3:
 
 
 def numbers(text: str) -> tuple[float, ...]:
-    """Any count of numbers separated by spaces.
+    """Parse any count of numbers separated by spaces.
 
     Raises:
-        ValueError: one of them is no number; its only argument is that piece.
+        ValueError: one of them is not a number; its only argument is that piece.
     """
     return tuple(number(piece) for piece in text.split(" ") if piece)
 
 
 def number_hint(text: str) -> Phrase | None:
-    """How to mend a value that is no number, or None when it cannot be guessed."""
+    """Return how to fix a value that is not a number, or None if it cannot be guessed."""
     stripped = text.strip()
     if not stripped:
         return phrase("give a number")
@@ -117,7 +117,7 @@ def number_hint(text: str) -> Phrase | None:
 
 
 def vector_hint(text: str, count: int) -> Phrase | None:
-    """How to mend a value that is not `count` numbers separated by spaces, or None."""
+    """Return how to fix a value that is not `count` numbers separated by spaces, or None."""
     if "${" in text or "$(" in text:
         return number_hint(text)
     if not text.strip():

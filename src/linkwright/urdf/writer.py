@@ -10,10 +10,9 @@ from linkwright.xmltree.writer import tidied
 
 
 def save(robot: Robot) -> str:
-    """The robot as URDF text; defaults are left out, numbers are as short as they can be without loss.
+    """Return the robot as URDF text; defaults are omitted, numbers are as short as possible without loss.
 
-    Materials stand at robot level. Elements of other rooms (``gazebo``, ``ros2_control``, ...) follow at the end
-    as they were read.
+    Materials are at robot level. Other elements (``gazebo``, ``ros2_control``, ...) follow at the end, unchanged.
     """
     root = write_element(ROBOT, robot)
     root.children += map(tidied, robot.extensions)

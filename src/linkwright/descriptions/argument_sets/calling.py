@@ -40,18 +40,18 @@ _MARK = lazy_pattern("\0([^\0]*)\0")
 
 @dataclass(frozen=True, slots=True)
 class ArgumentSet:
-    """Values for the arguments of a description that are given together.
+    """Values that a caller gives to the arguments of a description together.
 
     Attributes:
         values: argument -> value.
-        open: the arguments that are given values which are only known when the program runs; an empty name stands for
-            arguments of which not even the names are known.
+        open: the arguments whose values are only known when the program runs; an empty name means arguments whose
+            names are not known either.
         span: the call that gives them; None for those of a configuration.
         is_certain: whether they are known to be given together.
         varied: the arguments whose values differ from those that the same call gives by default.
-        is_mixed: whether a launch argument chooses another file than by default, and others of its arguments have other
-            values too: nobody knows whether these go with this file.
-        is_offered: whether they differ by what launch arguments offer, whose other arguments keep their defaults.
+        is_mixed: whether a launch argument chooses another file than by default, and other arguments have other values
+            too, which may or may not fit this file.
+        is_offered: whether they are choices that launch arguments offer, while the other arguments have their defaults.
     """
 
     values: Mapping[str, str]
@@ -64,7 +64,7 @@ class ArgumentSet:
 
     @property
     def is_complete(self) -> bool:
-        """Whether these are known to be given, and all that is given is known."""
+        """Return whether the values are certain, and all of them are known."""
         return self.is_certain and not self.open
 
 
@@ -85,7 +85,7 @@ def argument_sets(path: str | Path, finder: PackageFinder | None = None) -> tupl
 
 
 class ArgumentSets:
-    """Finds the sets for many files; what calls xacro is read once.
+    """Finds the sets for many files; files that call xacro are read once.
 
     Args:
         folders: packages to look at besides those near a file.
@@ -101,7 +101,7 @@ class ArgumentSets:
         finder = finder or PackageFinder(start=path.parent)
         near = list(self._files.around(path, self._folders))
         sets = list(_Target(path, finder, near).sets())
-        if not sets:  # who forgets to declare what a launch file uses, still uses it
+        if not sets:  # a launch file may use a package that its own does not declare
             sets = list(_Target(path, finder, [*near, *self._files.elsewhere(path, self._folders)]).sets())
         found: dict[object, ArgumentSet] = {}
         for argument_set in sets:
@@ -238,9 +238,9 @@ class _Target:
 
     @cached_property
     def _inclusions(self) -> dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]]:
-        """Each inclusion by the name of the file that is included.
+        """Each inclusion, by the name of the included file.
 
-        Before it stand the package that the path names, the package that includes, and the file that does.
+        With it come the package in the path, the including package, and the including file.
         """
         found: dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]] = {}
         for package, file in self.files:

@@ -17,7 +17,7 @@ _CONDITIONS = frozenset({"xacro:if", "xacro:unless"})
 
 
 def compared_values(documents: Iterable[Document]) -> tuple[ArgumentSet, ...]:
-    """The values that conditions compare arguments with, each as a set that is not known to occur.
+    """Return the values that conditions compare arguments with, each as a set that may not occur.
 
     An argument is also known by the names of the properties that hold it: ``<xacro:property name="side" value="$(arg
     side)"/>``. Macro parameters are not followed.
@@ -39,14 +39,14 @@ def compared_values(documents: Iterable[Document]) -> tuple[ArgumentSet, ...]:
 
 
 def empty_defaults(documents: Iterable[Document]) -> tuple[str, ...]:
-    """The arguments whose default is an empty text, which stands for "to be given" as often as for nothing."""
+    """Return the arguments whose default is an empty text, which often means that callers must give a value."""
     elements = (element for document in documents for element in document.root.walk())
     declared = (element.attributes for element in elements if element.tag == "xacro:arg")
     return tuple(dict.fromkeys(each["name"] for each in declared if "name" in each and each.get("default") == ""))
 
 
 def _names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:
-    """Every name that stands for an argument, and the argument."""
+    """Yield every name of an argument or of a property that holds it, and the argument."""
     for element in elements:
         name = element.attributes.get("name", "")
         if element.tag == "xacro:arg":

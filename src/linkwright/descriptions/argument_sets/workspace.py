@@ -21,11 +21,11 @@ _YAML = (".launch.yaml", ".launch.yml", "_launch.yaml", "_launch.yml")
 _LAUNCH_FOLDERS = ("launch", "test", "tests")
 """Folders whose XML files may be launch files whatever they are called."""
 _WORDS = ("xacro", "MoveItConfigsBuilder", "IncludeLaunchDescription", "<include", "include:")
-"""A file without any of them calls nothing."""
+"""A file without any of these words calls nothing."""
 
 
 class CallingFiles:
-    """What the files of packages say of xacro."""
+    """The files of packages that call xacro."""
 
     def __init__(self) -> None:
         self._read: dict[Path, tuple[CallingFile, ...]] = {}
@@ -33,11 +33,11 @@ class CallingFiles:
         self._manifests: dict[Path, str] = {}
 
     def around(self, path: Path, folders: tuple[Path, ...]) -> Iterator[tuple[str | None, CallingFile]]:
-        """The files of the package of a file, and of those that use it: the package's name and what a file says.
+        """Yield the calling files of a file's package and of the packages that depend on it, with the package's name.
 
         Args:
             path: the file, absolute.
-            folders: packages to look at besides those that lie near.
+            folders: packages to search besides those nearby.
         """
         own = enclosing_package(path.parent)
         if own is None:
@@ -48,11 +48,11 @@ class CallingFiles:
         yield from self._of_others(name, folder, folders, using=True)
 
     def elsewhere(self, path: Path, folders: tuple[Path, ...]) -> Iterator[tuple[str | None, CallingFile]]:
-        """The files of the packages that do not say that they use that of a file, as `around` has the others.
+        """Yield the calling files of the packages that do not depend on a file's package.
 
         Args:
             path: the file, absolute.
-            folders: packages to look at besides those that lie near.
+            folders: packages to search besides those nearby.
         """
         own = enclosing_package(path.parent)
         if own is not None:
@@ -61,13 +61,13 @@ class CallingFiles:
     def _of_others(
         self, name: str, folder: Path, folders: tuple[Path, ...], *, using: bool
     ) -> Iterator[tuple[str, CallingFile]]:
-        """The files of other packages that say that they use a package, or of those that do not."""
+        """Yield the calling files of other packages that depend on a package, or of those that do not."""
         for other, place in self._near(folder, folders).items():
             if other != name and (name in self._manifest(place)) is using:
                 yield from ((other, file) for file in self.of(place))
 
     def of(self, folder: Path) -> tuple[CallingFile, ...]:
-        """What the files in and below a folder say, but not those of other packages."""
+        """Return the calling files in and below a folder, without those of other packages."""
         if folder not in self._read:
             read = (_read(path, folder) for path in _files(folder))
             self._read[folder] = tuple(
@@ -85,7 +85,7 @@ class CallingFiles:
         }
 
     def _beside(self, folder: Path) -> dict[str, Path]:
-        """The packages of the workspace, as far as they lie beside a package or below the same ``src``."""
+        """Return the packages of the workspace that are beside a package or below the same ``src``."""
         above = next((parent for parent in folder.parents if parent.name == "src"), folder.parent)
         if above not in self._packages:
             self._packages[above] = SourceScan(above).packages()

@@ -42,18 +42,18 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One thing that two descriptions say otherwise.
+    """One difference between two descriptions.
 
     Attributes:
-        subject: what it is about; ``extension`` is a ``<gazebo>``, ``<ros2_control>``, ``<transmission>``, ...
-        name: its name in the new description; in the old one where it was removed.
-        kind: what happened to it.
-        property: what has changed of it, such as ``mass`` or ``visual 2 origin xyz``; empty when it is all of it.
-        old: what the old description says, without the unit; None where it says nothing.
-        new: what the new one says.
+        subject: the kind of its subject; ``extension`` is a ``<gazebo>``, ``<ros2_control>``, ``<transmission>``, ...
+        name: the subject's name in the new description; if it was removed, in the old one.
+        kind: the kind of change.
+        property: the changed property, such as ``mass`` or ``visual 2 origin xyz``; empty for the whole subject.
+        old: the value in the old description, without the unit; None if it has none.
+        new: the value in the new one.
         unit: the unit of both; empty for words.
-        old_place: where the old description says so, or where what it says something of begins.
-        new_place: the same of the new one.
+        old_place: the place of the value in the old description, or the beginning of its subject.
+        new_place: the same in the new one.
     """
 
     subject: Subject
@@ -69,7 +69,7 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """How two descriptions differ.
+    """The differences between two descriptions.
 
     Attributes:
         differences: the robot, then links and joints in the order of the new description, those removed behind them,
@@ -88,9 +88,9 @@ class Side:
     """One of two descriptions.
 
     Attributes:
-        robot: what it says.
-        normalize: makes what it says in words comparable, such as paths in a folder that stands for another.
-        resolve: the file that the address of a mesh means; where given, the bytes of meshes are compared, too.
+        robot: its robot.
+        normalize: makes its words comparable, such as paths in a folder that replaces another.
+        resolve: returns the file of a mesh's address; if set, the bytes of meshes are compared, too.
 
     """
 
@@ -110,11 +110,11 @@ class Side:
 
 
 def compare(old: Side, new: Side) -> Comparison:
-    """How two descriptions differ.
+    """Return the differences between two descriptions.
 
-    Links and joints are matched by name, and recognised under a new name where all else is equal. Poses are compared as
-    poses, not as text; the tolerances stand in `linkwright.descriptions.comparison.facts`. What is outside the robot
-    model (``<gazebo>``, ``<ros2_control>``, sensors) is compared as XML whose blanks, comments and order of attributes
+    Links and joints are matched by name, and recognised under a new name if all else is equal. Poses are compared as
+    poses, not as text; the tolerances are in `linkwright.descriptions.comparison.facts`. Elements outside the robot
+    model (``<gazebo>``, ``<ros2_control>``, sensors) are compared as XML whose blanks, comments and order of attributes
     do not count.
     """
     return _Comparer(old, new).run()

@@ -27,12 +27,12 @@ class Fact:
     """One property.
 
     Attributes:
-        words: what it says in words, such as a name or the kind of a shape; empty for numbers alone.
+        words: its words, such as a name or the kind of a shape; empty for numbers alone.
         numbers: its numbers, in SI units.
         unit: the unit of the numbers.
-        rotation: the quaternion (x, y, z, w) that the numbers stand for, where they are roll, pitch and yaw.
-        direction: whether the numbers are an axis, whose length means nothing.
-        element: where it is written, or the nearest element around where it is a default.
+        rotation: the quaternion (x, y, z, w) of the numbers, if they are roll, pitch and yaw.
+        direction: whether the numbers are an axis, whose length does not matter.
+        element: the element that has it or, for a default, the nearest element around it.
         attribute: the attribute of the element.
     """
 
@@ -118,7 +118,7 @@ class Block:
 
 
 def nearest(element: Element | None, *tags: str) -> Element | None:
-    """The element inside that the tags lead to, or the last one on the way that is there."""
+    """Return the descendant that the tags lead to, or the last existing element on the way."""
     for tag in tags:
         inner = None if element is None else element.first(tag)
         if inner is None:
@@ -225,10 +225,10 @@ def _geometry(geometry: Geometry, around: Element | None) -> Fact:
 def pairs_of(
     old: Sequence[Block], new: Sequence[Block], same: Callable[[Block, Block], bool]
 ) -> list[tuple[int | None, int | None]]:
-    """Which of several visuals, or collisions, were which: equal ones, then those of one name, then by their order.
+    """Match several visuals, or collisions: first equal ones, then those of one name, then by their order.
 
     Returns:
-        Positions in `old` and in `new`; None for what is not there.
+        Pairs of positions in `old` and in `new`; None for one without a match.
     """
     left, right = list(range(len(old))), list(range(len(new)))
     found: list[tuple[int | None, int | None]] = []

@@ -27,15 +27,15 @@ def match(
 ) -> Matches:
     """Match two robots, from the root down.
 
-    What is there under one name in both is the same. A joint that is only in the old one is renamed when one that is
-    only in the new one has the same parent, an equal child and says the same; a link, when it is equal and the joint
-    above it is the same.
+    Links, or joints, with one name are the same. A joint that is only in the old robot is renamed if one that is only
+    in the new robot has the same parent, an equal child and equal properties. A link is renamed if an equal one has the
+    same joint above it.
 
     Args:
         old: the old robot.
         new: the new one.
-        same_link: whether two links say the same, whatever their names.
-        same_joint: whether two joints say the same, whatever their names and those of their links.
+        same_link: returns whether two links are equal except for their names.
+        same_joint: returns whether two joints are equal except for their names and those of their links.
     """
     links = {name: name for name in old.links if name in new.links}
     joints = {name: name for name in old.joints if name in new.joints}

@@ -10,15 +10,15 @@ from linkwright.diagnostics.translation import localized
 from linkwright.lean_typing import Any
 
 Label = Callable[[str], str]
-"""What readers know a file by."""
+"""Returns the name of a file for users."""
 
 
 def as_text(comparison: Comparison, label: Label) -> str:
-    """Each difference in a line, and below it where both descriptions say so; in the reader's language.
+    """Return each difference in a line, with both places below it, in the user's language.
 
     Args:
         comparison: the differences.
-        label: makes the name of a file what readers know it by.
+        label: returns the name of a file for users.
     """
     found = comparison.differences
     if not found:

@@ -24,12 +24,12 @@ _MOST_YAML = 1_000_000
 
 
 class Definitions:
-    """The texts behind names. There may be more than the one that counted: whoever asks tries them.
+    """The texts that define names. There may be more than the one that took effect: the caller tries them.
 
     Args:
         documents: the XML files that a description was made from, as they are written.
-        others: the other files, such as those of YAML.
-        overlay: texts that stand for those of files.
+        others: the other files, such as YAML files.
+        overlay: texts that replace those of files.
     """
 
     def __init__(self, documents: Sequence[Document], others: Iterable[Path], overlay: Overlay) -> None:
@@ -42,7 +42,7 @@ class Definitions:
                 self._take(element)
 
     def of_names(self, text: str, innermost: Frame | None) -> Iterator[Place]:
-        """The texts that the names in a text may stand for, those of calls around first.
+        """Yield the texts that may define the names in a text, those of the enclosing calls first.
 
         Args:
             text: with expressions in it.
@@ -170,7 +170,7 @@ def _walk(node: Any, keys: tuple[str, ...], source: SourceText, depth: int) -> I
         quoted = node.style in ("'", '"')
         if keys and (quoted or node.style is None):
             end = node.end_mark.index - quoted
-            yield keys, Place(source, end - len(node.value), end)  # a tag may stand before it
+            yield keys, Place(source, end - len(node.value), end)  # a tag may precede it
     elif depth < 50 and isinstance(node, yaml.MappingNode):
         for key, value in node.value:
             if isinstance(key, yaml.ScalarNode):

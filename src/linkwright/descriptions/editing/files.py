@@ -16,16 +16,16 @@ from linkwright.xmltree.decoding import decoded
 from linkwright.xmltree.reader import read_bytes
 
 _OURS = Path(__file__).resolve().parents[2]
-"""What is in here comes with the program, and is not the user's to write."""
+"""The files in this folder are part of the program, and edits must not write them."""
 _MOST_STEPS = 200
 """Of undo."""
 
 
 class Workspace:
-    """The files that edits of a description may write: those of its own workspace, unless they are installed ones.
+    """The files that edits of a description may write: those of its workspace that are not installed ones.
 
     The workspace is the largest of these folders around the main file: that of its package, that of its git
-    repository, and the one whose ``src`` it lies in.
+    repository, and the one whose ``src`` contains it.
 
     Args:
         main: the file that was opened.
@@ -47,7 +47,7 @@ class Workspace:
         if any((parent / "share" / "ament_index").is_dir() for parent in file.parents):
             return forbidden_file(path, phrase("it is installed, and the next build would undo the change"))
         if not file.is_relative_to(self.folder):
-            why = phrase("it lies outside the workspace '{folder}'", folder=str(self.folder))
+            why = phrase("it is outside the workspace '{folder}'", folder=str(self.folder))
             return forbidden_file(path, why)
         if not os.access(path, os.W_OK):
             return forbidden_file(path, phrase("it may only be read"))

@@ -6,7 +6,7 @@ from fractions import Fraction
 from math import degrees, isfinite, pi
 
 EXACT = 1e-9
-"""Metres and radians: what is less is no difference."""
+"""The smallest difference that counts, in m or rad."""
 _EXACT_DEGREES = 5e-8
 _MOST_DIGITS = 15
 _PARTS_OF_PI = (1, 2, 3, 4, 6, 12)

@@ -41,13 +41,13 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A text that may decide a number.
+    """A text that may determine a number.
 
     Attributes:
-        place: what is replaced.
-        value: what the text stands for now.
-        write: the text for another value, given with the tolerance that it may have.
-        is_choice: whether it is 1 or -1, which as a factor says which side or direction is meant.
+        place: the text's place, where it is replaced.
+        value: its value now.
+        write: returns the text for another value with a tolerance.
+        is_choice: whether it is 1 or -1, which as a factor selects a side or a direction.
     """
 
     place: Place
@@ -93,7 +93,7 @@ def is_constant(word: Place) -> bool:
 
 
 def exchanged(word: Place, value: float) -> Candidate:
-    """A word that is an expression, or anything else, replaced by a number: as a part of pi where it was one."""
+    """Return a candidate that replaces a whole word by a number: as a part of pi if the word has pi."""
 
     def write(number: float, tolerance: float) -> str:
         if "pi" in word.text or "radians" in word.text:
@@ -109,7 +109,7 @@ def exchanged(word: Place, value: float) -> Candidate:
 
 
 def summed(word: Place, *, is_angle: bool) -> Candidate | None:
-    """An expression with a number added to it; None for what is no single expression."""
+    """Return a candidate that adds a number to an expression, or None if the word is not a single expression."""
     found = _ONE_EXPRESSION.match(word.text)
     if found is None:
         return None

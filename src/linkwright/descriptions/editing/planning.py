@@ -1,7 +1,7 @@
-"""Plans edits: the smallest edit of the text that makes a requested change of the robot, or why there is none.
+"""Plan edits: the smallest edit of the text that makes a requested change of the robot, or why there is none.
 
-The texts that may have made a number are tried one after the other, and the first is taken after which the expanded
-document differs in exactly what was asked for.
+The texts that may determine a number are tried in turn. The plan uses the first one after whose edit the expanded
+document differs exactly as requested.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ Allowed = Callable[[str], "Diagnostic | None"]
 _MOST_TRIALS = 60
 _LEAST_SLOPE = 1e-6
 _PLAIN_SLOPES = (1.0, 2.0, 0.5, 0.25)
-"""With another one, 1 and -1 are factors that say which side is meant, not lengths."""
+"""For a slope other than these, 1 and -1 are factors that select a side, not lengths."""
 _LARGEST = 1e6
 """Metres."""
 _FEWEST = {"origin": [0.0, 0.0, 0.0], "axis": [1.0, 0.0, 0.0]}
-"""What holds where nothing is written."""
+"""The defaults of attributes that are not written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,9 +46,9 @@ class EditPlan:
     """A planned edit.
 
     Attributes:
-        texts: real path of a file -> its text afterwards, without a byte order mark; empty where nothing changes.
-        before: the same files -> their texts before.
-        also: what else changes, where that was allowed.
+        texts: real path of a file -> its new text, without a byte order mark; empty if nothing changes.
+        before: the same files -> their old texts.
+        also: the other changes, if these were allowed.
     """
 
     texts: dict[str, str]
@@ -100,7 +100,9 @@ class _Planner:
         request = self._request
         for given in (request.xyz, request.rpy):
             if given is not None and not all(isfinite(each) and abs(each) <= _LARGEST for each in given):
-                raise EditRefusedError(Diagnostic("EDIT102", phrase("these numbers are not valid for a robot")))
+                raise EditRefusedError(
+                    Diagnostic("EDIT102", phrase("these numbers are not finite, or too large for a robot"))
+                )
         if request.xyz is not None:
             if request.tag == "axis" and not any(abs(each) > EXACT for each in request.xyz):
                 message = phrase("an axis needs a direction: 0 0 0 is none")
@@ -205,7 +207,7 @@ class _Planner:
         return None
 
     def _together(self, target: Target, place: Place, parts: list[Place], new: dict[int, float]) -> Snapshot | None:
-        """Several literal numbers of an attribute at once; None where more would come of it."""
+        """Return the result of editing several literal numbers of an attribute at once; None if more would change."""
         if self._allowed(os.path.realpath(place.source.name)) is not None:
             return None
         text, at = "", place.start
@@ -241,7 +243,7 @@ class _Planner:
     # what is not written yet
 
     def _add(self, target: Target, wanted: list[float]) -> None:
-        """Write an attribute, or an element, that is not there."""
+        """Write a missing attribute or element."""
         element = target.element(self._now.root)
         place, text = self._new_text(target, element, " ".join(map(shortest, wanted)))
         why_not = self._allowed(os.path.realpath(place.source.name))
@@ -277,7 +279,7 @@ class _Planner:
         return Place(written.source, edit.start, edit.end), edit.text
 
     def _twin(self, element: Element) -> Element:
-        """An element as it stands in its file, before any expansion."""
+        """Return an element as it is written in its file, before any expansion."""
         if element.source is None:
             raise EditRefusedError(_not_written(element))
         document: Document = parse(element.source.text, element.source.name)
@@ -286,7 +288,7 @@ class _Planner:
             raise EditRefusedError(_not_written(element))
         return found
 
-    # what is there
+    # current values
 
     def _values(self, name: str) -> list[float]:
         """The numbers of an attribute as it is now."""

@@ -57,7 +57,7 @@ def proposals(
 
 
 def _reached(place: Place, index: int, frame: Frame | None, definitions: Definitions) -> Iterator[Place]:
-    """The words behind a number: that of the attribute, then those that its names stand for, and so on."""
+    """Yield the words that determine a number: that of the attribute, then the definitions of its names, and so on."""
     seen: set[tuple[str, int]] = set()
     pending: list[tuple[Place, int]] = [(place, 0)]
     while pending:

@@ -13,13 +13,13 @@ _MOST_NAMED = 6
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A candidate that was no good.
+    """A candidate that failed.
 
     Attributes:
         place: its text.
-        also: what else it would change.
-        forbidden: why its file may not be written.
-        choice: whether it is a factor that says which side is meant.
+        also: the other changes that it would make.
+        forbidden: the reason why its file may not be written.
+        choice: whether it is a factor that selects a side.
         doubtful: whether it may be such a factor.
         error: whether the description could not be expanded with it.
     """
@@ -33,12 +33,12 @@ class Attempt:
 
 
 def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: str = "") -> Diagnostic:
-    """The finding that says why an edit is refused.
+    """Return the finding with the reason why an edit is refused.
 
     Args:
-        place: the attribute as it is written, or where one would be.
-        index: which of its numbers cannot be changed; None for one that is not written.
-        attempts: what was tried, the first first.
+        place: the attribute as it is written, or the place for a new one.
+        index: the index of the number that cannot be changed; None for an attribute that is not written.
+        attempts: the failed candidates, in order.
         tag: the element that would be written.
     """
     written = " ".join(place.text.split())
@@ -75,7 +75,7 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
 def _note(attempt: Attempt) -> Note:
     text = " ".join(attempt.place.text.split())
     if attempt.choice:
-        return Note(phrase("'{text}' says which side is meant, and stays", text=text), attempt.place.span)
+        return Note(phrase("'{text}' selects the side, and stays", text=text), attempt.place.span)
     return Note(phrase("'{text}' also makes {what}", text=text, what=_named(attempt.also)), attempt.place.span)
 
 

@@ -30,11 +30,11 @@ class Snapshot:
     """An expansion of a description.
 
     Attributes:
-        description: what was read first; tells how it is expanded.
+        description: the description as it was first read, with its arguments.
         texts: real path of a file -> its changed text.
-        document: what it expands to with these.
-        files: what was read for that.
-        expansion: how it was expanded; None for plain URDF.
+        document: the expansion with these texts.
+        files: the files that were read for it.
+        expansion: the record of the expansion; None for plain URDF.
     """
 
     description: Description
@@ -67,7 +67,7 @@ class Snapshot:
             if path.suffix in _YAML:
                 others.append(path)
             else:
-                with suppress(LinkwrightError):  # an optional file that is not there
+                with suppress(LinkwrightError):  # an optional file that does not exist
                     documents.append(sources.read(str(path), overlay))
         return Definitions(documents, others, overlay)
 
@@ -102,10 +102,10 @@ class Snapshot:
 
 
 def read_again(description: Description) -> Description:
-    """A description as its files say it now, with the arguments and packages that it was read with.
+    """Read a description again from its files, with the same arguments and packages.
 
     Raises:
-        LinkwrightError: they cannot be read or expanded any more.
+        LinkwrightError: they can no longer be read or expanded.
     """
     snapshot = Snapshot.of(description).with_texts({})
     if snapshot.expansion is None:

@@ -1,7 +1,7 @@
-"""Diagnostics in the reader's language: which one it is, and the catalogues of texts.
+"""Diagnostics in the user's language: which language that is, and the catalogues of texts.
 
-Messages are written in English where they are found. A catalogue maps the English templates of each code to another
-language; what it does not know stays English. Codes, places and the user's own words are never touched.
+Messages are written in English where they are reported. A catalogue maps the English templates of each code to another
+language; a template that it does not have stays English. Codes, places and the user's own words never change.
 """
 
 from linkwright.diagnostics.translation.language import LANGUAGES, asked_language, language, language_of, set_language

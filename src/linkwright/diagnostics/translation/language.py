@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 LANGUAGES = ("en", "zh")
-"""What messages can be in: English, and Chinese in simplified characters."""
+"""The languages of messages: English, and Chinese in simplified characters."""
 
 _VARIABLES = ("LINKWRIGHT_LANG", "LC_ALL", "LC_MESSAGES", "LANG")
 """The first that is set decides; the order of the last three is that of POSIX."""

@@ -42,7 +42,7 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
 
 
 def localized(text: str, lang: str | None = None) -> str:
-    """A text in a language of `LANGUAGES`, the reader's if not told; what is no phrase stays as it is."""
+    """Return a text in a language of `LANGUAGES`, by default the user's; a text that is not a phrase stays the same."""
     lang = language() if lang is None else lang
     return text.said_in(wording(lang)) if lang != "en" and isinstance(text, Phrase) else text
 

@@ -146,8 +146,8 @@ class TinySize(Rule):
 
     ## Why
 
-    Nobody sees it, and contacts with it are noise. It is a placeholder, which better is no shape at all, or a length
-    divided by a thousand twice.
+    It is invisible, and contacts with it are noise. It is a placeholder, which is better removed, or a length divided
+    by a thousand twice.
 
     ## Example
 
@@ -183,7 +183,7 @@ class TinySize(Rule):
                     ),
                     shape_element(shape),
                     sizes[0][0],
-                    hint=phrase("lengths are in metres; leave the shape out where none is meant"),
+                    hint=phrase("lengths are in metres; remove the shape if none is intended"),
                 )
 
 

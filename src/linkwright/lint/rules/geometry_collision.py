@@ -23,17 +23,17 @@ if TYPE_CHECKING:
 
 
 _FAR = 20.0
-"""In m; of what lies farther away, LW405 says that."""
+"""In m; LW405 reports shapes that are farther away."""
 
 
 class MissingCollision(Rule):
-    """A moving part that is seen but has no collision shape, while the other parts have.
+    """A moving part that is visible but has no collision shape, unlike the other parts.
 
     ## Why
 
-    Planners and simulators let everything pass through it. Parts that fixed joints make one count together, so a
-    camera on an arm needs none of its own. The rule speaks only where at least half of the moving parts have one, and
-    not of parts between two that have: the hip of a leg often goes without, because its neighbours are always near.
+    Planners and simulators let everything pass through it. Parts that fixed joints connect count as one, so a camera on
+    an arm needs none of its own. The rule only applies if at least half of the moving parts have one. It skips parts
+    between two that have one: the hip of a leg often has none, because its neighbours are always near.
 
     ## Example
 
@@ -86,12 +86,12 @@ def _is_between(body: Body, bodies: Bodies, lacking: list[Body]) -> bool:
 
 
 class MissingVisual(Rule):
-    """A link with a collision shape that nobody sees.
+    """A link with a collision shape but no visual.
 
     ## Why
 
-    A robot that bumps into things with parts that RViz does not show is hard to understand. It is right for safety
-    zones; for all else the visual was forgotten.
+    A robot that hits objects with parts that RViz does not show is hard to understand. This is right for safety zones;
+    otherwise the visual was forgotten.
 
     ## Example
 
@@ -122,13 +122,13 @@ class MissingVisual(Rule):
 
 
 class CollisionApart(Rule):
-    """Collision shapes that do not even touch the box around the visuals.
+    """Collision shapes that do not touch the box around the visuals.
 
     ## Why
 
-    What the robot hits is then somewhere else than what it shows. Mostly the `<origin>` was given to one of the two
-    only. A shape that was moved into the visuals of a link below is left alone: it stands for a motor that is drawn
-    there, as in the hips of many quadrupeds.
+    The robot then collides somewhere else than where it is shown. Usually only one of the two has the `<origin>`. A
+    shape that was moved into the visuals of a link below is skipped: it represents a motor that is drawn there, as in
+    the hips of many quadrupeds.
 
     ## Example
 
@@ -168,7 +168,7 @@ class CollisionApart(Rule):
 
 
 def _origin_hint(link: Link, seen: Bounds) -> Phrase:
-    """What to do about a collision away from its visual: with one <origin> for both, a mesh lies off its own origin."""
+    """Return how to fix a collision away from its visual; if both have one <origin>, a mesh is off its own origin."""
     if link.visuals[0].origin.xyz != link.collisions[0].origin.xyz:
         return phrase("give both the same <origin>")
     center = " ".join(f"{part:.3g}" for part in seen.center)
@@ -245,7 +245,7 @@ def _doubly_shaped(subject: Subject) -> Iterator[Link]:
 
 
 def _comparable(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]:
-    """The links with the boxes around their visuals and their collisions, but for specks and meshes in millimetres."""
+    """Yield links with the boxes of their visuals and collisions, except specks and meshes in millimetres."""
     largest = math.inf if is_scenery(subject) else Millimetres().option(subject, "largest", float)
     for link in _doubly_shaped(subject):
         seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
@@ -259,7 +259,7 @@ def _comparable(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]:
 
 
 def _bounds(subject: Subject, shapes: Iterable[Visual | Collision]) -> Bounds | None:
-    """The box around shapes in the link frame; None without any, or when one cannot be measured."""
+    """Return the box around shapes in the link frame; None if there are none, or one cannot be measured."""
     from linkwright.geometry.bounds import union
 
     found = [subject.extents.shape_bounds(shape) for shape in shapes]

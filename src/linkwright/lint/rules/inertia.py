@@ -29,7 +29,7 @@ def links_with_inertial(subject: Subject) -> Iterable[tuple[Link, Inertial]]:
 
 
 class MissingInertial(Rule):
-    """A moving link without `<inertial>`, where others have one or the robot is made for simulation.
+    """A moving link without `<inertial>`, although others have one or the robot is for simulation.
 
     ## Why
 
@@ -175,7 +175,7 @@ class NegativeMass(Rule):
 
 
 class TinyMass(Rule):
-    """A moving body of hardly any mass.
+    """A moving body with almost no mass.
 
     ## Why
 
@@ -190,7 +190,7 @@ class TinyMass(Rule):
 
     ## Use instead
 
-    The mass of the part; for an auxiliary link of a joint with several axes at least a thousandth of what it carries.
+    The mass of the part; for an auxiliary link of a joint with several axes at least a thousandth of its load.
     """
 
     code = "LW304"
@@ -217,7 +217,7 @@ class TinyMass(Rule):
 
 
 class HugeMass(Rule):
-    """A mass that no robot's link has.
+    """A mass that is too large for a link of a robot.
 
     ## Why
 
@@ -254,7 +254,7 @@ class HugeMass(Rule):
 
 
 class RootInertia(Rule):
-    """An inertia on the root link, which KDL does not take.
+    """An inertia on the root link, which KDL does not support.
 
     ## Why
 

@@ -16,14 +16,15 @@ from linkwright.urdf import Inertial, Link
 
 
 class PlaceholderInertia(Rule):
-    """One and the same inertia copied to links of different shapes.
+    """The same inertia on links of different shapes.
 
     ## Why
 
     A tensor of ones on everything is a placeholder from a tutorial. For a link of a few hundred grams it is thousands
-    of times too large, and the robot moves as if in honey. What depends on size and mass cannot be the same for all.
-    The rule speaks where at least half of the links share such a tensor; other rules then leave its size and the
-    centre of mass to it. Where a comment on the line or above it says why, the finding is an information.
+    of times too large, and the robot moves as if in honey. The inertia depends on size and mass, so it cannot be the
+    same for all links. The rule only applies if at least half of the links share such a tensor; other rules then do not
+    report its size or the centre of mass. If a comment on the line or above it explains the value, the finding is an
+    information.
 
     ## Example
 
@@ -60,7 +61,7 @@ class PlaceholderInertia(Rule):
 
 
 LEFT_TO_PLACEHOLDERS = frozenset({"LW322", "LW323", "LW324", "LW325"})
-"""The rules that say nothing of a link whose inertia `PlaceholderInertia` reports."""
+"""The rules that skip a link whose inertia `PlaceholderInertia` reports."""
 
 
 def placeholders(subject: Subject) -> set[str]:
@@ -171,5 +172,5 @@ class TinyInertia(Rule):
 
 
 def _shapes(link: Link) -> tuple[object, ...]:
-    """What a link looks like, to tell different links from copies."""
+    """Return a key for the shapes of a link, to distinguish different links from copies."""
     return tuple(shape.geometry for shape in (link.collisions or link.visuals))

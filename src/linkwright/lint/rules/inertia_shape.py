@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from linkwright.geometry.bounds import Bounds
 
 _UNITS = ((1e3, "g m2"), (1e4, "kg cm2"), (1e6, "kg mm2"), (1e9, "g mm2"))
-"""What a kg m2 is in other units, which may have been written instead."""
+"""The value of 1 kg m2 in other units, which may have been written instead."""
 
 _BEYOND_BELIEF = 20.0
-"""From this distance on, in m, `shape-far` tells of an origin."""
+"""From this distance on, in m, `shape-far` reports an origin."""
 
 _SLIP = 1.0
 """Masses below this one, in kg, are not in grams by mistake; on small frames they are there to please a simulator."""
@@ -41,16 +41,17 @@ _ALMOST_NOTHING = 1e-3
 
 
 class DensityTooHigh(Rule):
-    """A mass that no material packs into the link's shapes.
+    """A mass that is too large for the volume of the link's shapes.
 
     ## Why
 
-    Osmium, the densest there is, has 22 600 kg/m3. A link that would be denser has a mass in grams, or shapes in
-    other units than metres. Meshes count with the whole box around them, so nothing real is reported. Where links that
-    are fixed to it have shapes and no mass, its mass counts in the box around all links that fixed joints connect.
-    Where a comment on the line or above it says why, as for ballast, the finding is an information. So it is up to ten
-    times osmium for the base of the robot, which a large mass keeps in its place, and up to three times for a mass of
-    one digit, such as 1 or 20: nobody weighed the link, and the unit is right.
+    Osmium, the densest material, has 22 600 kg/m3. A denser link has a mass in grams, or shapes in other units than
+    metres. Meshes count with the whole box around them, so no real part is reported. If links that are fixed to it have
+    shapes and no mass, its mass counts in the box around all links that fixed joints connect.
+
+    The finding is an information if a comment on the line or above it explains the value, as for ballast; up to ten
+    times the density of osmium for the base of the robot, which a large mass keeps in its place; and up to three times
+    for a mass of one digit, such as 1 or 20: it is an estimate, and the unit is right.
 
     ## Example
 
@@ -178,8 +179,8 @@ class CenterOutside(Rule):
 
     ## Why
 
-    The centre of mass lies within the hull of a body. One that lies outside makes the robot tip over or swing for no
-    visible reason. Often the `<origin>` of `<inertial>` is in millimetres, or in the frame of another link.
+    The centre of mass is within the hull of a body. One outside makes the robot tip over or swing for no visible
+    reason. Often the `<origin>` of `<inertial>` is in millimetres, or in the frame of another link.
 
     ## Example
 
@@ -200,7 +201,7 @@ class CenterOutside(Rule):
 
     code = "LW322"
     name = "center-of-mass-outside"
-    options = (Option("margin", 0.25, "how far outside it may lie, as a part of the diagonal of the shapes' box"),)
+    options = (Option("margin", 0.25, "how far outside it may be, as a part of the diagonal of the shapes' box"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         margin = self.option(subject, "margin", float)
@@ -214,7 +215,7 @@ class CenterOutside(Rule):
                 scaled = bounds.distance((x / 1000, y / 1000, z / 1000)) == 0
                 yield self.report(
                     phrase(
-                        "the centre of mass of link '{name}' lies {length} outside its shapes",
+                        "the centre of mass of link '{name}' is {length} outside its shapes",
                         name=link.name,
                         length=_length(distance),
                     ),
@@ -228,7 +229,7 @@ class CenterOutside(Rule):
 
 
 class CenterForgotten(Rule):
-    """An `<inertial>` without `<origin>` on a link whose shapes lie to one side of its frame.
+    """An `<inertial>` without `<origin>` on a link whose shapes are to one side of its frame.
 
     ## Why
 
@@ -270,7 +271,7 @@ class CenterForgotten(Rule):
                 x, y, z = (round(part, 4) + 0.0 for part in bounds.center)
                 yield self.report(
                     phrase(
-                        "<inertial> of link '{name}' has no <origin>, but its shapes lie to one side", name=link.name
+                        "<inertial> of link '{name}' has no <origin>, but its shapes are to one side", name=link.name
                     ),
                     element,
                     notes=[_extent(bounds)],
@@ -279,7 +280,7 @@ class CenterForgotten(Rule):
 
 
 class InertiaTooLarge(Rule):
-    """Moments of inertia that a mass within the link's shapes cannot have.
+    """Moments of inertia too large for a mass within the link's shapes.
 
     ## Why
 

@@ -123,12 +123,12 @@ class AxisNotUnit(Rule):
 
 
 class AxisImplicit(Rule):
-    """A joint that turns has no `<axis>`.
+    """A revolute or continuous joint without `<axis>`.
 
     ## Why
 
-    It turns about x, which few joints do. Whoever forgets the axis sees a wheel that turns about the direction of
-    travel. Joints that slide often do so along x, and are not reported.
+    It turns about x, which few joints do: a wheel without an axis turns about the direction of travel. Prismatic joints
+    often slide along x, and are not reported.
 
     ## Example
 

@@ -19,13 +19,13 @@ _LITTLE = 0.25
 
 
 class SoftLimitsOutside(Rule):
-    """A joint whose soft limits lie outside its limits.
+    """A joint whose soft limits are outside its limits.
 
     ## Why
 
     A safety controller begins to act at the soft limits, to stop the joint before the limits. Outside of them it never
-    acts. A soft limit that lies a little beyond one end and not beyond the other is left alone: grippers that press on
-    what they hold, such as PR2's, leave that end to the mechanical stop.
+    acts. A soft limit a little beyond only one end is not reported: grippers that press on an object, such as PR2's,
+    leave that end to the mechanical stop.
 
     ## Example
 
@@ -46,7 +46,7 @@ class SoftLimitsOutside(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every soft limit that lies beyond the limit on its side."""
+        """Report every soft limit beyond the limit on its side."""
         for joint, _, safety in parts(subject, "safety_controller"):
             if joint.type not in ("revolute", "prismatic") or joint.limit is None or joint.safety is None:
                 continue

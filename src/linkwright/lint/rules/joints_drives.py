@@ -46,13 +46,13 @@ class _Zero(Rule):
 
 
 class EffortZero(_Zero):
-    """A moving joint of a simulated robot whose greatest effort is 0.
+    """A moving joint of a simulated robot with an effort limit of 0.
 
     ## Why
 
-    Simulators take it at its word: the joint has no torque, so it hangs or does not move. A joint that mimics another,
-    or that Gazebo moves by a spring, is left alone, and so are descriptions that say nothing to a simulator: makers
-    write 0 for what they do not tell.
+    Simulators apply it: the joint has no torque, so it hangs or does not move. The rule skips a joint that mimics
+    another or that Gazebo moves by a spring, and descriptions without elements for a simulator: manufacturers write 0
+    for an effort that they do not publish.
 
     ## Example
 
@@ -73,7 +73,7 @@ class EffortZero(_Zero):
 
 
 class VelocityZero(_Zero):
-    """A moving joint whose greatest velocity is 0.
+    """A moving joint with a velocity limit of 0.
 
     ## Why
 
@@ -124,12 +124,12 @@ class _Negative(Rule):
 
 
 class EffortNegative(_Negative):
-    """A joint whose greatest effort is negative.
+    """A joint with a negative effort limit.
 
     ## Why
 
-    `effort` is a size that holds in both directions. A negative one leaves no admissible effort at all; what a
-    simulator makes of it is its own affair. urdfdom reads it; SDF writes -1 for "no limit", URDF has no such value.
+    `effort` is a magnitude for both directions. A negative one allows no effort at all, and simulators treat it
+    differently. urdfdom reads it; SDF writes -1 for "no limit", URDF has no such value.
 
     ## Example
 
@@ -151,7 +151,7 @@ class EffortNegative(_Negative):
 
 
 class VelocityNegative(_Negative):
-    """A joint whose greatest velocity is negative.
+    """A joint with a negative velocity limit.
 
     ## Why
 
@@ -179,7 +179,7 @@ class VelocityNegative(_Negative):
 
 
 class VelocityInDegrees(Rule):
-    """A revolute joint with a greatest velocity that can only be in degrees per second.
+    """A revolute joint with a velocity limit that can only be in degrees per second.
 
     ## Why
 

@@ -16,7 +16,7 @@ from linkwright.xmltree import Element
 _TURNING = ("revolute", "continuous")
 _SLIDING = ("prismatic",)
 _SLACK = 1e-3
-"""Part of the follower's range by which it may pass its limits: rounded factors are no mistake."""
+"""Part of the follower's range by which it may exceed its limits: rounded factors are not mistakes."""
 
 
 def _followers(subject: Subject) -> Iterator[tuple[Joint, Element]]:
@@ -96,7 +96,7 @@ class MimicOfFixed(Rule):
     name = "mimic-of-fixed"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every follower of a joint that stands still."""
+        """Report every follower of a joint that does not move."""
         for joint, leader, mimic in _pairs(subject):
             if leader.type == "fixed" and joint.type != "fixed":
                 yield self.report(
@@ -117,7 +117,7 @@ class MimicStandsStill(Rule):
 
     ## Why
 
-    It stays at its offset, whatever the other does. A fixed joint says so and costs nothing.
+    It stays at its offset, whatever the other joint does. A fixed joint does the same and costs nothing.
 
     ## Example
 
@@ -155,8 +155,8 @@ class MimicBeyondLimits(Rule):
 
     ## Why
 
-    Nothing stops the follower at its limits when the other joint goes on: RViz shows it beyond them, a simulator jams
-    both joints.
+    Nothing stops the follower at its limits when the other joint moves further: RViz shows it beyond them, a simulator
+    jams both joints.
 
     ## Example
 
@@ -261,7 +261,7 @@ class MimicChain(Rule):
 
 
 class MimicOtherKind(Rule):
-    """A sliding joint that mimics a turning one, or the other way round, without a multiplier.
+    """A prismatic joint that mimics a revolute joint, or the other way round, without a multiplier.
 
     ## Why
 
@@ -312,8 +312,8 @@ class MimicDrivenByControl(Rule):
 
     ## Why
 
-    Two masters: the hardware or simulator is told to follow the other joint and to obey the commands. ros2_control
-    refuses such a joint when it loads the description.
+    The joint has two masters: the hardware or simulator has to follow the other joint and to obey the commands.
+    ros2_control refuses such a joint when it loads the description.
 
     ## Example
 

@@ -120,7 +120,7 @@ class LimitEmpty(Rule):
 
 
 class LimitBoundsMissing(Rule):
-    """A revolute or prismatic joint whose `<limit>` says neither `lower` nor `upper`.
+    """A revolute or prismatic joint whose `<limit>` has neither `lower` nor `upper`.
 
     ## Why
 
@@ -170,7 +170,7 @@ class LimitBoundsMissing(Rule):
 
 
 class LimitOneBound(Rule):
-    """A revolute or prismatic joint whose `<limit>` says only one of `lower` and `upper`.
+    """A revolute or prismatic joint whose `<limit>` has only one of `lower` and `upper`.
 
     ## Why
 
@@ -215,12 +215,12 @@ class LimitOneBound(Rule):
 
 
 class LimitOnContinuous(Rule):
-    """A continuous joint with position limits, which nothing observes.
+    """A continuous joint with position limits, which nothing enforces.
 
     ## Why
 
-    A continuous joint turns without bounds: urdfdom reads the limits and every consumer ignores them. Whoever wrote
-    them believes that the joint stops there.
+    A continuous joint turns without bounds: urdfdom reads the limits and every consumer ignores them. Their author
+    believes that the joint stops there.
 
     ## Example
 
@@ -240,7 +240,7 @@ class LimitOnContinuous(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every continuous joint with a range that somebody may rely on."""
+        """Report every continuous joint with a range that its author may rely on."""
         for joint, limit in limits(subject, "continuous"):
             ends = bounds(limit)
             if ends is None or ends[0] == ends[1] or max(abs(ends[0]), abs(ends[1])) > UNBOUNDED:
@@ -302,7 +302,7 @@ class ZeroOutsideLimits(Rule):
     ## Why
 
     RViz and joint_state_publisher show such a joint at the middle of its range, simulators start it at 0 and push it
-    into its range with a jolt. It is no mistake, so the rule is off by default.
+    into its range with a jolt. It is not a mistake, so the rule is off by default.
 
     ## Example
 
@@ -335,5 +335,5 @@ class ZeroOutsideLimits(Rule):
                     ),
                     limit,
                     "lower" if ends[0] > 0 else "upper",
-                    hint=phrase("move its <origin> so that 0 lies in the range"),
+                    hint=phrase("move its <origin> so that 0 is in the range"),
                 )

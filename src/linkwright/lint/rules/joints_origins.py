@@ -66,11 +66,11 @@ class OriginFar(Rule):
 
 
 class AngleInDegrees(Rule):
-    """An `rpy` angle of more than two turns that is no whole multiple of 5.
+    """An `rpy` angle of more than two turns that is not a multiple of 5.
 
     ## Why
 
-    Angles are in radians; 22.5 rad are three and a half turns. Whole multiples of 5 the URDF reader reports (URDF190).
+    Angles are in radians; 22.5 rad are three and a half turns. The URDF reader reports multiples of 5 (URDF190).
 
     ## Example
 
@@ -92,7 +92,7 @@ class AngleInDegrees(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every origin of joints, visuals, collisions and inertias that turns further than anybody means."""
+        """Report every origin of joints, visuals, collisions and inertias that turns implausibly far."""
         for owner, origin in _origins(subject):
             rpy = values(origin, "rpy")
             if len(rpy) == 3 and not looks_like_degrees(*rpy) and 4 * pi < max(map(abs, rpy)) <= 360:
@@ -167,8 +167,8 @@ class OriginMissing(Rule):
 
     ## Why
 
-    The two frames coincide, so the shapes of both links lie inside each other. Sometimes that is meant, so the rule is
-    off by default.
+    The two frames coincide, so the shapes of both links overlap. Sometimes that is intended, so the rule is off by
+    default.
 
     ## Example
 
@@ -198,7 +198,7 @@ class OriginMissing(Rule):
             if element.first("origin") is None and {joint.parent, joint.child} <= solid:
                 yield self.report(
                     phrase(
-                        "joint '{name}' has no <origin>: '{child}' stands in the same place as '{parent}'",
+                        "joint '{name}' has no <origin>: '{child}' is in the same place as '{parent}'",
                         name=joint.name,
                         child=joint.child,
                         parent=joint.parent,
@@ -215,7 +215,7 @@ _DECIMAL = lazy_pattern(r"[+-]?[0-9]+\.[0-9]{2,5}")
 
 
 def _exact(word: str) -> str | None:
-    """The part of pi that a rounded number stands for, with its sign; None where it stands for itself."""
+    """Return the part of pi that a rounded number approximates, with its sign, or None."""
     if not _DECIMAL.fullmatch(word):
         return None
     angle = float(word)

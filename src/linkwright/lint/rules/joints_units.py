@@ -69,8 +69,8 @@ class LimitEndless(Rule):
 
     ## Why
 
-    With a range of thousands of turns sliders and planners sample positions that nobody means, and numbers lose
-    precision. `continuous` says what is meant.
+    With a range of thousands of turns sliders and planners sample meaningless positions, and numbers lose precision.
+    `continuous` expresses the intent.
 
     ## Example
 
@@ -115,8 +115,8 @@ class LimitInMillimetres(Rule):
 
     ## Why
 
-    Lengths are in metres. A slide of 120 m is a slide of 120 mm that was copied from a data sheet. Limits such as -100
-    and 100 are left alone: who writes them means no end.
+    Lengths are in metres. A travel of 120 m is a travel of 120 mm that was copied from a data sheet. Limits such as
+    -100 and 100 are not reported: they mean no limits.
 
     ## Example
 

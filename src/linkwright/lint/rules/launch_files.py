@@ -1,4 +1,4 @@
-"""Python launch files: what they name and whether it is there. They are read, never run."""
+"""Python launch files: the files that they name, and whether these exist. They are read, never run."""
 
 from __future__ import annotations
 
@@ -209,7 +209,7 @@ def _is_installed_as(package: PackageContext, shared: SharedFile) -> bool:
 
 
 def _may_move(package: PackageContext) -> bool:
-    """Whether files may be installed in other folders than those they lie in."""
+    """Return whether files may be installed in other folders than in the source."""
     setup = package.setup
     if setup is not None:
         return not setup.is_complete or any(item.destination is None for item in setup.installed)

@@ -144,9 +144,9 @@ class UndeclaredLaunchDependency(Rule):
 
     ## Why
 
-    rosdep installs what `package.xml` names. On a machine where nobody installed the others by hand, the launch fails.
-    Left out are the packages of every ROS installation, such as `launch_ros`, those that declared packages bring, and
-    those that depend on this package themselves, which cannot be declared.
+    rosdep installs the packages that `package.xml` names. On a machine without the others, the launch fails. Not
+    reported are the packages of every ROS installation, such as `launch_ros`, dependencies of declared packages, and
+    packages that depend on this package themselves, which cannot be declared.
 
     ## Example
 
@@ -241,7 +241,7 @@ def _declare(manifest: Manifest, names: list[str]) -> Fix | None:
 
 
 def _executables_of(name: str) -> frozenset[str] | None:
-    """The executables of a well-known package, or None where they cannot all be told."""
+    """Return the executables of a well-known package, or None if not all are known."""
     if name not in OURS:
         return OTHERS.get(name)
     nodes = (node.partition("/") for node in extensions("linkwright.nodes"))
@@ -249,7 +249,7 @@ def _executables_of(name: str) -> frozenset[str] | None:
 
 
 def _own_executables(package: PackageContext) -> frozenset[str] | None:
-    """The executables of a package, or None where they cannot all be told."""
+    """Return the executables of a package, or None if not all are known."""
     setup, cmake = package.setup, package.cmake
     if cmake is not None:
         return None  # targets are made in many ways

@@ -1,4 +1,4 @@
-"""Launch files: how they make ``robot_description``, their arguments, and what RViz is told."""
+"""Launch files: how they make ``robot_description``, their arguments, and the configuration of RViz."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class CommandWithoutBlank(LaunchRule):
 
 
 class DescriptionNotTyped(Rule):
-    """``robot_description`` is made by a command, not said to be text, and cannot be read as YAML.
+    """``robot_description`` comes from a command, is not marked as text, and cannot be read as YAML.
 
     ## Why
 
@@ -131,7 +131,7 @@ class DescriptionNotTyped(Rule):
 
 
 class LaunchArgumentUndeclared(LaunchRule):
-    """A ``LaunchConfiguration`` names an argument that looks like a misspelt one of those declared.
+    """A ``LaunchConfiguration`` names what seems to be a misspelt declared argument.
 
     ## Why
 
@@ -164,7 +164,7 @@ class LaunchArgumentUndeclared(LaunchRule):
             first = call.args[0] if call.args else argument_of(call, "name")
             name = python.text(first)
             if name is None:
-                return  # one that cannot be told
+                return  # a name that is not known
             declared.add(name)
         for call in python.calls("LaunchConfiguration"):
             if len(call.args) != 1 or call.keywords:
@@ -182,11 +182,11 @@ class LaunchArgumentUndeclared(LaunchRule):
 
 
 class FixedFrameUnknown(PackageRule):
-    """The fixed frame of an RViz configuration is no link of any robot in the package.
+    """The fixed frame of an RViz configuration is not a link of any robot in the package.
 
     ## Why
 
-    RViz shows nothing but "Frame does not exist" until somebody chooses another one.
+    RViz shows nothing but "Frame does not exist" until the user chooses another one.
 
     ## Example
 
@@ -318,7 +318,7 @@ def _refused_as_yaml(file: LaunchFile, package: PackageContext, subject: Subject
 
 
 def _trouble_as_yaml(text: str) -> str | None:
-    """Why a text is no string when it is read as YAML, as launch does; None where it is one."""
+    """Return why a text is not a string when read as YAML, as launch does; None if it is one."""
     import yaml
 
     try:

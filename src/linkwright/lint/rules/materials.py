@@ -48,9 +48,9 @@ class RedefinedMaterial(Rule):
 
     ## Why
 
-    The first definition of a name in the file holds for all of them, even over the colour written right in the visual.
-    So the second colour is never seen: "RViz shows the wrong colour". A colour that nobody tells from the first is an
-    information.
+    The first definition of a name in the file applies to all uses, even over the colour written in the visual. So the
+    second colour is never shown: "RViz shows the wrong colour". The finding on a colour that looks like the first is
+    an information.
 
     ## Example
 

@@ -16,7 +16,7 @@ from linkwright.urdf import Mesh
 from linkwright.xmltree import Element
 
 _PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tga", ".tif", ".tiff", ".dds", ".webp", ".ktx2", ".material")
-"""What RViz reads as a texture, and Ogre's material scripts."""
+"""The extensions of texture files that RViz reads, and of Ogre's material scripts."""
 
 
 class MissingTexture(Rule):
@@ -63,7 +63,7 @@ class MissingTexture(Rule):
 
 
 class TextureFormat(Rule):
-    """A texture file that is no image RViz reads.
+    """A texture file in a format that RViz does not read.
 
     ## Why
 
@@ -92,7 +92,7 @@ class TextureFormat(Rule):
             if ending.lower() not in _PICTURES:
                 yield self.report(
                     phrase(
-                        "the texture '{rpartition}' is no image of a format that is read",
+                        "the texture '{rpartition}' is not in an image format that RViz reads",
                         rpartition=uri.rpartition("/")[2],
                     ),
                     element,

@@ -166,7 +166,7 @@ class UnevenScale(Rule):
 
 
 class Millimetres(Rule):
-    """A mesh that comes out larger than a house.
+    """A mesh that is larger than a house after scaling.
 
     ## Why
 
@@ -213,11 +213,11 @@ class Millimetres(Rule):
 
 
 class TooSmall(Rule):
-    """A mesh that comes out smaller than a millimetre.
+    """A mesh that is smaller than a millimetre after scaling.
 
     ## Why
 
-    A mesh in metres was scaled by a thousandth as if it were in millimetres; what is left is a speck.
+    A mesh in metres was scaled by a thousandth as if it were in millimetres; the result is a speck.
 
     ## Example
 
@@ -231,7 +231,7 @@ class TooSmall(Rule):
     <mesh filename="package://arm/meshes/base.dae"/>
     ```
 
-    COLLADA files say their unit themselves, and it is applied.
+    COLLADA files have their unit, which is applied.
     """
 
     code = "LW434"

@@ -24,11 +24,11 @@ _INSTALLED = lazy_pattern(r".*?/opt/ros/[^/]+/share/(.+)")
 _MUJOCO, _HEAD = b"<mujoco", 4_000
 """The root of a model for MuJoCo, which stands among the first bytes of its file."""
 KNOWN = (".stl", ".stlb", ".dae", ".obj", ".glb", ".gltf", ".ply", ".fbx", ".3ds", ".mesh")
-"""What RViz reads."""
+"""The mesh formats that RViz reads."""
 
 
 def written(element: Element, attribute: str) -> str:
-    """An attribute's value as it stands in the file, expressions of xacro unevaluated."""
+    """Return an attribute's value as it is written in the file, with xacro expressions unevaluated."""
     source = element.source
     found = attribute_value_range(source.text, element.offset, attribute) if source is not None else None
     return source.text[slice(*found)] if source is not None and found is not None else ""
@@ -85,9 +85,9 @@ class RelativePath(Rule):
 
     ## Why
 
-    What it is relative to is up to the tool: the folder of the URDF for some, the current folder for others. RViz
-    gets the description as a text from a topic, knows no folder, and shows nothing. In a file that lies in no ROS
-    package, or beside a model for MuJoCo, as for simulators that know no packages, the finding is an information.
+    Its base depends on the tool: the folder of the URDF for some, the current folder for others. RViz gets the
+    description as a text from a topic, knows no folder, and shows nothing. In a file outside a ROS package, or beside a
+    model for MuJoCo, as for simulators that do not know packages, the finding is an information.
 
     ## Example
 

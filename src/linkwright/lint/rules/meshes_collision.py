@@ -58,7 +58,7 @@ class HeavyCollision(Rule):
 
 
 class VisualAsCollision(Rule):
-    """A collision that uses the very mesh of the visual, and that is not a light one.
+    """A collision that uses the same large mesh as the visual.
 
     ## Why
 
@@ -81,7 +81,7 @@ class VisualAsCollision(Rule):
     code = "LW436"
     name = "collision-uses-visual-mesh"
     default = False
-    options = (Option("triangles", 2000, "triangles from which on a shared mesh is reported"),)
+    options = (Option("triangles", 2000, "the number of triangles from which a shared mesh is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         most = self.option(subject, "triangles", int)

@@ -46,7 +46,7 @@ def _is_listed(folder: Path, name: str) -> bool:
 
 
 def _folder_hint(use: MeshUse, name: str) -> Phrase | None:
-    """What to write where a folder near the description stands in the place of a package; None where there is none."""
+    """Return how to use a folder near the description instead of a missing package, or None."""
     source = use.element.source
     if source is None or not name:
         return None
@@ -129,8 +129,8 @@ class MissingFile(Rule):
 
     ## Why
 
-    The part is not shown, and not hit by anything. Where a whole folder of meshes is missing, one finding stands for
-    all of them.
+    The part is not shown, and does not collide. If a whole folder of meshes is missing, one finding reports all of
+    them.
 
     ## Example
 
@@ -189,7 +189,7 @@ class MissingFile(Rule):
 
 
 class WrongCase(Rule):
-    """A mesh address that has other capitals than the file.
+    """A mesh address whose capitals differ from those of the file.
 
     ## Why
 
@@ -236,11 +236,11 @@ class WrongCase(Rule):
 
 
 class OutsidePackage(Rule):
-    """A mesh that lies outside of every package, while the description lies in one.
+    """A mesh outside every package, although the description is in one.
 
     ## Why
 
-    What is not in a package is not installed, so after `colcon build` and on another computer the mesh is gone.
+    A file outside a package is not installed, so the mesh is missing after `colcon build` and on another computer.
 
     ## Example
 
@@ -334,5 +334,5 @@ def _with_case(uri: str, twin: Path) -> str:
 
 
 def _last_folder(path: Path) -> Path:
-    """The deepest folder on the way to a file that is there."""
+    """Return the deepest existing folder on the way to a file."""
     return next((folder for folder in path.parents if folder.is_dir()), Path(path.anchor))

@@ -121,7 +121,7 @@ class BaseLinkNotAtTheTop(Rule):
 
 
 class FootprintBelowBase(Rule):
-    """``base_footprint`` hangs from ``base_link``.
+    """``base_footprint`` is a child of ``base_link``.
 
     ## Why
 
@@ -248,12 +248,12 @@ class FixedFrameInRobot(Rule):
 
 
 class OpticalFrameRotation(Rule):
-    """An optical frame is not rotated against its camera as REP 103 says.
+    """The rotation of an optical frame to its camera is not that of REP 103.
 
     ## Why
 
-    A camera's own frame has x forward and z up; its optical frame has z forward and y down, as images are defined.
-    Point clouds and detections come in the optical frame and lie on their side where the rotation is missing.
+    A camera's own frame has x forward and z up; its optical frame has z forward and y down, like images. Point clouds
+    and detections are in the optical frame, and appear turned on their side if the rotation is missing.
 
     ## Example
 
@@ -320,7 +320,7 @@ def _is_tiny(shape: Geometry) -> bool:
 
 
 def _same_camera(stem: str, parent: str) -> bool:
-    """Whether a parent link is the camera's own frame, which has x forward: its name says so."""
+    """Return whether a parent link is the camera's own frame, which has x forward, by its name."""
     base = re.sub(r"_(link|frame)$", "", parent)
     return bool(stem) and (base == stem or (stem.startswith(f"{base}_") and bool(_CAMERA.search(base))))
 

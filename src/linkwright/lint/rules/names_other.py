@@ -17,8 +17,8 @@ class JointNameIsLinkName(Rule):
 
     ## Why
 
-    URDF keeps the two apart, but SDF, into which Gazebo turns it, does not: it wants different names for all parts of a
-    model, and Gazebo refuses or renames what is called alike.
+    URDF allows that, but SDF, to which Gazebo converts it, does not: all parts of a model need different names, and
+    Gazebo refuses or renames parts with the same name.
 
     ## Example
 
@@ -50,7 +50,7 @@ class JointNameIsLinkName(Rule):
 
 
 class RobotNameUnusual(Rule):
-    """The name of the robot has blanks or other characters that names of ROS do not have.
+    """The name of the robot has blanks or other characters that ROS names do not allow.
 
     ## Why
 

@@ -62,7 +62,7 @@ class NameEdgeBlank(Rule):
 
 
 class NameBlank(Rule):
-    """A blank stands inside the name of a link or joint.
+    """The name of a link or joint has a blank inside.
 
     ## Why
 
@@ -137,12 +137,12 @@ class NameLeadingSlash(Rule):
 
 
 class NameNotAscii(Rule):
-    """A letter outside ASCII stands in the name of a link or joint.
+    """The name of a link or joint has a letter outside ASCII.
 
     ## Why
 
     Names of topics and parameters in ROS 2 are ASCII, and letters that look alike but differ (a Cyrillic `a`, a full
-    width underscore) make names that nobody can type.
+    width underscore) make names that are hard to type.
 
     ## Example
 
@@ -176,7 +176,7 @@ class NameNotAscii(Rule):
 
 
 class NameUnusualCharacter(Rule):
-    """A character that is neither letter, digit, underscore, dash, dot nor slash stands in a name.
+    """A name has a character other than letters, digits, underscores, dashes, dots and slashes.
 
     ## Why
 
@@ -251,7 +251,7 @@ class NameUpperCase(Rule):
 
 
 class NamesDifferInCase(Rule):
-    """Two links or two joints have names that differ in upper and lower case alone.
+    """Two links or two joints have names that differ only in upper and lower case.
 
     ## Why
 

@@ -1,8 +1,8 @@
-"""Wheels: whether what they are called, where they are and how they turn agree.
+"""Wheels: whether their names, positions and axes agree.
 
-A wheel is known by its name alone: the word "wheel" in the name of the joint or the link below it, without a word that
-tells of a steering or suspension joint. All places are those with every joint at zero, in the frame of ``base_link``
-(or the root), in which REP 103 has x forward and y to the left.
+A wheel is recognised by its name alone: the word "wheel" in the name of the joint or its child link, without a word for
+a steering or suspension joint. All positions are those with every joint at zero, in the frame of ``base_link`` (or the
+root), in which REP 103 has x forward and y to the left.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def pairs(found: list[Wheel]) -> Iterator[tuple[Wheel, Wheel]]:
 
 
 class WheelSide(Rule):
-    """Of two wheels the one called left is on the right.
+    """A wheel called left is on the right.
 
     ## Why
 
@@ -138,10 +138,10 @@ class WheelHasLimits(Rule):
 
     ## Why
 
-    A revolute joint stops at its limits, so the wheel turns once and stands. A wheel turns without end, which is what
-    `continuous` means. A joint that steers the wheel has limits by right: it is told by its axis, which is not that of
-    the wheel's cylinder, or, where the wheel has no cylinder, does not lie to the side. A part that
-    carries wheels, such as the arm of a rover, is not a wheel.
+    A revolute joint stops at its limits, so the wheel turns once and stops. A wheel turns without limits, which is what
+    `continuous` means. A joint that steers the wheel rightly has limits: its axis is not that of the wheel's cylinder
+    or, if the wheel has no cylinder, does not point to the side. A part that carries wheels, such as the arm of a
+    rover, is not a wheel.
 
     ## Example
 
@@ -224,7 +224,7 @@ class WheelAxis(Rule):
             element = wheel.joint.element.first("axis")
             written = " ".join(f"{value:g}" for value in axis)
             message = phrase(
-                "the wheel '{name}' turns about '{written}', and its cylinder lies along '{shown}'",
+                "the wheel '{name}' turns about '{written}', but the axis of its cylinder is '{shown}'",
                 name=wheel.link.name,
                 written=written,
                 shown=shown,
@@ -327,7 +327,7 @@ class WheelsTurnBackward(Rule):
     ## Why
 
     By the right hand rule a wheel that turns about +y, to the left, rolls forward. With both axes the other way round a
-    positive velocity drives backward. Pedantic: a controller may be told so.
+    positive velocity drives backward. Pedantic: a controller may be configured for that.
 
     ## Example
 

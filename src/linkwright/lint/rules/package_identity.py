@@ -93,7 +93,7 @@ class PackageNameDiffers(PackageRule):
 
 
 class PackageName(ManifestRule):
-    """The name of a package is none that colcon accepts, or not as REP 144 wants it.
+    """The name of a package is not one that colcon accepts, or does not follow REP 144.
 
     ## Why
 
@@ -133,7 +133,7 @@ class PackageName(ManifestRule):
 
 
 class FolderNameDiffers(PackageRule):
-    """The folder of a package is not called like the package.
+    """The folder of a package has another name than the package.
 
     ## Why
 
@@ -161,7 +161,7 @@ class FolderNameDiffers(PackageRule):
         element = manifest.root.first("name")
         if manifest.name is not None and element is not None and manifest.name != package.folder.name:
             message = phrase(
-                "the package '{name}' lies in a folder called '{folder_name}'",
+                "the package '{name}' is in a folder called '{folder_name}'",
                 name=manifest.name,
                 folder_name=package.folder.name,
             )
@@ -169,7 +169,7 @@ class FolderNameDiffers(PackageRule):
 
 
 class MaintainerEmail(ManifestRule):
-    """A maintainer's e-mail address is none that colcon accepts.
+    """A maintainer's e-mail address is not one that colcon accepts.
 
     ## Why
 
@@ -215,11 +215,11 @@ class MaintainerEmail(ManifestRule):
 
 
 class ManifestPlaceholder(ManifestRule):
-    """``package.xml`` still has what ``ros2 pkg create`` filled in.
+    """``package.xml`` still has the placeholders of ``ros2 pkg create``.
 
     ## Why
 
-    The description, licence and maintainer are what others see of the package. Without a licence nobody may use it.
+    Others see the description, licence and maintainer of the package. Without a licence they may not use it.
 
     ## Example
 

@@ -1,7 +1,7 @@
-"""Whether ``setup.py`` and ``CMakeLists.txt`` install what the package has, and have what they install.
+"""Rules about ``setup.py`` and ``CMakeLists.txt``: files that are not installed, and installed files that are missing.
 
-Where it is not known what a build file installs (a value that only CMake knows, a command of another package), the
-rules about what is missing say nothing.
+If it is not known what a build file installs (a value that only CMake knows, a command of another package), the rules
+about missing files do not apply.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _USUAL = frozenset(
         *("materials", "world", "worlds", "config", "configs", "cfg", "param", "params", "rviz", "map", "maps", "srdf"),
     }
 )
-"""What the folders are called whose files belong to what is installed; others may hold templates or sources."""
+"""The names of folders whose files are meant to be installed; others may have templates or sources."""
 _SETTINGS = lazy_pattern(r"(?<!\.launch)\.(rviz|yaml)$", re.IGNORECASE)
 _NOT_SHARED = lazy_pattern(r"(^|/)(test|tests|docs?|scripts?|\w*_py|src|include|resource|ci|docker)(/|$)")
 
@@ -40,9 +40,9 @@ class PatternMatchesNothing(PackageRule):
 
     ## Why
 
-    `glob` says nothing when it finds nothing, so the files that were meant are missing after the build: a launch file
-    or an include then fails with "no such file". A misspelt folder is the usual cause. Where another pattern finds
-    files in the same folder, the finding is an information.
+    `glob` is silent when it finds nothing, so the intended files are missing after the build: a launch file or an
+    include then fails with "no such file". A misspelt folder is the usual cause. If another pattern finds files in the
+    same folder, the finding is an information.
 
     ## Example
 
@@ -94,9 +94,9 @@ class FolderNotInstalled(PackageRule):
 
     ## Why
 
-    ROS looks in the share folder of the installed package, not in the sources. What is not installed is not there when
-    the launch file or the description asks for it. Folders with names of their own count where a launch file of the
-    package looks for a file in them. A folder of YAML and RViz files that no launch file of the package reads is an
+    ROS looks in the share folder of the installed package, not in the sources. The launch file or the description does
+    not find a file that is not installed. Folders with unusual names count if a launch file of the package looks for a
+    file in them. For a folder of YAML and RViz files that no launch file of the package reads, the finding is an
     information.
 
     ## Example
@@ -135,7 +135,7 @@ class FolderNotInstalled(PackageRule):
         files = {file for item in setup.installed for file in item.files(package.folder)}
         installed = {file.rpartition("/")[0] for file in files}
         empty = [item for item in setup.installed if item.is_pattern and not item.files(package.folder)]
-        meant = {near_folder(package, item.text.rpartition("/")[0]) for item in empty}  # LW821 tells of these
+        meant = {near_folder(package, item.text.rpartition("/")[0]) for item in empty}  # LW821 reports these
         lacking: dict[str, list[str]] = {}
         for folder in _left_out(package, lambda folder: folder in installed or folder in meant):
             lacking.setdefault(_top(folder), []).append(folder)
@@ -175,7 +175,7 @@ class FolderNotInstalled(PackageRule):
 
 
 class FileNotInstalled(PackageRule):
-    """A folder is installed by a pattern that leaves a description or launch file out.
+    """A folder is installed by a pattern that omits a description or launch file.
 
     ## Why
 

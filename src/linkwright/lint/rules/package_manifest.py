@@ -29,7 +29,7 @@ _BUILD_FILES = {
 
 
 class PackageRule(Rule, ABC):
-    """A rule about a package; it has nothing to say where a description lies in none."""
+    """A rule about a package; it does not apply to a description outside a package."""
 
     scope = Scope.PACKAGE
 
@@ -181,13 +181,14 @@ class ManifestVersion(ManifestRule):
 
 
 class DependencyRepeated(ManifestRule):
-    """A dependency is named twice for the same time.
+    """A dependency is named twice for the same purpose.
 
     ## Why
 
-    `<depend>` stands for `<build_depend>`, `<build_export_depend>` and `<exec_depend>` together. catkin_pkg, through
-    which colcon and `ament_package()` read the file, refuses it where one of them is there, too: the package is not
-    built. The same line twice changes nothing, as in what MoveIt's Setup Assistant writes: that is an information.
+    `<depend>` means `<build_depend>`, `<build_export_depend>` and `<exec_depend>` together. catkin_pkg, with which
+    colcon and `ament_package()` read the file, refuses it if one of them names the package, too: the package is not
+    built. The same line twice changes nothing, as in files of MoveIt's Setup Assistant: then the finding is an
+    information.
 
     ## Example
 
@@ -265,8 +266,8 @@ class BuildTypeDiffers(PackageRule):
 
     ## Why
 
-    colcon goes by `<build_type>`. With `ament_cmake` it looks for a `CMakeLists.txt`, with `ament_python` for a
-    `setup.py`; without a build type it takes the package for one of ROS 1.
+    colcon uses `<build_type>`. With `ament_cmake` it looks for a `CMakeLists.txt`, with `ament_python` for a
+    `setup.py`; without a build type it treats the package as one of ROS 1.
 
     ## Example
 

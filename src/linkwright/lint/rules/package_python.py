@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _MARKERS = "share/ament_index/resource_index/packages"
 _DRIVER_OF_WEBOTS = lazy_pattern(r"^[ \t]+def init\(self, *\w+, *\w+\)", re.MULTILINE)
-"""A class that webots_ros2_driver loads by its name; nobody runs the executable that its tutorial declares for it."""
+"""A class that webots_ros2_driver loads by its name; the executable in its tutorial is never run."""
 _SCRIPT_FOLDERS = lazy_pattern(r"^(script_dir|install_scripts)[ \t]*=[ \t]*(\S+)[ \t]*\r?$", re.MULTILINE)
 
 
@@ -155,7 +155,7 @@ class EntryPointMissing(PackageRule):
 
     ## Why
 
-    The build says nothing; `ros2 run` fails with an import error.
+    The build does not report it; `ros2 run` fails with an import error.
 
     ## Example
 

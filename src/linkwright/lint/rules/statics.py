@@ -43,7 +43,7 @@ class Contact(NamedTuple):
 
 
 def contacts(subject: Subject) -> list[Contact] | None:
-    """Where a robot stands on the ground; None without one, and when one of its wheels cannot be measured."""
+    """Return the contacts of a robot with the ground; None if there is no robot, or a wheel cannot be measured."""
     robot, frames = subject.robot, subject.frames
     if robot is None:
         return None
@@ -68,13 +68,13 @@ def contacts(subject: Subject) -> list[Contact] | None:
 
 
 class WheelsNotLevel(Rule):
-    """Wheels or casters that do not reach the ground on which the others stand.
+    """Wheels or casters that do not reach the ground below the others.
 
     ## Why
 
-    A driven wheel in the air turns without moving the robot, and a robot that stands on two wheels and one corner of
-    its body turns in circles. The lowest points of all wheels and casters lie in one plane. What hangs on a joint that
-    lifts it, such as the rockers of a rover, finds the ground by itself, and is left alone.
+    A driven wheel in the air turns without moving the robot, and a robot on two wheels and one corner of its body turns
+    in circles. The lowest points of all wheels and casters should be in one plane. Wheels on a joint that lifts them,
+    such as the rockers of a rover, reach the ground by themselves, and are not reported.
 
     ## Example
 
@@ -191,7 +191,7 @@ class CenterBeyondWheels(Rule):
 
 
 def _depth(shape: object, upward: float) -> float | None:
-    """How far a shape reaches below its middle, whose z axis has this part upward; None where it is no wheel."""
+    """Return how far a shape reaches below its middle, given its z axis' part upward; None if it is not a wheel."""
     if isinstance(shape, Sphere):
         return shape.radius
     if isinstance(shape, Cylinder) and abs(upward) < _LEVEL:
@@ -200,7 +200,7 @@ def _depth(shape: object, upward: float) -> float | None:
 
 
 def _center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | None:
-    """Where the robot's weight acts, x and y in the frame of the base; None without masses."""
+    """Return the centre of mass of a robot, x and y in the frame of the base; None if it has no mass."""
     base = frames.get("base_link", frames[robot.root])
     total = x = y = 0.0
     for name, link in robot.links.items():
@@ -228,7 +228,7 @@ def _hull(points: Sequence[Point]) -> list[Point]:
 
 
 def _distance_outside(point: Point, corners: Sequence[Point]) -> float:
-    """How far a point lies outside a convex polygon, measured from the line of the edge it is beyond most."""
+    """Return a point's distance from a convex polygon, measured from the line of the edge that it exceeds most."""
     farthest = 0.0
     for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
         edge = hypot(end[0] - start[0], end[1] - start[1])

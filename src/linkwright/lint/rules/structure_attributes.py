@@ -1,4 +1,4 @@
-"""Rules about attributes that nobody reads."""
+"""Rules about attributes that no program reads."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class MisspeltAttribute(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every attribute nobody reads whose name is near one that is not given."""
+        """Report every unread attribute whose name is similar to that of a missing one."""
         told = told_by_reader(subject)
         for place, attribute in subject.structure.unknown_attributes:
             meant = meant_attribute(place, attribute)
@@ -86,7 +86,7 @@ class UnknownAttribute(Rule):
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every attribute nobody reads that is like nothing the element has."""
+        """Report every other unread attribute."""
         told = told_by_reader(subject)
         for place, attribute in subject.structure.unknown_attributes:
             if not is_expected_attribute(attribute):
@@ -100,7 +100,7 @@ class UnknownAttribute(Rule):
                 phrase("'{attribute}' in {place} is not read", attribute=attribute, place=place),
                 place.element,
                 span=attribute_name_span(place.element, attribute),
-                hint=phrase("what is read here: {known}", known=known)
+                hint=phrase("known here: {known}", known=known)
                 if known
                 else phrase("<{tag}> has no attributes", tag=place.rule.tag),
             )

@@ -1,4 +1,4 @@
-"""Rules about elements that nobody reads: misspelt, in the wrong place, unknown."""
+"""Rules about elements that no program reads: misspelt, in the wrong place, unknown."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class MisspeltElement(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every element nobody reads whose name is near one that could stand there."""
+        """Report every unread element whose name is similar to one that is allowed there."""
         told = told_by_reader(subject)
         for place, child in subject.structure.unknown_elements:
             meant = meant_element(place.rule, child)
@@ -120,7 +120,7 @@ def _is_no_offset(origin: Element) -> bool:
 
 
 def _nearest_homes(homes: Sequence[str], place: Place) -> Sequence[str]:
-    """Those of the elements in which another is read that lie in the one where it stands, else the one around it."""
+    """Return the possible parents of a misplaced element inside its present parent, else the parent's own parent."""
     around = place.parent.tag if place.parent is not None else ""
     inside = [home for home in homes if home in place.rule.child_rules]
     return inside or ((around,) if around in homes else homes)
@@ -154,7 +154,7 @@ class UnknownElement(Rule):
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every element nobody reads that is like nothing URDF has."""
+        """Report every other unread element."""
         told = told_by_reader(subject)
         for place, child in subject.structure.unknown_elements:
             if place.rule is schema.ROBOT or child.tag in INNER_EXTENSIONS or child.tag in HOMES:
@@ -166,7 +166,7 @@ class UnknownElement(Rule):
                 yield self.report(
                     phrase("<{tag}> in {place} is not read", tag=child.tag, place=inside(place)),
                     child,
-                    hint=phrase("what is read here: {known}", known=known)
+                    hint=phrase("known here: {known}", known=known)
                     if known
                     else phrase("<{tag}> holds no elements", tag=place.rule.tag),
                 )
@@ -178,7 +178,7 @@ class MaterialInCollision(Rule):
     ## Why
 
     Collision shapes have no colour: the material is not read, and a material that is defined only there does not exist
-    for anybody else. It is harmless where a macro writes one body for both, so the rule is off by default.
+    elsewhere. It is harmless if a macro writes one body for both, so the rule is off by default.
 
     ## Example
 

@@ -1,4 +1,4 @@
-"""Rules about what is left over: expressions nobody evaluates, texts, names and materials without use."""
+"""Rules about leftovers: unevaluated expressions, and texts, names and materials without use."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class XacroInUrdf(Rule):
 
     ## Why
 
-    Nobody evaluates it: the mesh is looked for in a folder with the name `$(find my_robot)`.
+    It is not evaluated: tools look for the mesh in a folder with the name `$(find my_robot)`.
 
     ## Example
 
@@ -38,7 +38,7 @@ class XacroInUrdf(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every address with an expression; of numbers the reader says it."""
+        """Report every address with an expression; the reader reports numbers."""
         if subject.expansion is not None:
             return
         for place in subject.structure.places:
@@ -48,7 +48,7 @@ class XacroInUrdf(Rule):
                     continue
                 if "${" in written or "$(" in written:
                     yield self.report(
-                        phrase("nobody evaluates '{written}' in a file that is not xacro", written=written),
+                        phrase("'{written}' is not evaluated in a file that is not xacro", written=written),
                         place.element,
                         attribute,
                         hint=phrase(
@@ -83,7 +83,7 @@ class StrayText(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every text with something in it; where a value is missing besides, the reader says it."""
+        """Report every text that is not blank, unless the reader reports a missing value at the same element."""
         told = {found.span for found in subject.reading.diagnostics}
         for place in subject.structure.places:
             texts = [child for child in place.element.children if isinstance(child, Text) and child.data.strip()]

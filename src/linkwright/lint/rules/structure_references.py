@@ -16,7 +16,7 @@ from linkwright.xmltree.patches import element_range
 
 _NUMBER = lazy_pattern(r"\d+")
 _MISSED = frozenset({"sensor", "plugin", "preserveFixedJoint", "disableFixedJointLumping"})
-"""What somebody misses when it does nothing, unlike a colour."""
+"""Elements whose loss matters to a user, unlike that of a colour."""
 _UNFILLED = frozenset("${}")
 """Letters of a name that a program was to fill in."""
 
@@ -31,7 +31,7 @@ def _without_siblings(name: str, known: Iterable[str]) -> list[str]:
 
 
 def _kind_meant(gazebo: Element, name: str) -> str:
-    """Return whether a `<gazebo>` is meant for a ``link`` or a ``joint``, by what it holds and then by the name."""
+    """Return whether a `<gazebo>` is meant for a ``link`` or a ``joint``, by its content and then by the name."""
     held = {child.tag for child in gazebo.elements()}
     if held & OF_JOINTS:
         return "joint"
@@ -125,7 +125,7 @@ class TransmissionJointUnknown(Rule):
     name = "transmission-joint-unknown"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every transmission of a joint that is not there, in ``<ros2_control>`` as well."""
+        """Report every transmission of a missing joint, in ``<ros2_control>`` as well."""
         known = _names(subject, "joint")
         tops = list(subject.elements("transmission"))
         tops += [inner for system in subject.elements("ros2_control") for inner in system.elements("transmission")]
@@ -349,7 +349,7 @@ class ControlOfFixedJoint(Rule):
     name = "control-of-fixed-joint"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every command interface of a joint that stands still."""
+        """Report every command interface of a joint that does not move."""
         fixed = {joint.name: joint for joint in subject.joints if joint.type == "fixed"}
         for _, entry in _control_joints(subject):
             joint = fixed.get(entry.attributes.get("name", ""))

@@ -14,7 +14,7 @@ from linkwright.xmltree import Element
 
 
 class NothingToSee(Rule):
-    """A robot of several links without a single shape.
+    """A robot with several links but no shapes.
 
     ## Why
 
@@ -64,8 +64,8 @@ class DisconnectedPart(Rule):
 
     ## Why
 
-    A description is one tree. urdfdom refuses several roots, and the reader says so at the second one (URDF152); this
-    rule names every further part, what is in it, and the joint that would connect it.
+    A description is one tree. urdfdom refuses several roots, and the reader reports the second one (URDF152). This rule
+    names every further part, its links, and the joint that would connect it.
 
     ## Example
 
@@ -99,7 +99,7 @@ class DisconnectedPart(Rule):
             return
         sizes = Counter(root for name in links if (root := _root_of(name, above)) is not None)
         main = max(roots, key=lambda root: (sizes[root], -roots.index(root)))
-        told = roots[1] if roots[1] != main else roots[0]  # the reader's finding stands at the second root
+        told = roots[1] if roots[1] != main else roots[0]  # the reader's finding is at the second root
         for root in roots:
             element = links[root].element
             if root in (main, told) or element is None:

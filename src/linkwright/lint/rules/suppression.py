@@ -6,12 +6,12 @@ from linkwright.lint.rule import Rule, Scope
 
 
 class UnusedSuppression(Rule):
-    """A suppressing comment that suppresses nothing.
+    """A suppression comment that suppresses nothing.
 
     ## Why
 
-    The finding it was written for is gone, or never was there. Left in the file it hides the next finding of this
-    code without anybody having decided so.
+    The finding that it was written for no longer exists, or never did. If the comment stays in the file, it hides the
+    next finding of this code by accident.
 
     ## Example
 
@@ -33,7 +33,7 @@ class UnusedSuppression(Rule):
 
 
 class UnknownSuppression(Rule):
-    """A suppressing comment that names no rule.
+    """A suppression comment with an unknown rule.
 
     ## Why
 

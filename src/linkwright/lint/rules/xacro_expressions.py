@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class DeprecatedFunction(XacroRule):
-    """A function of xacro is called by its bare name, which is deprecated.
+    """A xacro function is called by its bare name, which is deprecated.
 
     ## Why
 

@@ -38,7 +38,7 @@ _ABSOLUTE = lazy_pattern(r"(/|~|file:///|[A-Za-z]:[\\/])")
 
 
 class XacroPrefixMissing(Rule):
-    """A tag of xacro is written without the prefix ``xacro:``.
+    """A xacro tag is written without the prefix ``xacro:``.
 
     ## Why
 
@@ -109,12 +109,13 @@ def _elements_of(rule: ElementRule) -> set[str]:
 
 
 class XacroNamespaceMissing(XacroRule):
-    """A file is written in xacro and does not declare it.
+    """A xacro file does not declare the namespace of xacro.
 
     ## Why
 
-    Without `xmlns:xacro` on its root a file is plain URDF for every tool that does not go by the ending of its name: it
-    is not expanded, and its expressions are taken for names and numbers. ROS's xacro expands it all the same. Pedantic.
+    Without `xmlns:xacro` on its root a file is plain URDF for every tool that does not use the extension of its name:
+    it is not expanded, and its expressions are read as names and numbers. ROS's xacro expands it all the same.
+    Pedantic.
 
     ## Example
 
@@ -153,11 +154,11 @@ class XacroNamespaceMissing(XacroRule):
 
 
 class XacroNamespaceAddress(Rule):
-    """The prefix ``xacro`` is declared with another address than that of ROS.
+    """The prefix ``xacro`` is declared with another URI than that of ROS.
 
     ## Why
 
-    xacro goes by the prefix alone and takes any address, but editors that check the file go by the address. Pedantic.
+    xacro uses only the prefix and accepts any address, but editors that check the file use the address. Pedantic.
 
     ## Example
 
@@ -233,7 +234,7 @@ class IncludeOutsidePackage(XacroRule):
 
     ## Why
 
-    The file is found from the sources, where the packages lie side by side. Installed, each package has its own folder,
+    The path works in the sources, where the packages are side by side. When installed, each package has its own folder,
     and the path leads nowhere.
 
     ## Example
@@ -266,7 +267,7 @@ class IncludeOutsidePackage(XacroRule):
                     target = Path(os.path.normpath(folder / include.name))
                     if not target.is_relative_to(package.folder):
                         message = phrase(
-                            "'{name}' lies outside the package '{package_name}'",
+                            "'{name}' is outside the package '{package_name}'",
                             name=include.name,
                             package_name=package.name,
                         )

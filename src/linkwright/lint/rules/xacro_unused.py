@@ -1,8 +1,8 @@
-"""Definitions in xacro files that nothing uses.
+"""Rules about unused definitions in xacro files.
 
-A name counts as used when any file of the description, or any other description file of the package, mentions it
-anywhere; where a name may be put together from values, the rules say nothing. Files that only define things for others
-to include are never reported on for that.
+A name counts as used if any file of the description, or any other description file of the package, mentions it
+anywhere; if names may be composed from values, the rules do not apply. They never report files that only have
+definitions for others to include.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _SPEAKING = lazy_pattern(r"\b(?:fatal|error|warning|message)\s*\(")
 
 _CONSTANTS = (pi / 4, pi / 2, pi, 2 * pi, pi / 180, 180 / pi)
 _ROUNDED = 6e-4
-"""How far 3.14 or 1.57 may be from the constant that they stand for."""
+"""The greatest difference between a number such as 3.14 or 1.57 and its constant."""
 _COMMENT = lazy_pattern(r"<!--.*?-->", re.DOTALL)
 _CALL = lazy_pattern(r"<xacro:([\w.-]+)")
 
@@ -39,13 +39,13 @@ class UnusedProperty(XacroRule):
 
     ## Why
 
-    Whoever changes its value expects the robot to change. Often the place where it belongs has the number written out.
+    A user who changes its value expects the robot to change. Often the place that should use it has a literal number.
 
-    Only properties of the checked file and those inside macros are looked at: a file of properties for several robots
-    holds more than one of them needs. Constants of mathematics, such as `PI`, stand by for who needs them. One that is
-    evaluated at once, with `lazy_eval="false"`, and calls `xacro.fatal`,
-    `error`, `warning` or `message` is there for what it says. One of a table of dimensions, such as `d415_cam_depth_px`
-    beside `d415_cam_depth_py` and `d415_cam_depth_pz`, which are used, is an information: the table is complete.
+    Only properties of the checked file and those inside macros are checked: a file of properties for several robots
+    has more than one of them needs. Not reported are mathematical constants, such as `PI`, and a property that is
+    evaluated at once, with `lazy_eval="false"`, and calls `xacro.fatal`, `error`, `warning` or `message`. For one of a
+    table of dimensions, such as `d415_cam_depth_px` beside `d415_cam_depth_py` and `d415_cam_depth_pz`, which are used,
+    the finding is an information: the table is complete.
 
     ## Example
 
@@ -89,7 +89,7 @@ class UnusedProperty(XacroRule):
 
 
 class UnusedArgument(XacroRule):
-    """An argument of a file that nothing uses.
+    """An argument that nothing uses.
 
     ## Why
 
@@ -185,8 +185,8 @@ class UnusedInclude(XacroRule):
 
     ## Why
 
-    The file neither puts anything into the robot nor defines anything that the description uses. Every expansion reads
-    it, and a reader looks into it for what it is there for.
+    The file neither adds anything to the robot nor defines anything that the description uses. Every expansion reads
+    it, and readers look in it for its purpose.
 
     ## Example
 
@@ -228,8 +228,8 @@ class UnusedMacroParameter(XacroRule):
 
     ## Why
 
-    Every call has to give it a value, and no value makes a difference. Where a parameter is meant for a macro that is
-    called inside, it has to be handed on. Mostly it is left from an earlier version, which harms nobody.
+    Every call has to give it a value, and no value makes a difference. A parameter that is meant for a macro called
+    inside has to be passed on. Usually it is left from an earlier version, which is harmless.
 
     ## Example
 
@@ -262,7 +262,7 @@ class UnusedMacroParameter(XacroRule):
                 continue
             for macro in file.macros:
                 if next(macro.element.elements(), None) is None:
-                    continue  # an empty one that others of its name stand in for
+                    continue  # an empty one that others of its name replace
                 yield from (each for name, each in self._of_macro(macro, file, facts) if name not in shared)
 
     def _of_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[tuple[str, Diagnostic]]:

@@ -94,7 +94,7 @@ class PropertyDefinedTwice(XacroRule):
 
     ## Why
 
-    The first value has no effect. Whoever finds and changes it wonders why the robot stays the same.
+    The first value has no effect. A user who finds and changes it wonders why the robot stays the same.
 
     ## Example
 

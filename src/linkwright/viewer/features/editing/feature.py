@@ -100,7 +100,9 @@ class EditingFeature(PageFeature):
             raise EditRefusedError(Diagnostic("EDIT101", why_not or phrase("there is no robot")))
         for given in (message.xyz, message.rpy):
             if given is not None and len(given) != len(_AXES):
-                raise EditRefusedError(Diagnostic("EDIT102", phrase("these numbers are not valid for a robot")))
+                raise EditRefusedError(
+                    Diagnostic("EDIT102", phrase("these numbers are not finite, or too large for a robot"))
+                )
         plan = await asyncio.to_thread(_planned, known, message)
         self._plans[page] = message.number, plan
         page.send(editing.EditPreview(message.number, files_of(plan), list(plan.also), None))
