@@ -20,7 +20,7 @@ def test_the_page_of_a_rule(capsys, word):
 
 def test_the_page_of_another_diagnostic(capsys):
     assert main(["explain", "URDF110"]) == 0
-    assert capsys.readouterr().out.startswith("# URDF110: two things of one kind have the same name\n")
+    assert capsys.readouterr().out.startswith("# URDF110: two elements of one kind have the same name\n")
 
 
 def test_the_page_of_a_rule_in_chinese(capsys):
@@ -40,7 +40,7 @@ def test_the_page_of_a_rule_in_chinese(capsys):
 
 def test_the_page_of_another_diagnostic_in_chinese(capsys):
     assert main(["--lang", "zh", "explain", "URDF110"]) == 0
-    assert capsys.readouterr().out.startswith("# URDF110：同类的两样东西同名\n\nLinks, joints and")
+    assert capsys.readouterr().out.startswith("# URDF110：同类的两个元素同名\n\nLinks, joints and")
 
 
 def test_near_codes_for_one_that_is_none(capsys):

@@ -52,7 +52,7 @@ def test_the_page_of_a_rule_says_what_why_and_what_instead(rule):
 
 def test_a_page_is_found_by_code_and_name_in_any_case():
     assert find_page("lw201") == find_page("limit-inverted") == find_page("LW201")
-    assert find_page("urdf110").title == "two things of one kind have the same name"
+    assert find_page("urdf110").title == "two elements of one kind have the same name"
     assert find_page("LW999") is None
 
 
