@@ -186,7 +186,7 @@ def test_a_file_that_no_commit_has_is_told_from_one_that_came_later(committed, c
     git(committed, "add", "--all")
     git(committed, "commit", "--all", "--message", "new")
     assert main(["diff", "urdf/new.urdf", "--against", "HEAD~1"]) == 2
-    assert "`git log -- urdf/new.urdf` tells which commits have it" in capsys.readouterr().err
+    assert "`git log -- urdf/new.urdf` lists the commits that have it" in capsys.readouterr().err
 
 
 @needs_git

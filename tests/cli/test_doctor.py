@@ -111,7 +111,7 @@ def test_two_trees_and_a_fixed_frame_that_is_not_there(in_graph, capsys, tmp_pat
     rviz = tmp_path / "robot.rviz"
     rviz.write_text("Visualization Manager:\n  Global Options:\n    Fixed Frame: map\n", encoding="utf-8")
     said = doctor(capsys, "--rviz", str(rviz), status=1)
-    assert "frames fall into 2 trees that nothing connects" in said
+    assert "the frames form 2 separate trees" in said
     assert "the fixed frame 'map' of '" in said
     assert "robot.rviz' does not exist, so nothing is shown" in said
 

@@ -83,7 +83,7 @@ def test_a_source_that_is_gone_is_told_of(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr("linkwright.diagnostics.installation.find_installation", lambda: gone)
     assert str(install_hint("image")) == (
         "run pip install 'PATH_TO_LINKWRIGHT[image]', with the path of a checkout or a wheel of Linkwright in place of"
-        f" PATH_TO_LINKWRIGHT: '{tmp_path / 'gone'}', which it was installed from, is not there any more"
+        f" PATH_TO_LINKWRIGHT: '{tmp_path / 'gone'}', which it was installed from, no longer exists"
     )
 
 

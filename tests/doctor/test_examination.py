@@ -409,7 +409,7 @@ def test_a_service_that_nobody_serves():
         endpoint("client", "/planner", "/map_server/map", "nav_msgs/srv/GetMap"),
         endpoint("service", "/map_server", "/map", "nav_msgs/srv/GetMap"),
     )
-    assert "'/map' is served with that type" in only(seen, "DOC206").hint
+    assert "'/map' has that type" in only(seen, "DOC206").hint
 
 
 def test_a_service_of_another_type():

@@ -37,7 +37,7 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["good.urdf", "missing.urdf"], 1, "error[XML101]: no such file"),
         (["missing.urdf", "good.urdf"], 1, "error[XML101]: no such file"),
         (["good.urdf", "prefix=left"], 1, "write prefix:=left"),
-        (["good.urdf", "--against", "HEAD"], 1, "error[CLI342]: 'good.urdf' is in no git repository"),
+        (["good.urdf", "--against", "HEAD"], 1, "error[CLI342]: 'good.urdf' is not in a git repository"),
     ],
 )
 def test_what_cannot_be_compared_is_said(words, status, said, capsys):

@@ -83,7 +83,7 @@ def test_an_open_mesh_is_its_hull_and_says_so(of, tmp_path):
     found = of('<collision><geometry><mesh filename="open.obj" scale="1 -2 3"/></geometry></collision>', density=1.0)
     assert found.properties.mass == pytest.approx(1.0)
     assert np.allclose(found.properties.center, (0.25, -0.5, 0.75))
-    assert found.notes == ("the collision mesh 'open.obj' is not watertight: its convex hull is taken",)
+    assert found.notes == ("the collision mesh 'open.obj' is not watertight: its convex hull is used",)
 
 
 def test_a_mesh_that_is_missing_leaves_the_visuals(of):

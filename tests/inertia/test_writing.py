@@ -184,7 +184,7 @@ def test_a_place_that_makes_two_links_is_refused(write, tmp_path):
     joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
     include = '<xacro:property name="n" value="{}"/><xacro:include filename="part.xacro"/>'
     written, _ = write(f"{XACRO}{include.format('a')}{include.format('b')}{joint}</robot>", name="r.xacro")
-    assert written.refused == {"a": "its place in the file makes several links"}
+    assert written.refused == {"a": "its text in the file makes several links"}
 
 
 def test_a_file_that_changed_meanwhile_is_left_alone(tmp_path):

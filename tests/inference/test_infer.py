@@ -75,11 +75,11 @@ def test_joints_are_held_where_the_user_says_that_nothing_rolls():
 @pytest.mark.parametrize(
     ("options", "code", "words"),
     [
-        ({"kind": "differential"}, "DRIVE211", "takes one pair of driven wheels, and there are 2"),
-        ({"kind": "ackermann"}, "DRIVE211", "vertical joints steer, and there are 0"),
+        ({"kind": "differential"}, "DRIVE211", "needs one pair of driven wheels, but there are 2"),
+        ({"kind": "ackermann"}, "DRIVE211", "vertical joints steer, but there are 0"),
         ({"wheels": ["a", "zzz"]}, "DRIVE210", "no joint 'zzz'"),
-        ({"wheels": ["a", "c"]}, "DRIVE211", "no wheel stands opposite 'a_joint', 'c_joint'"),
-        ({"wheels": ["a", "b"], "kind": "skid"}, "DRIVE211", "takes 2 pairs of wheels"),
+        ({"wheels": ["a", "c"]}, "DRIVE211", "no wheel is opposite 'a_joint', 'c_joint'"),
+        ({"wheels": ["a", "b"], "kind": "skid"}, "DRIVE211", "needs 2 pairs of wheels"),
     ],
 )
 def test_what_cannot_be_done_is_an_error(options, code, words):
@@ -90,7 +90,7 @@ def test_what_cannot_be_done_is_an_error(options, code, words):
 
 def test_a_joint_that_turns_no_wheel_is_told_with_its_place():
     square = '<collision><geometry><box size="0.1 0.03 0.1"/></geometry></collision>'
-    with pytest.raises(LinkwrightError, match="'b_joint' turns no wheel") as error:
+    with pytest.raises(LinkwrightError, match="'b_joint' does not turn a wheel") as error:
         inferred(robot(FOUR[0], wheel("b", 0.2, -0.2, shapes=square)), wheels=["a", "b"])
     assert error.value.diagnostics[0].span is not None
 

@@ -101,7 +101,7 @@ def test_a_value_that_is_given_and_fails_is_an_error_that_names_it(check):
         }
     )
     assert codes(found) == [("info", "LINT303"), ("error", "XML101")]
-    assert "this is so with type:=lost" in [note["message"] for note in found[1]["notes"]]
+    assert "this happens with type:=lost" in [note["message"] for note in found[1]["notes"]]
 
 
 def test_a_finding_of_all_sets_is_told_once_and_one_of_some_says_which(check):
@@ -124,8 +124,8 @@ def test_a_finding_of_all_sets_is_told_once_and_one_of_some_says_which(check):
     )
     boxes = {each["file"].rpartition("/")[2]: each for each in found if each["code"] == "LW401"}
     assert list(boxes) == ["common.xacro", "small.xacro"]
-    assert not any("this is so" in note["message"] for note in boxes["common.xacro"]["notes"])
-    assert "this is so with type:=small" in [note["message"] for note in boxes["small.xacro"]["notes"]]
+    assert not any("this happens" in note["message"] for note in boxes["common.xacro"]["notes"])
+    assert "this happens with type:=small" in [note["message"] for note in boxes["small.xacro"]["notes"]]
 
 
 def test_the_configuration_has_the_last_word(check):
@@ -383,7 +383,7 @@ def test_rules_run_once_for_sets_that_give_the_same_robot(check, monkeypatch, ve
     found = check(files, ".", "--select", "LW206,LW701")
     assert codes(found) == [("warning", "LW206")]
     notes = [note["message"] for note in found[0]["notes"]]
-    assert ("this is so with kind:=3" in notes) is (of_robot > 1)
+    assert ("this happens with kind:=3" in notes) is (of_robot > 1)
     assert (ran.count("LW206"), ran.count("LW701")) == (of_robot, 1)
 
 

@@ -155,7 +155,7 @@ def test_a_parameter_that_other_macros_take_too(told, more, codes):
 
 @pytest.mark.parametrize(
     ("unused", "hint"),
-    [("image_px", "use it with ${...}, or remove it"), ("imge_pz", "'image_pz' is used: is that this one?")],
+    [("image_px", "use it with ${...}, or remove it"), ("imge_pz", "'image_pz' is used: is this one meant?")],
 )
 def test_a_siblings_name_is_not_proposed_for_an_unused_property(tmp_path, unused, hint):
     properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in (unused, "image_pz"))

@@ -112,7 +112,7 @@ def _top_of(path: Path) -> Path:
     """The folder of the working tree that a file is in."""
     done = _git(path.parent, "rev-parse", "--show-toplevel")
     if done.returncode != 0:
-        message = phrase("'{path}' is in no git repository", path=display_path(path))
+        message = phrase("'{path}' is not in a git repository", path=display_path(path))
         hint = phrase("compare it with another file: `linkwright diff OLD NEW`")
         if "dubious ownership" in done.stderr:
             message = phrase("git does not trust the repository of '{path}'", path=display_path(path))
@@ -151,7 +151,7 @@ def _before_renaming(top: Path, commit: str, inside: Path, name: str) -> Path:
             return Path(old)
     message = phrase("commit '{name}' has no file '{inside}'", name=name, inside=new)
     if _git(top, "log", "--max-count=1", "--format=%h", "--", new).stdout:
-        hint = phrase("`git log -- {inside}` tells which commits have it", inside=new)
+        hint = phrase("`git log -- {inside}` lists the commits that have it", inside=new)
     else:
         hint = phrase("no commit has it yet; compare it with another file: `linkwright diff OLD NEW`")
     raise LinkwrightError(Diagnostic("CLI344", message, hint=hint))

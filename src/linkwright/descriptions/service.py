@@ -138,7 +138,7 @@ def _has_open_names(robot: Robot) -> bool:
 
 def _as_warning(error: Diagnostic) -> Diagnostic:
     """Return an error of the expansion as a warning, for a file that urdfdom reads unexpanded."""
-    note = Note(phrase("urdfdom reads the file without expanding it, and passes over what xacro would do"))
+    note = Note(phrase("urdfdom reads the file without expanding it, and ignores the elements of xacro"))
     return error.but(severity=Severity.WARNING, notes=(*error.notes, note))
 
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 _BEGINS = b"version https://git-lfs.github.com/spec/"
 IS_POINTER = phrase("it is only a pointer of Git LFS")
-FETCH = phrase("run `git lfs pull` in the repository that it is from")
+FETCH = phrase("run `git lfs pull` in its repository")
 
 
 def is_pointer(data: bytes) -> bool:

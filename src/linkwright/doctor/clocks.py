@@ -40,7 +40,7 @@ def _simulated(seen: Observation) -> Iterator[Diagnostic]:
     elif on and seen.clock is not None and seen.clock.ticks > 1 and seen.clock.first_ns == seen.clock.last_ns:
         yield Diagnostic(
             "DOC603",
-            phrase("/clock stands still at {last_ns:.3f} s", last_ns=seen.clock.last_ns / _SECOND),
+            phrase("/clock stays at {last_ns:.3f} s", last_ns=seen.clock.last_ns / _SECOND),
             severity=Severity.WARNING,
             notes=(Note(phrase("it is published by {senders}", senders=listed(senders))),),
             hint=phrase("is the simulation paused?"),
@@ -48,7 +48,7 @@ def _simulated(seen: Observation) -> Iterator[Diagnostic]:
     elif on and seen.clock is None and seen.seconds:
         yield Diagnostic(
             "DOC603",
-            phrase("/clock told no time in {seconds:g} s", seconds=seen.seconds),
+            phrase("/clock had no message in {seconds:g} s", seconds=seen.seconds),
             severity=Severity.WARNING,
             notes=(Note(phrase("its publisher is {senders}", senders=listed(senders))),),
             hint=phrase("is the simulation paused, or not started yet?"),
@@ -66,7 +66,7 @@ def _simulated(seen: Observation) -> Iterator[Diagnostic]:
             "DOC604",
             phrase("{count} nodes publish /clock: {senders}", count=len(senders), senders=listed(senders)),
             notes=(Note(phrase("time jumps between them, and each jump back clears the buffers of transforms")),),
-            hint=phrase("end one of them; of a bag, play with one --clock only"),
+            hint=phrase("end one of them; play only one bag with --clock"),
         )
 
 
@@ -86,9 +86,7 @@ def _stamps(seen: Observation) -> Iterator[Diagnostic]:
             ),
             severity=Severity.WARNING,
             notes=(
-                Note(
-                    phrase("tf2 takes a stamp of 0 for the latest there is; robot_state_publisher ignores such states")
-                ),
+                Note(phrase("tf2 reads a stamp of 0 as the latest time; robot_state_publisher ignores such states")),
             ),
             hint=phrase("set header.stamp to the node's time: node.get_clock().now().to_msg()"),
         )
@@ -112,9 +110,7 @@ def _stamps(seen: Observation) -> Iterator[Diagnostic]:
             ),
             severity=Severity.WARNING,
             notes=_why(sender, seen),
-            hint=phrase(
-                "set the computers' clocks by one another (chrony, timedatectl), or use_sim_time for all nodes"
-            ),
+            hint=phrase("synchronize the computers' clocks (chrony, timedatectl), or set use_sim_time for all nodes"),
         )
 
 

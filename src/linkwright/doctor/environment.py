@@ -15,8 +15,8 @@ _OVER_DDS = phrase(
     "ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET (and leave ROS_LOCALHOST_ONLY unset)"
 )
 _OVER_ZENOH = phrase(
-    "use the same ROS_DOMAIN_ID as the nodes; those of rmw_zenoh_cpp are found by a router, which"
-    " 'linkwright run rmw_zenoh_cpp rmw_zenohd' starts; those that speak DDS are not found over Zenoh"
+    "use the same ROS_DOMAIN_ID as the nodes; nodes of rmw_zenoh_cpp are found by a router, which 'linkwright "
+    "run rmw_zenoh_cpp rmw_zenohd' starts; nodes of DDS are not found over Zenoh"
 )
 
 
@@ -30,7 +30,7 @@ def examine_environment(seen: Observation) -> Iterator[Diagnostic]:
     notes = [
         Note(
             phrase(
-                "looked for {seconds:g} s in domain {environment}",
+                "observed for {seconds:g} s in domain {environment}",
                 seconds=seen.seconds,
                 environment=seen.environment.get("ROS_DOMAIN_ID") or 0,
             )
@@ -52,7 +52,7 @@ def _domain(text: str) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC803",
             phrase(
-                "ROS_DOMAIN_ID is {domain}; above {highest} the ports may be those that the system gives away",
+                "ROS_DOMAIN_ID is {domain}; above {highest} the system may give the ports to other programs",
                 domain=text,
                 highest=_HIGHEST_SAFE_DOMAIN,
             ),

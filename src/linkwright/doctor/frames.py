@@ -25,8 +25,8 @@ def examine_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[D
     if circle:
         yield Diagnostic(
             "DOC307",
-            phrase("the parents of frames go in a circle: {circle}", circle=" -> ".join(circle)),
-            hint=phrase("two nodes disagree who is whose parent; publish each frame's transform from one node only"),
+            phrase("the parents of frames form a cycle: {circle}", circle=" -> ".join(circle)),
+            hint=phrase("two nodes disagree about the parents; publish each frame's transform from one node only"),
         )
     for robot in robots:
         yield from _missing(seen, robot)
@@ -47,7 +47,7 @@ def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
             notes = tuple(
                 Note(
                     phrase(
-                        "{senders} says '{parent}' is its parent",
+                        "its parent is '{parent}' according to {senders}",
                         senders=listed(transform.senders),
                         parent=transform.parent,
                     )
@@ -63,7 +63,7 @@ def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
                     parents=listed(parents),
                 ),
                 notes=notes,
-                hint=phrase("a frame has one parent: leave one of the publishers out, or turn one transform round"),
+                hint=phrase("a frame has one parent: remove one of the publishers, or invert one transform"),
             )
         elif len(senders) > 1:
             shared.setdefault(senders, []).append(child)
@@ -87,13 +87,11 @@ def _numbers(seen: Observation) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "DOC306",
                 phrase(
-                    "the transform of frame '{child}' has numbers that are none, or a rotation of length zero",
+                    "the transform of frame '{child}' has numbers that are not finite, or a rotation of length zero",
                     child=transform.child,
                 ),
                 notes=(Note(phrase("it is published by {senders}", senders=listed(transform.senders))),),
-                hint=phrase(
-                    "look at the joint positions and origins that go into it; a rotation that turns nothing is w: 1"
-                ),
+                hint=phrase("check the joint positions and origins behind it; the identity rotation is w: 1"),
             )
 
 
@@ -267,7 +265,7 @@ def _trees(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnosti
     others = [root for root in apart if root != largest]
     yield Diagnostic(
         "DOC308",
-        phrase("frames fall into {count} trees that nothing connects", count=len(apart)),
+        phrase("the frames form {count} separate trees", count=len(apart)),
         severity=Severity.WARNING,
         notes=notes,
         hint=phrase(
@@ -304,7 +302,7 @@ def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Di
         if frame.name in known:
             continue
         there = (
-            phrase("frames there are: {known}", known=listed(sorted(known)))
+            phrase("known frames: {known}", known=listed(sorted(known)))
             if known
             else phrase("there are no frames at all")
         )
@@ -340,7 +338,7 @@ def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Itera
                     sender=listed([frame.sender]),
                     frame=frame.frame,
                 ),
-                notes=(Note(phrase("frames there are: {known}", known=listed(sorted(known)))),),
+                notes=(Note(phrase("known frames: {known}", known=listed(sorted(known)))),),
                 hint=did_you_mean(frame.frame, known)
                 or phrase(
                     "publish its transform, as static_transform_publisher does, or have the node name another frame"

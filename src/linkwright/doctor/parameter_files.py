@@ -17,10 +17,10 @@ def examine_parameter_files(seen: Observation, files: Iterable[str | Path]) -> I
         LinkwrightError: GRAPH211 and GRAPH212, a file cannot be read.
     """
     nodes = sorted(set(seen.nodes))
-    running = phrase("these run: {nodes}", nodes=joined(nodes)) if nodes else None
+    running = phrase("running nodes: {nodes}", nodes=joined(nodes)) if nodes else None
     for file in files:
         shown = display_path(file)
         for section in read_parameter_file(file).without_node(nodes):
-            message = phrase("section '{section}' of '{file}' is for no node that runs", section=section, file=shown)
+            message = phrase("section '{section}' of '{file}' matches no running node", section=section, file=shown)
             hint = did_you_mean(section, nodes) or running
             yield Diagnostic("DOC702", message, severity=Severity.WARNING, hint=hint)

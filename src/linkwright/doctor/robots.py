@@ -144,7 +144,7 @@ def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
                 senders=listed(senders),
             ),
             severity=Severity.WARNING,
-            notes=(Note(phrase("the robot jumps between what they say")),),
+            notes=(Note(phrase("the robot jumps between their values")),),
             hint=phrase(
                 "end one of them: joint_state_publisher_gui is for descriptions without a robot; beside a driver, "
                 "have it publish to a topic of its own"

@@ -163,15 +163,14 @@ def _mismatch(publisher: EndpointInfo, subscription: EndpointInfo, policies: tup
 def _remedy(policy: QoSPolicyKind) -> Phrase:
     if policy is QoSPolicyKind.RELIABILITY:
         return phrase(
-            "have the publisher send reliably, or the subscription take best effort (in RViz: the display's "
-            "Reliability Policy)"
+            "make the publisher reliable, or the subscription best effort (in RViz: the display's Reliability Policy)"
         )
     if policy is QoSPolicyKind.DURABILITY:
         return phrase(
-            "have the publisher keep messages (transient local), or the subscription be volatile (in RViz: the "
-            "display's Durability Policy)"
+            "make the publisher transient local, or the subscription volatile (in RViz: the display's "
+            "Durability Policy)"
         )
-    return phrase("have the publisher promise more, or the subscription ask for less")
+    return phrase("have the publisher offer more, or the subscription request less")
 
 
 def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
@@ -230,7 +229,7 @@ def _unpublished(seen: Observation) -> Iterator[Diagnostic]:
                 ),
             ),
             hint=phrase(
-                "if they are meant to meet, remap one of them: --ros-args -r {topic}:={like}", topic=topic, like=like
+                "if they belong together, remap one of them: --ros-args -r {topic}:={like}", topic=topic, like=like
             ),
         )
 
@@ -250,7 +249,7 @@ def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
     for topic, publishers in sorted(unheard.items()):
         hint = (
             phrase(
-                "velocities are taken on {topics}; remap one side: --ros-args -r {topic}:={other}",
+                "nodes accept velocities on {topics}; remap one side: --ros-args -r {topic}:={other}",
                 topics=listed(sorted(taking)),
                 topic=topic,
                 other=min(taking),
@@ -306,7 +305,7 @@ def _unserved(seen: Observation) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "DOC205",
                 phrase(
-                    "service '{name}' is called by {callers} as {type_name}, but served as {served}",
+                    "service '{name}' is called by {callers} as {type_name}, but has the type {served}",
                     name=name,
                     callers=callers,
                     type_name=type_name,
@@ -324,12 +323,12 @@ def _unserved(seen: Observation) -> Iterator[Diagnostic]:
             severity=Severity.WARNING,
             notes=(Note(phrase("it is of type {type_name}", type_name=type_name)),),
             hint=phrase(
-                "'{near}' is served with that type; remap one of them: --ros-args -r {name}:={near}",
+                "'{near}' has that type; remap one of them: --ros-args -r {name}:={near}",
                 near=near[0],
                 name=name,
             )
             if near
-            else phrase("start the node that serves it, or look at its name and namespace"),
+            else phrase("start the node that provides it, or check its name and namespace"),
         )
 
 

@@ -59,7 +59,7 @@ def _stl_faults(data: bytes) -> Iterator[Phrase]:
     (said,) = struct.unpack_from("<I", data, _HEADER - 4)
     there = (len(data) - _HEADER) // _TRIANGLE
     if said > there:
-        yield phrase("its header says that it has {said} triangles, and there are {there}", said=said, there=there)
+        yield phrase("its header says that it has {said} triangles, but there are {there}", said=said, there=there)
 
 
 def _text_stl_faults(data: bytes) -> Iterator[Phrase]:
@@ -209,9 +209,9 @@ def _glb_faults(data: bytes) -> Iterator[Phrase]:
         return
     version, length, size, kind = struct.unpack_from("<IIII", data, 4)
     if version != 2:
-        yield phrase("it is glTF {version}, and glTF 2 is read", version=version)
+        yield phrase("it is glTF {version}, but only glTF 2 is read", version=version)
     if length > len(data):
-        yield phrase("its header says that it has {said} bytes, and there are {there}", said=length, there=len(data))
+        yield phrase("its header says that it has {said} bytes, but there are {there}", said=length, there=len(data))
     if kind != _JSON_CHUNK:
         yield phrase("its first chunk is not JSON")
         return
@@ -237,7 +237,7 @@ def _document_faults(text: bytes, binary: int | None) -> Iterator[Phrase]:
         yield from _reference_faults(document)
         yield from _range_faults(document, binary)
     except (AttributeError, TypeError, KeyError, IndexError):
-        yield phrase("its JSON has not the form of glTF")
+        yield phrase("its JSON does not have the form of glTF")
 
 
 def _reference_faults(document: dict[str, Any]) -> Iterator[Phrase]:

@@ -102,7 +102,7 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
         corner, count = int(placed.mesh.faces.max()), len(vertices)
         if corner >= count:
             raise BadMeshError(
-                phrase("a triangle has corner {corner}, and there are {count}", corner=corner, count=count)
+                phrase("a triangle has corner {corner}, but there are {count}", corner=corner, count=count)
             )
     return found
 

@@ -105,7 +105,7 @@ def read_mesh(path: Path) -> TriangleMesh:
     """
     kind = path.suffix.lower()
     if kind not in MESH_ENDINGS:
-        message = phrase("'{path}' is not a mesh of a format that is read", path=display_path(path))
+        message = phrase("the mesh '{path}' has a format that is not read", path=display_path(path))
         raise LinkwrightError(
             Diagnostic("INR102", message, hint=phrase("use {mesh_endings}", mesh_endings=joined(MESH_ENDINGS)))
         )
@@ -130,7 +130,7 @@ def read_mesh(path: Path) -> TriangleMesh:
     except BadMeshError as error:
         raise unreadable(path, error.why) from None
     if not np.abs(mesh.vertices).max() <= FARTHEST:
-        raise unreadable(path, phrase("a coordinate is beyond all bounds"))
+        raise unreadable(path, phrase("a coordinate is out of range"))
     return mesh
 
 

@@ -115,7 +115,7 @@ def _solid(
         if not mesh.is_watertight:
             notes.append(
                 phrase(
-                    "the {kind} mesh '{name}' is not watertight: its convex hull is taken", kind=term(kind), name=name
+                    "the {kind} mesh '{name}' is not watertight: its convex hull is used", kind=term(kind), name=name
                 )
             )
     else:
@@ -125,11 +125,7 @@ def _solid(
             return None
         solid = shape_properties(geometry)
         if not solid.mass > _NOTHING:
-            why = (
-                phrase("it has no volume worth mentioning")
-                if solid.mass > 0
-                else phrase("it has a size that is not positive")
-            )
+            why = phrase("its volume is negligible") if solid.mass > 0 else phrase("it has a size that is not positive")
             notes.append(phrase("a {kind} {what} is left out: {why}", kind=term(kind), what=term(what), why=why))
             return None
     return solid.moved(shape.origin)

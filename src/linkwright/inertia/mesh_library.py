@@ -109,7 +109,7 @@ class MeshLibrary:
         if max(map(abs, mesh.scale)) > FARTHEST:
             from linkwright.geometry.meshes import unreadable
 
-            raise unreadable(path, phrase("its scale is beyond all bounds"))
+            raise unreadable(path, phrase("its scale is out of range"))
         return path
 
     def _base(self, element: Element | None) -> Path:

@@ -87,7 +87,7 @@ def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
     if link.inertial is None:
         return _without(link, bodies)
     if not is_computable(link.inertial):
-        return Verdict(Standing.IMPOSSIBLE, phrase("its numbers are beyond all bounds"))
+        return Verdict(Standing.IMPOSSIBLE, phrase("its numbers are out of range"))
     present = from_inertial(link.inertial)
     shapes = link.collisions if found.kind == "collision" else link.visuals
     comparison = None if found.properties is None else compare(present, found.properties)

@@ -59,13 +59,13 @@ def judge(
         fixed = [pair for pair in fixed if pair not in steered]
     if single_steered:
         names = quoted_names([wheel.joint for wheel in single_steered])
-        return Verdict(None, phrase("the wheels on {names} are steered, and not in a pair", names=names))
+        return Verdict(None, phrase("the wheels on {names} are steered, but are not a pair", names=names))
     casters: list[str] = []
     if single:
         casters = [wheel.link for wheel in single if _supports_only(wheel, fixed)]
         others = [wheel.joint for wheel in single if wheel.link not in casters]
         if others and (chosen or wanted is None):
-            return Verdict(None, phrase("no wheel stands opposite {names}", names=quoted_names(others)))
+            return Verdict(None, phrase("no wheel is opposite {names}", names=quoted_names(others)))
     verdict = _of_pairs(survey, fixed, steered, wanted)
     return Verdict(verdict.drive, verdict.reason, tuple(casters))
 
@@ -108,9 +108,9 @@ def _why_none(fixed: list[Pair], steered: list[Pair]) -> Phrase:
     if len(steered) > 1:
         return phrase("there are {count} pairs of steered wheels", count=len(steered))
     if steered:
-        return phrase("there are steered wheels, and no pair beside them that could drive")
+        return phrase("there are steered wheels, but no other pair that could drive")
     if fixed:
-        return phrase("there are pairs of wheels of different size, of which one may only support")
+        return phrase("there are pairs of wheels of different sizes, one of which may only support")
     return phrase("there is no pair of wheels, one on the left and one on the right")
 
 
@@ -118,17 +118,17 @@ def _lacking(kind: DriveKind, fixed: list[Pair], steered: list[Pair]) -> Phrase 
     """Return what a kind of drive lacks, or None if it lacks nothing."""
     if kind == "ackermann" and len(steered) != 1:
         return phrase(
-            "it takes one pair of wheels that vertical joints steer, and there are {count}", count=len(steered)
+            "it needs one pair of wheels that vertical joints steer, but there are {count}", count=len(steered)
         )
     least = {"mecanum": 2, "skid": 2}.get(kind, 1)
     if len(fixed) < least:
         return phrase(
-            "it takes {least} pairs of wheels, each with one on the left and one on the right, and there are {count}",
+            "it needs {least} pairs of wheels, each with one on the left and one on the right, but there are {count}",
             least=least,
             count=len(fixed),
         )
     if kind == "differential" and len(fixed) > 1:
-        return phrase("it takes one pair of driven wheels, and there are {count}", count=len(fixed))
+        return phrase("it needs one pair of driven wheels, but there are {count}", count=len(fixed))
     return None
 
 

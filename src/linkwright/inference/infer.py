@@ -185,8 +185,8 @@ class _Inferring:
                 continue
             axis = Element("axis", {"xyz": " ".join(gazebo.number(-part + 0.0) for part in joint.axis)})
             message = phrase(
-                "the axis of joint '{joint}' points to the right: it is turned round, as plugins take a positive "
-                "velocity for forward",
+                "the axis of joint '{joint}' points to the right: it is reversed, as a positive velocity is "
+                "forward for plugins",
                 joint=joint.name,
             )
             yield Finding(_at(joint.element, "DRIVE110", message), joint.element, (axis,))
@@ -263,7 +263,7 @@ def _without_wheels(survey: Survey, under: Undercarriage) -> Verdict:
         )
     if _one_chain(survey):
         return Verdict(Drive("joints"), phrase("it has no wheels, and all its joints are one chain from a base"))
-    return Verdict(None, phrase("it has no wheels, and from its base goes more than one chain of joints"))
+    return Verdict(None, phrase("it has no wheels, and its base has more than one chain of joints"))
 
 
 def _one_chain(survey: Survey) -> bool:
@@ -288,8 +288,7 @@ def _chosen(survey: Survey, name: str) -> Wheel:
     wheel = survey.wheel_on(joint)
     if wheel is None:
         message = phrase(
-            "joint '{joint}' turns no wheel: it has to turn without limits what is round about its axis, which has "
-            "to be level",
+            "joint '{joint}' does not turn a wheel: a wheel is round about a level axis and turns without limits",
             joint=joint.name,
         )
         raise LinkwrightError(_at(joint.element, "DRIVE210", message, Severity.ERROR))

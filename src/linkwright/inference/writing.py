@@ -85,7 +85,7 @@ class _Writer:
         owner = findings[0].owner
         assert owner is not None, "findings without an owner add nothing"
         if self._times[_place(owner)] > 1:
-            raise NotWritableError(phrase("its place in the file makes several links or joints"))
+            raise NotWritableError(phrase("its text in the file makes several links or joints"))
         if id(owner) in self._links:
             return self._in_link(owner, findings)
         if id(owner) in self._joints:
@@ -159,5 +159,5 @@ def _place(element: Element) -> tuple[str, int]:
 def _refusal(finding: Finding, why: str) -> Diagnostic:
     told = finding.diagnostic
     message = phrase("not written into the file: {what}: {why}", what=told.message, why=why)
-    hint = phrase("write it where the macro or the expression is; `linkwright drive FILE --show` prints the text")
+    hint = phrase("edit the macro or the expression; `linkwright drive FILE --show` prints the text")
     return Diagnostic("DRIVE301", message, told.span, hint=hint, source=told.source)

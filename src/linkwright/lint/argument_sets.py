@@ -330,10 +330,10 @@ def _condition(run: _Run, runs: Sequence[_Run]) -> Note:
     values = run.given.values
     own = [name for name in values if any(other.given.values.get(name) != values[name] for other in runs)]
     if not own:
-        return Note(phrase("this is so without arguments"))
+        return Note(phrase("this happens without arguments"))
     first = [name for name in own if name in run.given.varied] or own
     shown = " ".join(f"{name}:={values[name]}" for name in first[:_FEW])
-    return Note(phrase("this is so with {values}", values=shown), run.given.span)
+    return Note(phrase("this happens with {values}", values=shown), run.given.span)
 
 
 def asked_argument(diagnostic: Diagnostic) -> str | None:

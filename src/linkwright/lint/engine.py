@@ -324,8 +324,8 @@ def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     for index, count in more.items():
         note = Note(
             counted(
-                "the same place is found wrong once more, through other macro calls or includes",
-                "the same place is found wrong {count} more times, through other macro calls or includes",
+                "the same place has this finding once more, through other macro calls or includes",
+                "the same place has this finding {count} more times, through other macro calls or includes",
                 count,
             )
         )

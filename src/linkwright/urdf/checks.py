@@ -72,7 +72,7 @@ def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Fi
                 owner=owner_name(owner),
                 value=value,
             )
-            findings.error("URDF123", message, shape, name, hint=phrase("URDF 1.2 wants sizes above zero"))
+            findings.error("URDF123", message, shape, name, hint=phrase("URDF 1.2 requires sizes above zero"))
     return geometry if good else UNREADABLE
 
 

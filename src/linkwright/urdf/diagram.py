@@ -42,7 +42,7 @@ def render(gv_text: str, path: str | Path) -> None:
     except ModuleNotFoundError as error:
         raise missing_extra("URDF202", error) from None
     except ImportError as error:
-        hint = phrase("install pygraphviz 2.0 or newer, whose wheels carry Graphviz")
+        hint = phrase("install pygraphviz 2.0 or newer, whose wheels include Graphviz")
         raise LinkwrightError(
             Diagnostic("URDF202", phrase("Graphviz is not available: {error}", error=foreign(error)), hint=hint)
         ) from error

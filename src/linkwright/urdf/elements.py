@@ -181,7 +181,7 @@ def _check_bounds(joint_element: Element, joint: Joint, findings: UrdfReport) ->
                         owner=owner_name(joint_element),
                         name=name,
                     )
-                    hint = phrase("URDF 1.2 wants both 'lower' and 'upper'")
+                    hint = phrase("URDF 1.2 requires both 'lower' and 'upper'")
                     findings.error("URDF120", message, element, hint=hint)
         if joint.type == "revolute":
             _check_angles(element, joint.limit, joint_element, findings)

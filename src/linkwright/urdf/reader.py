@@ -188,5 +188,5 @@ def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
             if target == joint.name:
                 message = phrase("joint '{name}' mimics itself", name=joint.name)
                 if len(chain) > 1:
-                    message = phrase("the mimic joints go in a circle: {value}", value=" -> ".join([*chain, target]))
+                    message = phrase("the mimic joints form a cycle: {value}", value=" -> ".join([*chain, target]))
                 findings.warning("URDF181", message, element, "joint", hint=phrase("one joint must move by itself"))

@@ -182,7 +182,7 @@ def _check_reachable(root: str, links: Mapping[str, Link], joints: Sequence[Join
             stack.append((child, iter(below.get(child, ()))))
     lost = [name for name in links if name not in seen]
     if lost:
-        consequence = phrase("{count} links do not hang from the root '{root}'", count=len(lost), root=root)
+        consequence = phrase("{count} links are not below the root '{root}'", count=len(lost), root=root)
         _report_loop(_loop_from(lost[0], joints), joints, consequence, findings)
 
 
@@ -204,7 +204,7 @@ def _report_loop(loop: Sequence[str], joints: Sequence[Joint], consequence: str,
     assert end is not None
     findings.error(
         "URDF153",
-        phrase("the joints go in a circle, {loop}, and {consequence}", loop=" -> ".join(loop), consequence=consequence),
+        phrase("the joints form a cycle, {loop}, and {consequence}", loop=" -> ".join(loop), consequence=consequence),
         end,
         "link",
         hint=phrase("remove or turn around one of these joints; URDF cannot describe a closed chain"),

@@ -407,7 +407,7 @@ def test_a_joint_without_an_axis_has_none_to_be_edited(tmp_path: Path) -> None:
     text = robot("").replace('type="revolute"', 'type="floating"')
     found = refused(tmp_path, text, EditRequest("axis", "j", xyz=(0, 0, 1)))
     assert found.code == "EDIT101"
-    assert "there is no axis of 'j'" in found.message
+    assert "'j' has no axis" in found.message
 
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])

@@ -43,14 +43,14 @@ class Workspace:
         """
         file = Path(path)
         if file.is_relative_to(_OURS):
-            return forbidden_file(path, phrase("it comes with this program"))
+            return forbidden_file(path, phrase("it is part of this program"))
         if any((parent / "share" / "ament_index").is_dir() for parent in file.parents):
             return forbidden_file(path, phrase("it is installed, and the next build would undo the change"))
         if not file.is_relative_to(self.folder):
             why = phrase("it is outside the workspace '{folder}'", folder=str(self.folder))
             return forbidden_file(path, why)
         if not os.access(path, os.W_OK):
-            return forbidden_file(path, phrase("it may only be read"))
+            return forbidden_file(path, phrase("it is read-only"))
         return None
 
 
@@ -168,5 +168,5 @@ def _bytes_of(path: str) -> bytes:
 
 
 def _changed(path: str) -> Diagnostic:
-    message = phrase("'{path}' was changed by another program meanwhile, and is left as it is", path=display_path(path))
-    return Diagnostic("EDIT107", message, hint=phrase("look at the robot as it is now, and edit it again"))
+    message = phrase("another program has changed '{path}' meanwhile, so it is not written", path=display_path(path))
+    return Diagnostic("EDIT107", message, hint=phrase("look at the current robot, and repeat the edit"))

@@ -90,7 +90,7 @@ class _Planner:
         owner = None if robot is None else request.owner(robot)
         path = None if owner is None else path_to(self._now.root, owner)
         if owner is None or path is None or description.name.startswith("<"):
-            message = phrase("there is no {part} of '{name}' to be edited", part=request.part, name=request.name)
+            message = phrase("'{name}' has no {part} to edit", part=request.part, name=request.name)
             raise EditRefusedError(Diagnostic("EDIT101", message, hint=phrase("the description may have changed")))
         self._path, self._owner = path, owner
         self._also_changed: dict[str, None] = {}
@@ -105,7 +105,7 @@ class _Planner:
                 )
         if request.xyz is not None:
             if request.tag == "axis" and not any(abs(each) > EXACT for each in request.xyz):
-                message = phrase("an axis needs a direction: 0 0 0 is none")
+                message = phrase("an axis needs a direction: 0 0 0 has none")
                 raise EditRefusedError(Diagnostic("EDIT102", message))
             yield "xyz", list(request.xyz)
         element = self._owner.first(request.tag)
@@ -294,7 +294,7 @@ class _Planner:
         """The numbers of an attribute as it is now."""
         found = self._values_in(self._now, Target(self._path, self._request.tag, name))
         if found is None:
-            message = phrase("'{name}' of <{tag}> has other than numbers", name=name, tag=self._request.tag)
+            message = phrase("'{name}' of <{tag}> has a value that is not a number", name=name, tag=self._request.tag)
             raise EditRefusedError(Diagnostic("EDIT102", message, self._owner.span(), source=self._owner.source))
         return found
 

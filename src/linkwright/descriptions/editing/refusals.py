@@ -67,7 +67,7 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
         return Diagnostic("EDIT104", message, place.span, notes=notes, hint=hint, source=place.source)
     if forbidden is not None:
         return forbidden
-    message = phrase("no number can be found for which '{written}' becomes what is asked for", written=written)
+    message = phrase("no number gives '{written}' the requested value", written=written)
     hint = phrase("write a number, or a sum with one, in place of the expression")
     return Diagnostic("EDIT105", message, place.span, notes=notes, hint=hint, source=place.source)
 

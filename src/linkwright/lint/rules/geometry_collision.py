@@ -71,7 +71,7 @@ class MissingCollision(Rule):
                 continue
             link = next(link for link in bodies.members(body) if link.visuals)
             yield self.report(
-                phrase("link '{name}' is seen but has no collision shape, while other links have", name=link.name),
+                phrase("link '{name}' is visible but has no collision shape, unlike other links", name=link.name),
                 link.element,
                 "name",
                 hint=phrase("add a <collision>, best with a simple shape around it"),
@@ -117,7 +117,7 @@ class MissingVisual(Rule):
                     phrase("link '{name}' has a collision shape and no visual", name=link.name),
                     link.element,
                     "name",
-                    hint=phrase("add a <visual> with the same geometry, if it is to be seen"),
+                    hint=phrase("add a <visual> with the same geometry, if it should be visible"),
                 )
 
 

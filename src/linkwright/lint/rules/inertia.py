@@ -87,7 +87,7 @@ class MissingInertial(Rule):
             notes = [Note(phrase("nor have the links fixed to it: {rest}", rest=quoted_names(rest)))] if rest else []
             notes.insert(0, Note(phrase("joint '{name}' moves it", name=body.joint.name), _span(body.joint.element)))
             yield self.report(
-                phrase("moving link '{name}' has no <inertial>, while {why}", name=links[0].name, why=why),
+                phrase("moving link '{name}' has no <inertial>, although {why}", name=links[0].name, why=why),
                 element,
                 "name",
                 notes=notes,

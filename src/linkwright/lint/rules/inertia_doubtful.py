@@ -119,8 +119,8 @@ class TurnedSphere(Rule):
             if alike and not products and any(inertial.origin.rpy) and inertial.ixx:
                 yield self.report(
                     phrase(
-                        "the rotation of <inertial> of link '{name}' changes nothing: its inertia is alike about"
-                        " every axis",
+                        "the rotation of <inertial> of link '{name}' changes nothing: its inertia is the same "
+                        "about every axis",
                         name=link.name,
                     ),
                     part(inertial, "origin"),

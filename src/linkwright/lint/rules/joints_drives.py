@@ -41,7 +41,7 @@ class _Zero(Rule):
                     ),
                     limit,
                     self.attribute,
-                    hint=phrase("give what the motor can do"),
+                    hint=phrase("give the limit of the motor"),
                 )
 
 
@@ -118,7 +118,7 @@ class _Negative(Rule):
                     ),
                     limit,
                     self.attribute,
-                    hint=phrase("it holds in both directions: give its size, {value}", value=shown(-size)),
+                    hint=phrase("it applies in both directions: give its magnitude, {value}", value=shown(-size)),
                     fix=Fix((edit,), safe=False) if edit else None,
                 )
 

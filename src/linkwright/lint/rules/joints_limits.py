@@ -249,7 +249,7 @@ class LimitOnContinuous(Rule):
                 continue  # a whole turn, which is every position there is
             yield self.report(
                 phrase(
-                    "continuous joint '{name}' has limits from {ends} to {other_ends}, which nothing observes",
+                    "continuous joint '{name}' has limits from {ends} to {other_ends}, which nothing enforces",
                     name=joint.name,
                     ends=shown(ends[0]),
                     other_ends=shown(ends[1]),

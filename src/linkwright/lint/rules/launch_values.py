@@ -122,7 +122,7 @@ class DescriptionNotTyped(Rule):
                 continue
             path, reason = refused
             message = phrase(
-                "launch reads this description as YAML, and '{path}' is none: {reason}",
+                "launch reads this description as YAML, but '{path}' is not a YAML text: {reason}",
                 path=path,
                 reason=foreign(reason),
             )

@@ -90,7 +90,7 @@ class RedefinedMaterial(Rule):
             told.add(key)
             yield self.report(
                 phrase(
-                    "material '{name}' is defined again with another {difference}, which is never seen",
+                    "material '{name}' is defined again with another {difference}, which is never shown",
                     name=material.name,
                     difference=_difference(known, material),
                 ),
@@ -234,7 +234,7 @@ class UnusedMaterial(Rule):
                     phrase("material '{name}' is not used", name=name),
                     element,
                     "name",
-                    hint=phrase("use it, or take it out"),
+                    hint=phrase("use it, or remove it"),
                     fix=None if element.origin is not None else remove_element(element, safe=False),
                 )
 

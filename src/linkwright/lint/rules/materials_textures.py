@@ -57,7 +57,7 @@ class MissingTexture(Rule):
                 hint = file_hint(path, _PICTURES)
                 twin = case_twin(path.absolute())
                 if twin is not None:
-                    notes.append(Note(phrase("the file is '{name}', in other capitals", name=twin.name)))
+                    notes.append(Note(phrase("the file is '{name}', with other capitals", name=twin.name)))
             message = phrase("there is no image '{uri}' for this texture", uri=uri)
             yield self.report(message, element, "filename", notes=notes, hint=hint)
 
@@ -134,7 +134,7 @@ class TextureOnStl(Rule):
             if isinstance(geometry, Mesh) and geometry.filename.lower().endswith(".stl"):
                 yield self.report(
                     phrase(
-                        "the texture of link '{name}' does not show, for an STL mesh has no texture coordinates",
+                        "the texture of link '{name}' is not shown: an STL mesh has no texture coordinates",
                         name=link.name,
                     ),
                     material_element(visual),

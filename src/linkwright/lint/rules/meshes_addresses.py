@@ -167,9 +167,9 @@ class HomePath(Rule):
                 better = f"package://{installed[1]}" if installed else _as_package_uri(path)
                 better = better or _in_known_package(subject, path)
                 message = (
-                    phrase("the mesh address holds the folder of one ROS distribution, '{home}'", home=home[1])
+                    phrase("the mesh address contains the folder of one ROS distribution, '{home}'", home=home[1])
                     if installed
-                    else phrase("the mesh address holds a folder of one computer, '{home}'", home=home[1])
+                    else phrase("the mesh address contains a folder of one computer, '{home}'", home=home[1])
                 )
                 yield self.report(
                     message,
@@ -217,7 +217,7 @@ class UnknownEnding(Rule):
                     ending=ending,
                 )
                 if ending
-                else phrase("the mesh file '{name}' has no ending that tells a format", name=name),
+                else phrase("the mesh file '{name}' has no extension that names a format", name=name),
                 use.element,
                 "filename",
                 hint=phrase("export it as STL, COLLADA (.dae), OBJ or glTF (.glb)"),

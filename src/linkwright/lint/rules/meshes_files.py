@@ -115,7 +115,7 @@ class UnknownPackage(Rule):
         for package, uses in told.items():
             message = counted(
                 "package '{package}' is not found",
-                "package '{package}' is not found, which {count} mesh addresses name",
+                "package '{package}', which {count} mesh addresses name, is not found",
                 len(uses),
                 package=package,
             )
@@ -222,7 +222,7 @@ class WrongCase(Rule):
             better = _with_case(use.mesh.filename, twin)
             yield self.report(
                 phrase(
-                    "the mesh file is '{name}', in other capitals than '{path_name}'",
+                    "the mesh file is '{name}', with other capitals than '{path_name}'",
                     name=twin.name,
                     path_name=path.name,
                 )
@@ -277,7 +277,7 @@ class OutsidePackage(Rule):
                 if share is not None and not resolved.is_relative_to(normal(share)):
                     message = phrase("the mesh '{uri}' leaves package '{package}'", uri=uri, package=package)
             elif resolved.is_file() and enclosing_package(resolved.parent) is None:
-                message = phrase("the mesh '{uri}' is in no package", uri=uri)
+                message = phrase("the mesh '{uri}' is not in a package", uri=uri)
             if message is not None:
                 yield self.report(
                     message,

@@ -63,7 +63,7 @@ class BaseLinkMissing(Rule):
             Note(phrase("'{name}' is a wheel", name=joint.name), joint.element.span() if joint.element else None)
             for joint in wheels[:2]
         ]
-        message = phrase("this robot on wheels has no link 'base_link', which REP 105 asks for")
+        message = phrase("this robot on wheels has no link 'base_link', which REP 105 requires")
         yield self.report(
             message,
             root.element,
@@ -112,7 +112,7 @@ class BaseLinkNotAtTheTop(Rule):
                 continue
             if not re.search("footprint|world|map|odom|dummy|stand|pedestal|table|mount", joint.parent):
                 message = phrase(
-                    "'base_link' hangs from '{parent}'; REP 105 has it as the topmost link of a robot",
+                    "'base_link' is a child of '{parent}'; in REP 105 it is the topmost link of a robot",
                     parent=joint.parent,
                 )
                 yield self.report(
@@ -159,7 +159,7 @@ class FootprintBelowBase(Rule):
             upside_down = joint.child.endswith("base_footprint") and joint.parent.endswith("base_link")
             if upside_down and joint.element is not None:
                 message = phrase(
-                    "'{child}' hangs from '{parent}'; REP 120 has it the other way round",
+                    "'{child}' is a child of '{parent}'; in REP 120 it is the other way round",
                     child=joint.child,
                     parent=joint.parent,
                 )
@@ -295,7 +295,7 @@ class OpticalFrameRotation(Rule):
                 continue
             rpy = " ".join(f"{angle:g}" for angle in joint.origin.rpy)
             message = phrase(
-                "'{child}' is turned against '{parent}' by rpy '{rpy}', not as REP 103 says of optical frames",
+                "'{child}' is rotated from '{parent}' by rpy '{rpy}', not as REP 103 defines optical frames",
                 child=joint.child,
                 parent=parent,
                 rpy=rpy,

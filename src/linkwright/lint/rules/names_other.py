@@ -85,5 +85,5 @@ class RobotNameUnusual(Rule):
             else phrase("use letters a to z, digits and underscores")
         )
         fix = replace_value(subject.root, "name", better, safe=False) if better else None
-        message = phrase("the name of the robot '{name}' has characters that names in ROS do not have", name=name)
+        message = phrase("the name of the robot '{name}' has characters that ROS names do not allow", name=name)
         yield self.report(message, subject.root, "name", hint=hint, fix=fix)

@@ -57,7 +57,7 @@ class NameEdgeBlank(Rule):
                     "the name of the {kind} '{name}' begins or ends with a blank", kind=term(kind), name=name
                 )
                 yield self.report(
-                    message, element, "name", hint=phrase("write '{name}' wherever it is meant", name=name.strip())
+                    message, element, "name", hint=phrase("write '{name}' in all places", name=name.strip())
                 )
 
 
@@ -90,7 +90,7 @@ class NameBlank(Rule):
         for kind, name, element in named(subject):
             inner = name.strip()
             if re.search(r"\s", inner):
-                hint = phrase("write '{sub}' wherever it is meant", sub=re.sub(chr(92) + "s+", "_", inner))
+                hint = phrase("write '{sub}' in all places", sub=re.sub(chr(92) + "s+", "_", inner))
                 yield self.report(
                     phrase("the name of the {kind} '{name}' has a blank in it", kind=term(kind), name=name),
                     element,
@@ -132,7 +132,7 @@ class NameLeadingSlash(Rule):
             if kind == "link" and name.startswith("/"):
                 message = phrase("the name of the link '{name}' begins with a slash, which tf2 refuses", name=name)
                 yield self.report(
-                    message, element, "name", hint=phrase("write '{name}' wherever it is meant", name=name.lstrip("/"))
+                    message, element, "name", hint=phrase("write '{name}' in all places", name=name.lstrip("/"))
                 )
 
 
@@ -283,7 +283,7 @@ class NamesDifferInCase(Rule):
             other, where = first.setdefault((kind, name.casefold()), (name, element))
             if other != name:
                 message = phrase(
-                    "the {kind}s '{other}' and '{name}' differ in upper and lower case alone",
+                    "the {kind}s '{other}' and '{name}' differ only in upper and lower case",
                     kind=term(kind),
                     other=other,
                     name=name,
@@ -328,4 +328,4 @@ class NameSuffixDoubled(Rule):
                     match=match[1],
                 )
                 shorter = name[: -len(match[1]) - 1]
-                yield self.report(message, element, "name", hint=phrase("'{shorter}' says the same", shorter=shorter))
+                yield self.report(message, element, "name", hint=phrase("'{shorter}' is enough", shorter=shorter))

@@ -267,7 +267,7 @@ class WheelsTurnAgainst(Rule):
             if dot(left.axis, right.axis) < -_AXIS_TOLERANCE and right.joint.element is not None:
                 note = Note(phrase("'{name}' turns the other way", name=left.joint.name), _place(left.joint))
                 message = phrase(
-                    "'{name}' turns against '{joint_name}' for velocities of one sign",
+                    "'{name}' turns against '{joint_name}' for velocities of the same sign",
                     name=right.joint.name,
                     joint_name=left.joint.name,
                 )

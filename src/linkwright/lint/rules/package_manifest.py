@@ -174,7 +174,7 @@ class ManifestVersion(ManifestRule):
         version, element = manifest.text("version"), manifest.root.first("version")
         if version and element is not None and not re.fullmatch(r"\d+\.\d+\.\d+", version):
             yield self.report(
-                phrase("the version '{version}' is not three numbers with dots between", version=version),
+                phrase("the version '{version}' is not three numbers separated by dots", version=version),
                 element,
                 hint=phrase("such as 1.0.0"),
             )

@@ -104,7 +104,7 @@ class WheelsNotLevel(Rule):
                 where = phrase("above") if gap > 0 else phrase("below")
                 yield self.report(
                     phrase(
-                        "'{name}' ends {gap:.3g} mm {where} the ground '{lowest_name}' is on",
+                        "'{name}' ends {gap:.3g} mm {where} the ground that '{lowest_name}' touches",
                         name=contact.link.name,
                         gap=abs(gap) * 1000,
                         where=where,

@@ -168,7 +168,7 @@ class UnknownElement(Rule):
                     child,
                     hint=phrase("known here: {known}", known=known)
                     if known
-                    else phrase("<{tag}> holds no elements", tag=place.rule.tag),
+                    else phrase("<{tag}> has no child elements", tag=place.rule.tag),
                 )
 
 

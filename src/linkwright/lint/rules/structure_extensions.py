@@ -63,7 +63,7 @@ class MisspeltExtension(Rule):
         if near:
             yield self.report(
                 phrase(
-                    "<{tag}> in <{parent_tag}> is not known to any reader of <{parent_tag}>",
+                    "no program reads <{tag}> in <{parent_tag}>",
                     tag=child.tag,
                     parent_tag=parent.tag,
                 ),

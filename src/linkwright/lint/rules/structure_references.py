@@ -134,7 +134,7 @@ class TransmissionJointUnknown(Rule):
                 name = joint.attributes.get("name")
                 if name and name not in known:
                     yield self.report(
-                        phrase("<transmission> is of joint '{name}', which does not exist", name=name),
+                        phrase("<transmission> names joint '{name}', which does not exist", name=name),
                         joint,
                         "name",
                         hint=did_you_mean(name, _without_siblings(name, known)) or phrase("give the name of a joint"),
@@ -218,7 +218,7 @@ class ControlInterfaceMisspelt(Rule):
                 near = misspelling_of(name, INTERFACES) if name.isalpha() and name not in INTERFACES else None
                 if near is not None:
                     yield self.report(
-                        phrase("no controller asks for an interface '{name}'", name=name),
+                        phrase("no controller requests an interface '{name}'", name=name),
                         interface,
                         "name",
                         hint=phrase("did you mean {names}?", names=quoted(near)),

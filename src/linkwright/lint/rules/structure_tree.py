@@ -164,7 +164,7 @@ class RepeatedElement(Rule):
                     yield self.report(
                         phrase("{place} has more than one <{tag}>; only the first is read", place=place, tag=child.tag),
                         child,
-                        hint=phrase("keep the one that is meant"),
+                        hint=phrase("keep the intended one"),
                         notes=(Note(phrase("this one is read"), before.span()),),
                         fix=remove_element(child, safe=False),
                     )

@@ -119,7 +119,7 @@ class ConstantCondition(XacroRule):
                 value = element.attributes.get("value", "")
                 if value and is_constant(value):
                     message = phrase("the condition of '{tag}' is always '{value}'", tag=element.tag, value=value)
-                    hint = phrase("make it an argument, or remove the tag with what is never there")
+                    hint = phrase("make it an argument, or remove the tag, with its content if that is never used")
                     yield self.report(message, element, "value", hint=hint)
 
 

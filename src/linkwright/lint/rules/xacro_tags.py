@@ -143,7 +143,7 @@ class XacroNamespaceMissing(XacroRule):
             return
         if any(_NEEDED.get(element.tag) for element in _described(root)):
             return  # the prefix is missing too, and that was said
-        message = phrase("this file has expressions of xacro and does not declare the prefix 'xacro'")
+        message = phrase("this file has xacro expressions but does not declare the prefix 'xacro'")
         fix = add_attribute(root, "xmlns:xacro", ADDRESS)
         yield self.report(
             message,
@@ -186,9 +186,9 @@ class XacroNamespaceAddress(Rule):
             if address == ADDRESS:
                 continue
             if _OLD_ADDRESSES.fullmatch(address):
-                message = phrase("the prefix 'xacro' is declared with an old address")
+                message = phrase("the prefix 'xacro' is declared with an old URI")
             else:
-                message = phrase("the prefix 'xacro' is declared with an address that is not ROS's")
+                message = phrase("the prefix 'xacro' is declared with a URI that is not ROS's")
             fix = replace_value(root, "xmlns:xacro", ADDRESS)
             hint = phrase('write xmlns:xacro="{address}"', address=ADDRESS)
             yield self.report(message, root, "xmlns:xacro", hint=hint, fix=fix)
@@ -327,7 +327,7 @@ class UndeclaredPackage(Rule):
                         continue
                     span = attribute_part(use.element, use.attribute, at, at + len(name))
                     message = phrase(
-                        "the package '{name}' is used here, and the package.xml of '{package_name}' does not name it",
+                        "the package '{name}' is used here, but the package.xml of '{package_name}' does not name it",
                         name=name,
                         package_name=package.name,
                     )

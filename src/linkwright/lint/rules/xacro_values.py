@@ -75,7 +75,7 @@ class LiteralChangesType(XacroRule):
         changed = literal(value)
         note = Note(phrase("'{name}' becomes part of a name here", name=name), use[0].attribute_span(use[1]))
         message = phrase(
-            "xacro takes '{value}' for {kind} and writes '{changed}' into a name",
+            "xacro reads '{value}' as {kind} and writes '{changed}' into a name",
             value=value,
             kind=_kind(changed),
             changed=changed,
@@ -247,7 +247,7 @@ class ParameterHidesGlobal(XacroRule):
                 for parameter in file.parameters(macro.element):
                     if is_global(parameter.name) or parameter.name in DEPRECATED:
                         message = phrase(
-                            "the parameter '{name}' of the macro '{macro_name}' hides a name of xacro's",
+                            "the parameter '{name}' of the macro '{macro_name}' hides a name of xacro",
                             name=parameter.name,
                             macro_name=macro.name,
                         )
