@@ -100,30 +100,30 @@ def _as_it_is(world: World) -> World:
     return world
 
 
-def _from_folder(thing: Any, written_in: Path, folder: Path) -> Any:
+def _from_folder(part: Any, written_in: Path, folder: Path) -> Any:
     """The same with paths that start from a folder in place of the one that they are written in."""
-    return with_addresses(thing, written_in, lambda written, beside: _address(written, beside, folder))
+    return with_addresses(part, written_in, lambda written, beside: _address(written, beside, folder))
 
 
-def with_addresses(thing: Any, written_in: Path, change: Callable[[str, Path], str]) -> Any:
+def with_addresses(part: Any, written_in: Path, change: Callable[[str, Path], str]) -> Any:
     """Return a part of SDF with other addresses of meshes, textures and the like.
 
     Args:
-        thing: an object of `linkwright.sdf`, or a tuple of them.
+        part: an object of `linkwright.sdf`, or a tuple of them.
         written_in: the folder of its file, if the object does not know it.
         change: returns the new address for an address and the folder of the file that has it.
     """
-    if isinstance(thing, tuple):
-        return tuple(with_addresses(each, written_in, change) for each in thing)
-    if not is_dataclass(thing) or isinstance(thing, type):
-        return thing
-    source = getattr(getattr(thing, "element", None), "source", None)
+    if isinstance(part, tuple):
+        return tuple(with_addresses(each, written_in, change) for each in part)
+    if not is_dataclass(part) or isinstance(part, type):
+        return part
+    source = getattr(getattr(part, "element", None), "source", None)
     if source is not None:
         written_in = Path(source.name).parent
-    addresses = _ADDRESSES.get(type(thing).__name__, ())
+    addresses = _ADDRESSES.get(type(part).__name__, ())
     changed: dict[str, Any] = {}
-    for field in fields(thing):
-        value = getattr(thing, field.name)
+    for field in fields(part):
+        value = getattr(part, field.name)
         if field.name in addresses:
             many = isinstance(value, tuple)
             moved = tuple(change(each, written_in) for each in (value if many else (value,)))
@@ -132,7 +132,7 @@ def with_addresses(thing: Any, written_in: Path, change: Callable[[str, Path], s
             new = with_addresses(value, written_in, change)
         if new != value:
             changed[field.name] = new
-    return replace(thing, **changed) if changed else thing
+    return replace(part, **changed) if changed else part
 
 
 def _address(written: str, written_in: Path, folder: Path) -> str:

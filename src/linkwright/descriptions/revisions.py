@@ -145,8 +145,8 @@ def _before_renaming(top: Path, commit: str, inside: Path, name: str) -> Path:
         own = {"GIT_INDEX_FILE": str(index)}
         _git(top, "add", "--intent-to-add", "--", new, environment=own)
         words = ("diff", "--no-ext-diff", "--find-renames", "--diff-filter=R", "--name-status", "-z", commit)
-        told = _git(top, *words, environment=own).stdout.split("\0")  # of each: R087, the old name, the new one
-    for old, renamed in zip(told[1::3], told[2::3], strict=False):
+        renames = _git(top, *words, environment=own).stdout.split("\0")  # of each: R087, the old name, the new one
+    for old, renamed in zip(renames[1::3], renames[2::3], strict=False):
         if renamed == new:
             return Path(old)
     message = phrase("commit '{name}' has no file '{inside}'", name=name, inside=new)

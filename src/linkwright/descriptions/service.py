@@ -100,7 +100,7 @@ def examine(
             unexpanded = tuple(
                 _as_warning(diagnostic) for diagnostic in error.diagnostics if diagnostic.code not in told
             )
-            plain = _as_it_stands(name, document, (*unexpanded, *forbidden), overlay, is_told=bool(unexpanded))
+            plain = _as_it_stands(name, document, (*unexpanded, *forbidden), overlay, is_reported=bool(unexpanded))
             if plain.robot is not None and not has_errors(plain.diagnostics) and not _has_open_names(plain.robot):
                 return plain
         from linkwright.xacro.inputs import Inputs
@@ -116,15 +116,17 @@ def _as_it_stands(
     remarks: tuple[Diagnostic, ...],
     overlay: Overlay | None,
     *,
-    is_told: bool = False,
+    is_reported: bool = False,
 ) -> Description:
-    """Return the description that urdfdom reads from an unexpanded document; `is_told` if the remarks report that.
+    """Return the description that urdfdom reads from an unexpanded document; `is_reported` if the remarks report that.
 
     Then xacro might add the elements that the file lacks, such as the colours of an included file.
     """
     reading = read(document)
-    said = tuple(diagnostic for diagnostic in reading.diagnostics if not is_told or _holds_unexpanded(diagnostic))
-    return Description(name, document, Reading(reading.robot, (*remarks, *said)), overlay=overlay)
+    diagnostics = tuple(
+        diagnostic for diagnostic in reading.diagnostics if not is_reported or _holds_unexpanded(diagnostic)
+    )
+    return Description(name, document, Reading(reading.robot, (*remarks, *diagnostics)), overlay=overlay)
 
 
 def _holds_unexpanded(found: Diagnostic) -> bool:

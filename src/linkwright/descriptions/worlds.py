@@ -115,11 +115,11 @@ def robot_of_text(text: str, name: str) -> Reading:
 
 def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the findings, only the first about each kind of unread element and each missing model."""
-    told: set[str] = set()
+    reported: set[str] = set()
     for diagnostic in found:
         words = f"{diagnostic.code} {diagnostic.severity} {diagnostic.message}"
-        if diagnostic.code not in _OF_A_KIND or words not in told:
-            told.add(words)
+        if diagnostic.code not in _OF_A_KIND or words not in reported:
+            reported.add(words)
             yield diagnostic
 
 

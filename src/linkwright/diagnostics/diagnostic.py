@@ -64,13 +64,13 @@ class Diagnostic:
         self.source = source
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Diagnostic) and self._said() == other._said()
+        return isinstance(other, Diagnostic) and self._fields() == other._fields()
 
     def __hash__(self) -> int:
         return hash((self.code, self.message, self.span))
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self._said().items())})"
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self._fields().items())})"
 
     def but(self, **changes: Any) -> Self:
         """The same diagnostic with other values for some attributes.
@@ -80,11 +80,11 @@ class Diagnostic:
         """
         return type(self)(**{**self._all(), **changes})
 
-    def _said(self) -> dict[str, Any]:
+    def _fields(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in Diagnostic.__slots__}
 
     def _all(self) -> dict[str, Any]:
-        return self._said()
+        return self._fields()
 
     @property
     def placed_message(self) -> Phrase:

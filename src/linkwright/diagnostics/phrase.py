@@ -221,8 +221,8 @@ def title_of_page(text: str) -> Phrase:
 
 def foreign(words: object) -> Phrase:
     """A text of another program, such as that of an exception; translated where a catalogue has exactly this."""
-    said = str(words)
-    return said if isinstance(said, Phrase) else _Known(said, FOREIGN)
+    text = str(words)
+    return text if isinstance(text, Phrase) else _Known(text, FOREIGN)
 
 
 def quoted(name: object) -> Phrase:

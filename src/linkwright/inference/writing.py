@@ -157,7 +157,7 @@ def _place(element: Element) -> tuple[str, int]:
 
 
 def _refusal(finding: Finding, why: str) -> Diagnostic:
-    told = finding.diagnostic
-    message = phrase("not written into the file: {what}: {why}", what=told.message, why=why)
+    refused = finding.diagnostic
+    message = phrase("not written into the file: {what}: {why}", what=refused.message, why=why)
     hint = phrase("edit the macro or the expression; `linkwright drive FILE --show` prints the text")
-    return Diagnostic("DRIVE301", message, told.span, hint=hint, source=told.source)
+    return Diagnostic("DRIVE301", message, refused.span, hint=hint, source=refused.source)

@@ -61,7 +61,7 @@ class _Run:
     hanging: frozenset[Key] = frozenset()
 
     @property
-    def said(self) -> frozenset[tuple[Key, str]]:
+    def messages_of_errors(self) -> frozenset[tuple[Key, str]]:
         """The errors with their messages."""
         places = ((_place(diagnostic), str(diagnostic.message)) for diagnostic in self.checked.diagnostics)
         return frozenset(place for place in places if place[0] in self.errors)
@@ -165,13 +165,13 @@ class SetCheck:
 
     def _together(self, runs: Sequence[_Run], more: Iterable[Diagnostic]) -> Checked:
         """The findings of several runs, each once, and the robot of the first that has one."""
-        told: dict[Key, tuple[Diagnostic, list[_Run]]] = {}
+        collected: dict[Key, tuple[Diagnostic, list[_Run]]] = {}
         for run in runs:
             for key, each in _numbered(run.checked.diagnostics):
-                told.setdefault(key, (each, []))[1].append(run)
+                collected.setdefault(key, (each, []))[1].append(run)
         found: list[Diagnostic] = [*as_set(more, self.settings)]
         copied = {name for run in runs if run.checked.subject for name in run.checked.subject.once(placeholders)}
-        for diagnostic, having in told.values():
+        for diagnostic, having in collected.values():
             if diagnostic.code in LEFT_TO_PLACEHOLDERS and as_phrase(diagnostic.message).arguments["name"] in copied:
                 continue  # the rule about these speaks with other values
             if len(having) == len(runs):
@@ -222,8 +222,8 @@ class SetCheck:
         names = _opened(sets)
         if not names:
             return self._without_values(default, sets)
-        told = common.difference(*(run.hanging for run in runs))
-        return self._only(default, lambda error: _place(error) in told, names, _when(sets))
+        certain = common.difference(*(run.hanging for run in runs))
+        return self._only(default, lambda error: _place(error) in certain, names, _when(sets))
 
     def _without_values(self, default: _Run, sets: Sequence[ArgumentSet]) -> Checked:
         """Return the check for callers without known values: they give the arguments without a declaration or value."""
@@ -247,16 +247,16 @@ class SetCheck:
 
     def _changed(self, run: _Run, values: Mapping[str, str]) -> frozenset[Key]:
         """The errors of a run that other values of some arguments change or remove."""
-        other = self._run(ArgumentSet({**run.given.values, **values})).said
-        return frozenset(place for place, message in run.said if (place, message) not in other)
+        other = self._run(ArgumentSet({**run.given.values, **values})).messages_of_errors
+        return frozenset(place for place, message in run.messages_of_errors if (place, message) not in other)
 
     def _only(
-        self, default: _Run, is_told: Callable[[Diagnostic], bool], names: Sequence[str], notes: tuple[Note, ...]
+        self, default: _Run, is_certain: Callable[[Diagnostic], bool], names: Sequence[str], notes: tuple[Note, ...]
     ) -> Checked:
         found = [
             diagnostic
             for diagnostic in default.checked.diagnostics
-            if _place(diagnostic) not in default.errors or is_told(diagnostic)
+            if _place(diagnostic) not in default.errors or is_certain(diagnostic)
         ]
         hint = phrase(
             'give values in linkwright.toml: [arguments] "{file}" = {{ {name} = "..." }}',

@@ -136,7 +136,7 @@ class _Reader:
         for key in table:
             if key not in KEYS:
                 hint = did_you_mean(key, KEYS) or phrase("the settings are {keys}", keys=joined(KEYS))
-                self._say("LINT102", phrase("there is no setting '{key}'", key=key), (key,), hint)
+                self._add("LINT102", phrase("there is no setting '{key}'", key=key), (key,), hint)
         select = table.get("select")
         return Settings(
             None if select is None else self._selectors(("select",), select),
@@ -169,7 +169,7 @@ class _Reader:
     def _selector(self, path: tuple[str, ...], word: str, mark: str) -> str | None:
         if is_selector(word):
             return canonical(word)
-        self._say("LINT104", phrase("there is no rule '{word}'", word=word), path, selector_hint(word), mark=mark)
+        self._add("LINT104", phrase("there is no rule '{word}'", word=word), path, selector_hint(word), mark=mark)
         return None
 
     def _severities(self, table: Mapping[str, Any]) -> Iterator[tuple[str, Severity]]:
@@ -207,7 +207,7 @@ class _Reader:
         for key, value in table.items():
             rule = find_rule(key)
             if rule is None:
-                self._say("LINT104", phrase("there is no rule '{key}'", key=key), ("options", key), selector_hint(key))
+                self._add("LINT104", phrase("there is no rule '{key}'", key=key), ("options", key), selector_hint(key))
             elif not isinstance(value, dict):
                 self._wrong(("options", key), phrase("is not a table"), phrase("write [options.{key}]", key=key))
             else:
@@ -224,7 +224,7 @@ class _Reader:
                     if known
                     else phrase("{code} has no options", code=rule.code)
                 )
-                self._say(
+                self._add(
                     "LINT102",
                     phrase("rule '{name}' has no option '{other_name}'", name=rule.name, other_name=name),
                     path,
@@ -245,9 +245,9 @@ class _Reader:
         message = phrase("'{key}' {what}", key=path[-1], what=what)
         if shown is not None:
             message = joined([message, quoted(shown)], ": ")
-        self._say("LINT103", message, path, hint)
+        self._add("LINT103", message, path, hint)
 
-    def _say(self, code: str, message: Phrase, path: tuple[str, ...], hint: Phrase, *, mark: str | None = None) -> None:
+    def _add(self, code: str, message: Phrase, path: tuple[str, ...], hint: Phrase, *, mark: str | None = None) -> None:
         span = _locate(self._source, (*self._prefix, *path), mark)
         self.found.append(Diagnostic(code, message, span, hint=hint, source=self._source))
 

@@ -128,21 +128,21 @@ def _examine_world(
         described = examine_world(path, arguments=arguments, packages=finder, overlay=overlay)
     except LinkwrightError as error:
         return Checked(path, None, (*trouble, *as_set(error.diagnostics, settings)), None)
-    said = list(described.diagnostics)
+    found = list(described.diagnostics)
     if described.sdf is not None:
         from linkwright.lint.worlds import check_sdf, for_classic, one_for_each_world
         from linkwright.sdf.resources import ResourceFinder
 
-        said = [*for_classic([*said, *check_sdf(described.sdf, ResourceFinder(finder))], path)]
-        said = one_for_each_world(said)
-    found = in_order(as_set(said, settings), str(path))
-    return Checked(path, None, (*trouble, *found), None, described.sdf)
+        found = [*for_classic([*found, *check_sdf(described.sdf, ResourceFinder(finder))], path)]
+        found = one_for_each_world(found)
+    diagnostics = in_order(as_set(found, settings), str(path))
+    return Checked(path, None, (*trouble, *diagnostics), None, described.sdf)
 
 
-def _run(subject: Subject, scopes: Collection[Scope], said: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
+def _run(subject: Subject, scopes: Collection[Scope], earlier: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
     """The findings of the rules and the earlier ones, filtered by settings and comments, in order."""
     suppressions = Suppressions(subject, subject.settings)
-    found = _without_replaced([*said, *_find(subject, scopes, suppressions)], scopes, subject.settings)
+    found = _without_replaced([*earlier, *_find(subject, scopes, suppressions)], scopes, subject.settings)
     kept = _without_consequences(as_set(suppressions.apply(found), subject.settings))
     return in_order(kept, str(subject.path))
 

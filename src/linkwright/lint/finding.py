@@ -39,10 +39,10 @@ class Finding(Diagnostic):
         self.element = element
 
     def _all(self) -> dict[str, Any]:
-        return {**self._said(), "fix": self.fix, "element": self.element}
+        return {**self._fields(), "fix": self.fix, "element": self.element}
 
 
-def with_others(first: Diagnostic, others: Sequence[Diagnostic]) -> Diagnostic:
+def with_related(first: Diagnostic, others: Sequence[Diagnostic]) -> Diagnostic:
     """Return a finding that represents others with the same cause, with these in its notes."""
     if not others:
         return first

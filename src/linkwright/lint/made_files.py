@@ -44,7 +44,7 @@ def is_made_later(package: PackageContext, path: str) -> bool:
         not _MAPS.isdisjoint(path.split("/")[:-1])
         or is_ignored_by_git(package.folder / path)
         or _is_built(package, path.rpartition("/")[2])
-        or _is_told_of(package, path.rpartition("/")[2])
+        or _is_mentioned(package, path.rpartition("/")[2])
     )
 
 
@@ -135,7 +135,7 @@ def is_made_by_cmake(package: PackageContext, path: str) -> bool:
     return _MAKES.search(text) is not None and bool(re.search(rf"(?<![\w.-]){re.escape(path)}(?![\w.-])", rest))
 
 
-def _is_told_of(package: PackageContext, name: str) -> bool:
+def _is_mentioned(package: PackageContext, name: str) -> bool:
     if any(file.rpartition("/")[2] == name for file in package.files):
         return False  # the one that is there may be meant
     for file in package.files:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.diagnostics.phrase import as_phrase
-from linkwright.lint.finding import with_others
+from linkwright.lint.finding import with_related
 from linkwright.lint.made_files import is_made_later
 from linkwright.lint.package import find_package
 
@@ -29,7 +29,7 @@ def judged_files(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
             elsewhere.setdefault(diagnostic.span.file, []).append(found)
         else:
             yield built or diagnostic
-    yield from (with_others(first, others) for first, *others in elsewhere.values())
+    yield from (with_related(first, others) for first, *others in elsewhere.values())
 
 
 def _of_built(diagnostic: Diagnostic) -> Diagnostic | None:

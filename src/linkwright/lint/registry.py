@@ -139,10 +139,10 @@ def _module_names(folder: str, *, is_ours: bool) -> Iterator[str]:
 
 
 def _classes(module: ModuleType) -> Iterator[type[Rule]]:
-    for thing in vars(module).values():
-        is_own = isinstance(thing, type) and issubclass(thing, Rule) and thing.__module__ == module.__name__
-        if is_own and not thing.__name__.startswith("_") and "code" in vars(thing):  # others are bases of rules
-            yield thing
+    for value in vars(module).values():
+        is_own = isinstance(value, type) and issubclass(value, Rule) and value.__module__ == module.__name__
+        if is_own and not value.__name__.startswith("_") and "code" in vars(value):  # others are bases of rules
+            yield value
 
 
 def _unusable(entry: EntryPoint, error: Exception) -> Diagnostic:

@@ -93,7 +93,7 @@ def is_expected_attribute(name: str) -> bool:
     return name.casefold() in _TELLING_ATTRIBUTES
 
 
-def told_by_reader(subject: Subject) -> dict[Span | None, str]:
+def hints_of_reader(subject: Subject) -> dict[Span | None, str]:
     """Return the hints of the reader by place, which name misspelt words."""
     return {found.span: found.hint or "" for found in subject.reading.diagnostics}
 

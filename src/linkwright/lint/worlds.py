@@ -12,7 +12,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
-from linkwright.lint.finding import with_others
+from linkwright.lint.finding import with_related
 from linkwright.lint.package import find_package
 from linkwright.lint.rules.inertia import NegativeMass, ZeroMass
 from linkwright.lint.rules.inertia_tensor import (
@@ -53,14 +53,14 @@ def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
         sdf: the file.
         finder: where meshes are.
     """
-    told: set[tuple[object, str]] = set()
+    reported: set[tuple[object, str]] = set()
     models = [*sdf.models, *(model for world in sdf.worlds for model in world.models)]
     found = (diagnostic for model in models for diagnostic in _model(model, static=False))
     actors = [*sdf.actors, *(actor for world in sdf.worlds for actor in world.actors)]
     for finding in (*_steps(sdf), *found, *_axes(models), *_missing_meshes([*models, *map(figure_of, actors)], finder)):
         key = (finding.span, str(finding.message))
-        if key not in told:
-            told.add(key)
+        if key not in reported:
+            reported.add(key)
             yield finding
 
 
@@ -77,7 +77,7 @@ def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
             kept.append(diagnostic)
         group.append(diagnostic)
     return [
-        with_others(diagnostic, groups[diagnostic.code, diagnostic.severity][1:])
+        with_related(diagnostic, groups[diagnostic.code, diagnostic.severity][1:])
         if diagnostic.code in _LEFT_OUT
         else diagnostic
         for diagnostic in kept
@@ -110,7 +110,7 @@ def _model(model: Model, *, static: bool) -> Iterator[Diagnostic]:
             yield from _inertial(link, link.inertial)
     sizes = [diagnostic for shape in shapes_of(replace(model, models=())) for diagnostic in _size(shape)]
     if sizes:
-        yield with_others(sizes[0], sizes[1:])
+        yield with_related(sizes[0], sizes[1:])
     for inner in model.models:
         yield from _model(inner, static=static)
 
@@ -135,7 +135,7 @@ def _axes(models: Iterable[Model]) -> Iterator[Diagnostic]:
                 yield found
     if fixed:
         first, *others = fixed.values()
-        yield with_others(first, others)
+        yield with_related(first, others)
 
 
 def _axes_of(model: Model) -> Iterator[tuple[Joint, Axis | None, str]]:

@@ -79,12 +79,12 @@ class Use:
 _Inside = TypeVar("_Inside", Definition, Use)
 
 
-def _by_macro(things: Iterable[_Inside]) -> Mapping[int, Sequence[_Inside]]:
+def _by_macro(items: Iterable[_Inside]) -> Mapping[int, Sequence[_Inside]]:
     found: dict[int, list[_Inside]] = {}
-    for thing in things:
-        for parent in thing.parents:
+    for item in items:
+        for parent in item.parents:
             if parent.tag == "xacro:macro":
-                found.setdefault(id(parent), []).append(thing)
+                found.setdefault(id(parent), []).append(item)
     return found
 
 
@@ -170,7 +170,7 @@ class FileFacts:
         while stack:
             element, parents = stack.pop()
             order += 1
-            self._take(element, parents, order)
+            self._collect(element, parents, order)
             if len(parents) > _DEEPEST:
                 continue
             inner = (*parents, element)
@@ -188,7 +188,7 @@ class FileFacts:
                         self._mention(child.data, element, None, parents, order)
             stack.extend(reversed(below))
 
-    def _take(self, element: Element, parents: tuple[Element, ...], order: int) -> None:
+    def _collect(self, element: Element, parents: tuple[Element, ...], order: int) -> None:
         for attribute, value in element.attributes.items():
             if attribute != "params":
                 self._mention(value, element, attribute, parents, order)

@@ -29,7 +29,7 @@ Kind = Literal["added", "removed", "renamed", "changed"]
 Subject = Literal["robot", "link", "joint", "extension"]
 _Pair = tuple[Element | None, Element | None]
 """Where something is written in the old and in the new description."""
-_Thing = TypeVar("_Thing", Link, Joint)
+_Part = TypeVar("_Part", Link, Joint)
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,7 +198,7 @@ class _Comparer:
             for name in (name for name in wanted if name in known):
                 old_file, new_file = self.old.mesh(name), self.new.mesh(name)
                 if old_file and new_file and not _same_bytes(old_file, new_file):
-                    values = _told_of_bytes(old_file, new_file)
+                    values = _difference_of_bytes(old_file, new_file)
                     places = _place(known[name]), _place(wanted[name])
                     yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *values, *places)
 
@@ -297,25 +297,25 @@ def _flat(element: Element) -> str:
 
 def _named(
     subject: Subject,
-    old: Mapping[str, _Thing],
-    new: Mapping[str, _Thing],
+    old: Mapping[str, _Part],
+    new: Mapping[str, _Part],
     matched: Mapping[str, str],
-    inside: Callable[[_Thing, _Thing], Iterator[Difference]],
+    inside: Callable[[_Part, _Part], Iterator[Difference]],
 ) -> Iterator[Difference]:
     """Links or joints that came, that are called or described otherwise, and that are gone."""
     names = {after: before for before, after in matched.items()}
-    for name, thing in new.items():
+    for name, part in new.items():
         if name not in names:
-            yield Difference(subject, name, "added", new_place=_place(thing.element))
+            yield Difference(subject, name, "added", new_place=_place(part.element))
             continue
         before = old[names[name]]
         if before.name != name:
-            places = _place(before.element, "name"), _place(thing.element, "name")
+            places = _place(before.element, "name"), _place(part.element, "name")
             yield Difference(subject, name, "renamed", "name", before.name, name, "", *places)
-        yield from inside(before, thing)
-    for name, thing in old.items():
+        yield from inside(before, part)
+    for name, part in old.items():
         if name not in matched:
-            yield Difference(subject, name, "removed", old_place=_place(thing.element))
+            yield Difference(subject, name, "removed", old_place=_place(part.element))
 
 
 def _changed(
@@ -351,7 +351,7 @@ def _meshes_of(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None
     }
 
 
-def _told_of_bytes(old: Path, new: Path) -> tuple[str, str, str]:
+def _difference_of_bytes(old: Path, new: Path) -> tuple[str, str, str]:
     """The difference of two files' bytes: their sizes, else the beginnings of their hashes; and the unit."""
     sizes = [path.stat().st_size for path in (old, new)]
     if sizes[0] != sizes[1]:

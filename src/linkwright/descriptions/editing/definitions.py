@@ -39,7 +39,7 @@ class Definitions:
         self._scalars: list[tuple[tuple[str, ...], Place]] | None = None
         for document in documents:
             for element in document.root.walk():
-                self._take(element)
+                self._collect(element)
 
     def of_names(self, text: str, innermost: Frame | None) -> Iterator[Place]:
         """Yield the texts that may define the names in a text, those of the enclosing calls first.
@@ -75,7 +75,7 @@ class Definitions:
                     if found is not None:
                         yield found
 
-    def _take(self, element: Element) -> None:
+    def _collect(self, element: Element) -> None:
         name = element.attributes.get("name")
         if not name:
             return

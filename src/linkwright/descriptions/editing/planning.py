@@ -313,14 +313,14 @@ class _Planner:
         if place is not None:
             return place
         provenance = self._now.description.provenance(element) if self._now is self._first else None
-        told = (
+        origin = (
             next((attribute for attribute in provenance.attributes if attribute.name == name), None)
             if provenance
             else None
         )
-        if told is None or told.span is None or element.source is None or told.span.file != element.source.name:
+        if origin is None or origin.span is None or element.source is None or origin.span.file != element.source.name:
             raise EditRefusedError(_not_written(element))
-        source, span = element.source, told.span
+        source, span = element.source, origin.span
         return Place(source, source.offset(span.line, span.column), source.offset(span.end_line, span.end_column))
 
 

@@ -42,12 +42,12 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
         tag: the element that would be written.
     """
     written = " ".join(place.text.split())
-    told = {
+    noted = {
         attempt.place.span: attempt
         for attempt in attempts
         if attempt.place != place and (attempt.also or attempt.choice)
     }
-    notes = tuple(map(_note, told.values()))[:_MOST_NAMED]
+    notes = tuple(map(_note, noted.values()))[:_MOST_NAMED]
     also = min(
         (attempt for attempt in attempts if attempt.also),
         key=lambda attempt: (len(attempt.also), attempt.doubtful),

@@ -55,9 +55,9 @@ def _message(diagnostic: Diagnostic) -> dict[str, Any]:
     """The text for those who show it; template and arguments for those who group or translate (SARIF 2.1.0, 3.11)."""
     message = as_phrase(diagnostic.message)
     hint = f". Hint: {diagnostic.hint}" if diagnostic.hint else ""
-    said: dict[str, Any] = {"text": message + hint, "id": message.chosen_template}
+    result: dict[str, Any] = {"text": message + hint, "id": message.chosen_template}
     arguments = _numbered(message)[1]
-    return {**said, "arguments": arguments} if arguments else said
+    return {**result, "arguments": arguments} if arguments else result
 
 
 def _numbered(message: Phrase) -> tuple[str, list[str]]:

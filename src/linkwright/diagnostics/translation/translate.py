@@ -35,9 +35,9 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
         return diagnostic
     words = wording(lang)
     return diagnostic.but(
-        message=_said(diagnostic.message, words),
-        notes=tuple(Note(_said(note.message, words), note.span) for note in diagnostic.notes),
-        hint=_said(diagnostic.hint, words) if diagnostic.hint else diagnostic.hint,
+        message=_translated(diagnostic.message, words),
+        notes=tuple(Note(_translated(note.message, words), note.span) for note in diagnostic.notes),
+        hint=_translated(diagnostic.hint, words) if diagnostic.hint else diagnostic.hint,
     )
 
 
@@ -52,5 +52,5 @@ def said_in(text: Phrase, lang: str) -> str:
     return text.said_in(wording(lang))
 
 
-def _said(text: Phrase, words: Wording) -> Phrase:
+def _translated(text: Phrase, words: Wording) -> Phrase:
     return text.translated(words) if isinstance(text, Phrase) else text

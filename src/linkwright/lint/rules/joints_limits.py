@@ -103,8 +103,8 @@ class LimitEmpty(Rule):
         """Every bounded joint that says the same bound twice."""
         for joint, limit in limits(subject, *BOUNDED):
             ends = bounds(limit)
-            said = "lower" in limit.attributes or "upper" in limit.attributes
-            if ends is not None and said and ends[0] == ends[1]:
+            has_bounds = "lower" in limit.attributes or "upper" in limit.attributes
+            if ends is not None and has_bounds and ends[0] == ends[1]:
                 yield self.report(
                     phrase(
                         "{type} joint '{name}' cannot move: 'lower' and 'upper' are both {ends}",

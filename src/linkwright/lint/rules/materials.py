@@ -73,7 +73,7 @@ class RedefinedMaterial(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         first: dict[str, Material] = {}
         global_names = {element.attributes.get("name") for element in subject.elements("material")}
-        told: set[tuple[object, ...]] = set()
+        reported: set[tuple[object, ...]] = set()
         for material in definitions(subject):
             if not material.name:
                 continue
@@ -85,9 +85,9 @@ class RedefinedMaterial(Rule):
             if material.name in global_names and element in set(subject.elements("material")):
                 continue  # two at robot level: the reader refuses them
             key = (material.name, material.rgba, material.texture)
-            if key in told:
+            if key in reported:
                 continue
-            told.add(key)
+            reported.add(key)
             yield self.report(
                 phrase(
                     "material '{name}' is defined again with another {difference}, which is never shown",
@@ -306,11 +306,11 @@ class AlikeNames(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         first: dict[str, Material] = {}
-        told: set[str] = set()
+        reported: set[str] = set()
         for material in definitions(subject):
             known = first.setdefault(material.name.casefold(), material)
-            if known.name != material.name and material.name not in told:
-                told.add(material.name)
+            if known.name != material.name and material.name not in reported:
+                reported.add(material.name)
                 yield self.report(
                     phrase(
                         "material '{name}' differs from '{known_name}' in capitals only",

@@ -15,7 +15,20 @@ from linkwright.lint.subject import Subject
 from linkwright.urdf import Mesh
 from linkwright.xmltree import Element
 
-_PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tga", ".tif", ".tiff", ".dds", ".webp", ".ktx2", ".material")
+_IMAGE_ENDINGS = (
+    ".png",
+    ".jpg",
+    ".jpeg",
+    ".bmp",
+    ".gif",
+    ".tga",
+    ".tif",
+    ".tiff",
+    ".dds",
+    ".webp",
+    ".ktx2",
+    ".material",
+)
 """The extensions of texture files that RViz reads, and of Ogre's material scripts."""
 
 
@@ -54,7 +67,7 @@ class MissingTexture(Rule):
             else:
                 if path.is_file():
                     continue
-                hint = file_hint(path, _PICTURES)
+                hint = file_hint(path, _IMAGE_ENDINGS)
                 twin = case_twin(path.absolute())
                 if twin is not None:
                     notes.append(Note(phrase("the file is '{name}', with other capitals", name=twin.name)))
@@ -89,7 +102,7 @@ class TextureFormat(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for element, uri in _textures(subject):
             ending = Path(uri).suffix
-            if ending.lower() not in _PICTURES:
+            if ending.lower() not in _IMAGE_ENDINGS:
                 yield self.report(
                     phrase(
                         "the texture '{rpartition}' is not in an image format that RViz reads",

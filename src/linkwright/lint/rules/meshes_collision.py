@@ -37,12 +37,12 @@ class HeavyCollision(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         most = self.option(subject, "triangles", int)
-        told: set[Path] = set()
+        reported: set[Path] = set()
         for use, mesh in loaded(subject, "collision"):
             path = subject.meshes.path(use)
             count = mesh.count
-            if count > most and path is not None and path not in told:
-                told.add(path)
+            if count > most and path is not None and path not in reported:
+                reported.add(path)
                 yield self.report(
                     phrase(
                         "the collision mesh '{file_name}' of link '{name}' has {thousands} triangles",
@@ -126,11 +126,11 @@ class OpenMesh(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        told: set[Path] = set()
+        reported: set[Path] = set()
         for use, mesh in loaded(subject, "collision"):
             path = subject.meshes.path(use)
-            if path is not None and path not in told and not mesh.is_watertight:
-                told.add(path)
+            if path is not None and path not in reported and not mesh.is_watertight:
+                reported.add(path)
                 yield self.report(
                     phrase(
                         "the collision mesh '{file_name}' of link '{name}' is not watertight",

@@ -96,23 +96,23 @@ class UnknownPackage(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        told: dict[str, list[MeshUse]] = {}
+        reported: dict[str, list[MeshUse]] = {}
         hints: dict[str, Phrase | None] = {}
         for use in subject.meshes.uses:
             if not use.mesh.filename.startswith("package://") or malformed(use.mesh.filename)[0]:
                 continue
             package = use.mesh.filename[len("package://") :].partition("/")[0]
-            if package in told:
-                told[package].append(use)
+            if package in reported:
+                reported[package].append(use)
                 continue
             try:
                 subject.finder.resolve(use.mesh.filename)
             except PackageNotFoundError as error:
-                told[package] = [use]
+                reported[package] = [use]
                 hints[package] = _folder_hint(use, package) or error.diagnostics[0].hint
             except LinkwrightError:
                 continue
-        for package, uses in told.items():
+        for package, uses in reported.items():
             message = counted(
                 "package '{package}' is not found",
                 "package '{package}', which {count} mesh addresses name, is not found",
@@ -174,11 +174,11 @@ class MissingFile(Rule):
                     hint=phrase("are they in another repository, or fetched by the build?"),
                 )
                 continue
-            told = set()
+            reported = set()
             for use, path in uses:
-                if path in told:
+                if path in reported:
                     continue
-                told.add(path)
+                reported.add(path)
                 yield self.report(
                     phrase("there is no mesh file '{filename}'", filename=use.mesh.filename),
                     use.element,
@@ -310,11 +310,11 @@ class UnreadableMesh(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        told = set()
+        reported = set()
         for use, path in subject.meshes.files:
-            if path in told or not path.is_file():
+            if path in reported or not path.is_file():
                 continue
-            told.add(path)
+            reported.add(path)
             problem = subject.meshes.problem(use)
             if problem is None or problem.diagnostics[0].code != "INR103":
                 continue

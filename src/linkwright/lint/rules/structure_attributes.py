@@ -10,10 +10,10 @@ from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.unread import (
     attribute_name_span,
+    hints_of_reader,
     is_expected_attribute,
     is_misspelt,
     meant_attribute,
-    told_by_reader,
 )
 
 
@@ -44,10 +44,10 @@ class MisspeltAttribute(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every unread attribute whose name is similar to that of a missing one."""
-        told = told_by_reader(subject)
+        hints = hints_of_reader(subject)
         for place, attribute in subject.structure.unknown_attributes:
             meant = meant_attribute(place, attribute)
-            if meant is None or f"'{attribute}'" in told.get(place.element.span(), ""):
+            if meant is None or f"'{attribute}'" in hints.get(place.element.span(), ""):
                 continue
             span = attribute_name_span(place.element, attribute)
             yield self.report(
@@ -87,13 +87,13 @@ class UnknownAttribute(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every other unread attribute."""
-        told = told_by_reader(subject)
+        hints = hints_of_reader(subject)
         for place, attribute in subject.structure.unknown_attributes:
             if not is_expected_attribute(attribute):
                 continue
             if meant_attribute(place, attribute) is not None:
                 continue
-            if f"'{attribute}'" in told.get(place.element.span(), ""):
+            if f"'{attribute}'" in hints.get(place.element.span(), ""):
                 continue
             known = ", ".join(f"'{rule.name}'" for rule in place.rule.attributes)
             yield self.report(

@@ -12,11 +12,11 @@ from linkwright.lint.subject import Subject
 from linkwright.lint.unread import (
     HOMES,
     INNER_EXTENSIONS,
+    hints_of_reader,
     inside,
     is_expected_element,
     is_misspelt,
     meant_element,
-    told_by_reader,
 )
 from linkwright.lint.walk import values
 from linkwright.urdf import schema
@@ -51,10 +51,10 @@ class MisspeltElement(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every unread element whose name is similar to one that is allowed there."""
-        told = told_by_reader(subject)
+        reported = hints_of_reader(subject)
         for place, child in subject.structure.unknown_elements:
             meant = meant_element(place.rule, child)
-            if meant is None or child.span() in told:
+            if meant is None or child.span() in reported:
                 continue
             yield self.report(
                 phrase("<{tag}> in {place} is not read", tag=child.tag, place=inside(place)),
@@ -99,10 +99,10 @@ class MisplacedElement(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every element that is known elsewhere; a material in a collision has a rule of its own."""
-        told = told_by_reader(subject)
+        reported = hints_of_reader(subject)
         for place, child in subject.structure.unknown_elements:
             homes = HOMES.get(child.tag, ())
-            if not homes or child.span() in told or (place.rule.tag, child.tag) == ("collision", "material"):
+            if not homes or child.span() in reported or (place.rule.tag, child.tag) == ("collision", "material"):
                 continue
             if child.tag == "origin" and _is_no_offset(child):
                 continue
@@ -155,13 +155,13 @@ class UnknownElement(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every other unread element."""
-        told = told_by_reader(subject)
+        reported = hints_of_reader(subject)
         for place, child in subject.structure.unknown_elements:
             if place.rule is schema.ROBOT or child.tag in INNER_EXTENSIONS or child.tag in HOMES:
                 continue
             if not is_expected_element(child.tag):
                 continue
-            if meant_element(place.rule, child) is None and child.span() not in told:
+            if meant_element(place.rule, child) is None and child.span() not in reported:
                 known = ", ".join(f"<{rule.tag}>" for rule in place.rule.children)
                 yield self.report(
                     phrase("<{tag}> in {place} is not read", tag=child.tag, place=inside(place)),

@@ -84,10 +84,10 @@ class StrayText(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every text that is not blank, unless the reader reports a missing value at the same element."""
-        told = {found.span for found in subject.reading.diagnostics}
+        reported = {found.span for found in subject.reading.diagnostics}
         for place in subject.structure.places:
             texts = [child for child in place.element.children if isinstance(child, Text) and child.data.strip()]
-            if not texts or place.element.span() in told:
+            if not texts or place.element.span() in reported:
                 continue
             for child in texts:
                 text = " ".join(child.data.split())

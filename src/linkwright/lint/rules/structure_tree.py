@@ -99,10 +99,10 @@ class DisconnectedPart(Rule):
             return
         sizes = Counter(root for name in links if (root := _root_of(name, above)) is not None)
         main = max(roots, key=lambda root: (sizes[root], -roots.index(root)))
-        told = roots[1] if roots[1] != main else roots[0]  # the reader's finding is at the second root
+        reported = roots[1] if roots[1] != main else roots[0]  # the reader's finding is at the second root
         for root in roots:
             element = links[root].element
-            if root in (main, told) or element is None:
+            if root in (main, reported) or element is None:
                 continue
             below = sizes[root] - 1
             if below:

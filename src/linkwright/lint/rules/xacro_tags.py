@@ -314,15 +314,15 @@ class UndeclaredPackage(Rule):
         package = facts.package
         if package is None or package.manifest is None:
             return
-        said: set[str] = set()
+        reported: set[str] = set()
         for is_optional, file in product((False, True), facts.own.values()):
             for use in file.uses:
                 if _CONDITIONS.isdisjoint(parent.tag for parent in use.parents) is is_optional:
                     continue
                 for name, at in use.found.packages:
-                    if name in said or package.manifest.declares(name) or use.attribute is None:
+                    if name in reported or package.manifest.declares(name) or use.attribute is None:
                         continue
-                    said.add(name)
+                    reported.add(name)
                     if would_make_a_circle(package.manifest, name, subject.finder):
                         continue
                     span = attribute_part(use.element, use.attribute, at, at + len(name))
