@@ -56,7 +56,7 @@ class Description:
 
     @property
     def robot(self) -> Robot | None:
-        """The robot; None where urdfdom would refuse the model."""
+        """The robot; None if urdfdom would refuse the model."""
         return self.reading.robot
 
     @property

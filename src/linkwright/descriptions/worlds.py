@@ -152,6 +152,6 @@ def _as_written(path: Path, written: str | bytes) -> tuple[Document, tuple[Diagn
 
 
 def _is_xacro(document: Document) -> bool:
-    """Whether a file is written for xacro, whatever its name: launch files expand it before Gazebo gets it."""
+    """Return whether a file is written for xacro, whatever its name: launch files expand it before Gazebo gets it."""
     root = document.root
     return "xmlns:xacro" in root.attributes and any(element.tag.startswith("xacro:") for element in root.walk())

@@ -114,5 +114,5 @@ def in_one_line(diagnostics: Iterable[Diagnostic]) -> Phrase:
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
-    """Whether any of them is an error."""
+    """Return whether any of them is an error."""
     return any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)

@@ -14,12 +14,12 @@ FETCH = phrase("run `git lfs pull` in its repository")
 
 
 def is_pointer(data: bytes) -> bool:
-    """Whether the bytes of a file, or the first of them, are such a pointer."""
+    """Return whether the bytes of a file, or the first of them, are such a pointer."""
     return data.startswith(_BEGINS)
 
 
 def is_pointer_file(path: Path) -> bool:
-    """Whether a file is one; False where it cannot be read."""
+    """Return whether a file is one; False where it cannot be read."""
     try:
         with path.open("rb") as file:
             return is_pointer(file.read(len(_BEGINS)))

@@ -68,7 +68,7 @@ def _is_alike(name: str, other: str) -> bool:
 
 
 def _is_slip(word: str, meant: str) -> bool:
-    """Whether a word is another one misspelt or cut short; no number is a slip for another."""
+    """Return whether a word is another one misspelt or cut short; no number is a slip for another."""
     shorter, longer = sorted((word, meant), key=len)
     if word.isdigit() or meant.isdigit():
         return False
@@ -82,7 +82,7 @@ def _is_slip(word: str, meant: str) -> bool:
 
 
 def _is_left_of(shorter: str, longer: str) -> bool:
-    """Whether letters of the longer word, half of them or more, make the shorter one: ``cnt`` of ``count``."""
+    """Return whether letters of the longer word, half of them or more, make the shorter one: ``cnt`` of ``count``."""
     letters = iter(longer)
     return len(shorter) < len(longer) <= 2 * len(shorter) and all(letter in letters for letter in shorter)
 
@@ -96,7 +96,7 @@ def is_misspelt(name: str, names: Iterable[str]) -> bool:
 
 
 def _is_within(one: str, other: str, most: int) -> bool:
-    """Whether so many slips make one text of another (the distance called optimal string alignment)."""
+    """Return whether so many slips make one text of another (the distance called optimal string alignment)."""
     if abs(len(one) - len(other)) > most:
         return False
     before: list[int] = []
@@ -114,7 +114,7 @@ def _is_within(one: str, other: str, most: int) -> bool:
 
 
 def did_you_mean(name: str, candidates: Iterable[str]) -> Phrase | None:
-    """A hint such as ``did you mean 'radius'?``, or None when no candidate is near."""
+    """A hint such as ``did you mean 'radius'?``, or None if no candidate is near."""
     return _meant(nearest(name, candidates))
 
 

@@ -400,7 +400,7 @@ def _frame_of(data: bytes) -> str:
 
 
 def _is_tool(full_name: str) -> bool:
-    """Whether a node belongs to a command that looks at the graph."""
+    """Return whether a node belongs to a command that looks at the graph."""
     return full_name.rpartition("/")[2].startswith("_ros2cli")
 
 

@@ -70,7 +70,7 @@ def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
 
 
 def is_closed(faces: Faces) -> bool:
-    """Whether triangles with shared corners bound a volume: every edge is run through as often there as back.
+    """Return whether triangles with shared corners bound a volume: every edge is run through as often there as back.
 
     That is just what the divergence theorem asks for. It holds for several bodies in one mesh, and where more than two
     triangles meet at an edge; it does not where there is a hole, or where neighbours turn opposite ways.

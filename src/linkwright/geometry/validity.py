@@ -83,7 +83,7 @@ def _rotate(rows: list[list[float]], p: int, q: int, other: int) -> None:
 
 
 def is_positive_definite(tensor: Array | Matrix) -> bool:
-    """Whether every principal moment is positive; `tensor` is symmetric, of shape (3, 3)."""
+    """Return whether every principal moment is positive; `tensor` is symmetric, of shape (3, 3)."""
     return relative_moments(tensor)[0] > 0
 
 

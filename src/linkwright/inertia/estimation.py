@@ -96,7 +96,7 @@ def estimate(
 def _solid(
     shape: Collision | Visual, kind: ShapeKind, meshes: MeshLibrary, notes: list[Phrase]
 ) -> MassProperties | None:
-    """A shape of density 1 in the link frame; None when it has no volume or cannot be read, which is noted."""
+    """A shape of density 1 in the link frame; None if it has no volume or cannot be read, which is noted."""
     geometry = shape.geometry
     if max(map(abs, shape.origin.xyz)) > FARTHEST:
         notes.append(phrase("a {kind} shape is left out: it is too far away", kind=term(kind)))

@@ -10,7 +10,7 @@ from linkwright.urdf import Inertial, Pose
 
 
 def has_mass(inertial: Inertial) -> bool:
-    """Whether an ``<inertial>`` gives a mass that can be spread over a shape."""
+    """Return whether an ``<inertial>`` gives a mass that can be spread over a shape."""
     return is_computable(inertial) and inertial.mass > LEAST_MASS
 
 

@@ -150,7 +150,7 @@ _SMALL_MESHES: dict[tuple[str, int, int], SmallMesh] = {}
 
 
 def _small(real: str, kind: str) -> SmallMesh | None:
-    """The triangles of a small, usual file, read without arrays; None where arrays are to read it or tell why not."""
+    """The triangles of a small, usual file, read without arrays; None if arrays are to read it or tell why not."""
     try:
         facts = os.stat(real)  # noqa: PTH116 - as above
         key = real, facts.st_mtime_ns, facts.st_size

@@ -150,7 +150,7 @@ def _changed_attributes(text: str, element: Element, attributes: Attributes) -> 
 
 
 def _says_the_same(written: str, value: str) -> bool:
-    """Whether numbers in the file are equal to those to be written, to the digits that are written."""
+    """Return whether numbers in the file are equal to those to be written, to the digits that are written."""
     try:
         there = [float(word) for word in written.split()]
     except ValueError:
@@ -160,7 +160,7 @@ def _says_the_same(written: str, value: str) -> bool:
 
 
 def _holds(element: Element, pattern: re.Pattern[str]) -> bool:
-    """Whether the pattern is found in an attribute of an element or below it, or a child is left to xacro."""
+    """Return whether the pattern is found in an attribute of an element or below it, or a child is left to xacro."""
     return any(
         each.tag.startswith("xacro:") or any(map(pattern.search, each.attributes.values())) for each in element.walk()
     )

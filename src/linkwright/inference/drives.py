@@ -180,6 +180,6 @@ def _fit(left: Wheel, right: Wheel) -> bool:
 
 
 def _supports_only(wheel: Wheel, pairs: list[Pair]) -> bool:
-    """Whether a wheel without one opposite is small beside the pairs, or a ball, and so a caster."""
+    """Return whether a wheel without one opposite is small beside the pairs, or a ball, and so a caster."""
     largest = max((wheel.radius for pair in pairs for wheel in pair), default=0.0)
     return bool(pairs) and (wheel.width is None or wheel.radius < _MUCH_SMALLER * largest)

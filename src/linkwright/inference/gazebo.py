@@ -90,7 +90,7 @@ def _drives(robot: Robot) -> Iterator[Element]:
 
 
 def _works(plugin: Element) -> bool:
-    """Whether a plugin is simulated, and has the files that it is given."""
+    """Return whether a plugin is simulated, and has the files that it is given."""
     known = extensions(_SIMULATED)
     names = library_name(plugin.attributes.get("filename", "")), original_library(plugin.attributes.get("name", ""))
     files = [Path(element.text().strip()) for element in plugin.elements("parameters")]
@@ -98,7 +98,7 @@ def _works(plugin: Element) -> bool:
 
 
 def publishes_joint_states(robot: Robot) -> bool:
-    """Whether a plugin of the description publishes joint states."""
+    """Return whether a plugin of the description publishes joint states."""
     return any(
         _JOINT_STATES.search(plugin.attributes.get("filename", ""))
         for extension in robot.extensions

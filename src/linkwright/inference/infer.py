@@ -202,7 +202,7 @@ class _Inferring:
             yield Finding(_at(element, "DRIVE112", message), self._robot.element, (gazebo.slippery(name),))
 
     def _rolls_freely(self, link: str) -> bool:
-        """Whether a caster turns about its own axis and about a vertical one, as real ones do."""
+        """Return whether a caster turns about its own axis and about a vertical one, as real ones do."""
         wheel = self._wheels.get(link)
         return wheel is not None and wheel.width is not None and wheel.steering is not None
 
@@ -246,7 +246,7 @@ def _verdict(survey: Survey, under: Undercarriage, kind: DriveKind | None, chose
 
 
 def _without_wheels(survey: Survey, under: Undercarriage) -> Verdict:
-    """Whether a robot that does not roll is an arm, whose base stands still."""
+    """Return whether a robot that does not roll is an arm, whose base stands still."""
     if under.hanging:
         wheel, height = under.hanging[0]
         reason = phrase(
@@ -267,7 +267,7 @@ def _without_wheels(survey: Survey, under: Undercarriage) -> Verdict:
 
 
 def _one_chain(survey: Survey) -> bool:
-    """Whether one joint only moves against the root's body, and so all others hang from it."""
+    """Return whether one joint only moves against the root's body, and so all others hang from it."""
     moving = [joint for joint in survey.robot.joints.values() if joint.type in _MOVING and joint.mimic is None]
     root = survey.bodies.of(survey.robot.root)
     first = [joint for joint in moving if root is not None and joint.parent in root.frames]

@@ -55,7 +55,7 @@ def shapes_of(link: Link) -> tuple[Shape, ...]:
 
 
 def vertices(shape: Shape, meshes: MeshLibrary) -> Array | None:
-    """The corners of a mesh in its link's frame, shape (vertices, 3); None where it cannot be read."""
+    """The corners of a mesh in its link's frame, shape (vertices, 3); None if it cannot be read."""
     assert isinstance(shape.geometry, Mesh), "other shapes have no corners to ask for"
     try:
         mesh = meshes.load(shape.geometry, shape.element)

@@ -97,7 +97,7 @@ class Survey:
         return tuple(filter(None, map(self.wheel_on, self.robot.joints.values())))
 
     def wheel_on(self, joint: Joint) -> Wheel | None:
-        """The wheel that turns about a joint; None where the joint has limits, or what it moves is not round."""
+        """The wheel that turns about a joint; None if the joint has limits, or what it moves is not round."""
         size = length(joint.axis)
         frame = self._frames.get(joint.child)
         body = self.bodies.of(joint.child)
@@ -213,7 +213,7 @@ class Survey:
 
 
 def is_endless(joint: Joint) -> bool:
-    """Whether a joint turns without limits."""
+    """Return whether a joint turns without limits."""
     if joint.type == "continuous":
         return True
     limit = joint.limit

@@ -132,7 +132,7 @@ class SetCheck:
         return self._together(kept, self._needs(kept[0], default, common, sets))
 
     def _expanded(self, sets: Sequence[ArgumentSet]) -> _Run | None:
-        """The check of a file that launch files give to xacro, whatever it is called; None where xacro would fail."""
+        """The check of a file that launch files give to xacro, whatever it is called; None if xacro would fail."""
         if not sets:
             return None
         self._xacro = True
@@ -301,7 +301,7 @@ def _numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key, Diagnost
 
 
 def _is_excused(run: _Run, tried: Sequence[_Run], common: frozenset[Key]) -> bool:
-    """Whether a set fails only for values that do not go together: what sets it apart works in another."""
+    """Return whether a set fails only for values that do not go together: what sets it apart works in another."""
     if run.is_fine(common) or not run.given.varied:
         return False
     if run.given.is_mixed:

@@ -262,7 +262,7 @@ def _fits(option: Option, value: object) -> bool:
 
 
 def _is_plain(value: object) -> bool:
-    """Whether a value can be that of an argument."""
+    """Return whether a value can be that of an argument."""
     return isinstance(value, (str, int, float))
 
 

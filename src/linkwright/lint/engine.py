@@ -254,7 +254,7 @@ def as_set(diagnostics: Iterable[Diagnostic], settings: Settings) -> Iterator[Di
 
 
 def _is_wanted(diagnostic: Diagnostic, settings: Settings) -> bool:
-    """Whether the settings let a diagnostic through.
+    """Return whether the settings let a diagnostic through.
 
     An error of the reader or of xacro need not be selected: without it nothing would tell why there is no robot.
     """

@@ -49,7 +49,7 @@ class Page:
 
 
 def find_page(code_or_name: str) -> Page | None:
-    """The page of a code or the name of a rule, in any case; None where there is none."""
+    """The page of a code or the name of a rule, in any case; None if there is none."""
     rule = find_rule(code_or_name)
     return rule_page(rule) if rule else room_pages().get(code_or_name.strip().upper())
 

@@ -84,7 +84,7 @@ class Extents:
         return combine(parts)
 
     def shape_bounds(self, shape: Visual | Collision) -> Bounds | None:
-        """The box around a shape in its link's frame; None where its mesh cannot be read."""
+        """The box around a shape in its link's frame; None if its mesh cannot be read."""
         key = id(shape)
         if key not in self._measured:
             self._measured[key] = self._measure(shape)
@@ -109,7 +109,7 @@ class Extents:
         return union(known) if len(known) == len(found) else None
 
     def body_bounds(self, link: Link) -> Bounds | None:
-        """The box around the whole body of a link in that link's frame; None when a shape cannot be measured.
+        """The box around the whole body of a link in that link's frame; None if a shape cannot be measured.
 
         Of a body of very many links the box is put around all of them once, and the one in a link's frame around that.
         """

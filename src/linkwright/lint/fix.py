@@ -44,13 +44,13 @@ class Fix:
 
 
 def replace_value(element: Element, attribute: str, value: str, *, safe: bool = True) -> Fix | None:
-    """Give an attribute another value; None where the value is not written in the file literally (an expression)."""
+    """Give an attribute another value; None if the value is not written in the file literally (an expression)."""
     edit = value_edit(element, attribute, value)
     return None if edit is None else Fix((edit,), safe)
 
 
 def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True) -> Fix | None:
-    """Give an attribute another name; None where it is not written in the file."""
+    """Give an attribute another name; None if it is not written in the file."""
     source = element.source
     if source is None or new in element.attributes:
         return None
@@ -59,7 +59,7 @@ def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True)
 
 
 def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = True) -> Fix | None:
-    """Write an attribute behind those there are; None where the element is not written in a file."""
+    """Write an attribute behind those there are; None if the element is not written in a file."""
     source = element.source
     opened = start_tag_of(element)
     if source is None or opened is None or attribute in element.attributes:
@@ -92,7 +92,7 @@ def remove_element(element: Element, *, safe: bool = True) -> Fix | None:
 
 
 def value_edit(element: Element, attribute: str, value: str) -> Edit | None:
-    """The edit that gives an attribute another value; None where the value is not written literally."""
+    """The edit that gives an attribute another value; None if the value is not written literally."""
     source = element.source
     if source is None or not is_literal(element, attribute):
         return None
@@ -101,7 +101,7 @@ def value_edit(element: Element, attribute: str, value: str) -> Edit | None:
 
 
 def is_literal(element: Element, attribute: str) -> bool:
-    """Whether an attribute's value is written in the file as it is, not as an expression of xacro."""
+    """Return whether an attribute's value is written in the file as it is, not as an expression of xacro."""
     source = element.source
     if source is None or attribute not in element.attributes:
         return False

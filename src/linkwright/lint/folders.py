@@ -134,7 +134,7 @@ def _without_those_of_source(
 
 
 def _is_unused_part(examined: Examined, others: Sequence[Examined]) -> bool:
-    """Whether a xacro file has joints on links of another robot of its package, which may include it again."""
+    """Return whether a xacro file has joints on links of another robot of its package, which may include it again."""
     missing = {
         as_phrase(diagnostic.message).arguments.get("name")
         for diagnostic in examined.diagnostics

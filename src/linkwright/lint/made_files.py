@@ -110,7 +110,7 @@ def _names(pattern: str, path: str) -> bool:
 
 
 def _is_built(package: PackageContext, name: str) -> bool:
-    """Whether ``CMakeLists.txt`` has xacro expand a file to one of that name, or configures one."""
+    """Return whether ``CMakeLists.txt`` has xacro expand a file to one of that name, or configures one."""
     source = package.text("CMakeLists.txt")
     made = re.escape(name)
     return source is not None and bool(

@@ -73,7 +73,7 @@ class PackageContext:
 
     @property
     def manifest(self) -> Manifest | None:
-        """Its ``package.xml``; None where that is not XML."""
+        """Its ``package.xml``; None if that is not XML."""
         return None if isinstance(self._manifest, LinkwrightError) else self._manifest
 
     @property
@@ -101,11 +101,11 @@ class PackageContext:
         return frozenset(found)
 
     def has(self, path: str) -> bool:
-        """Whether a file or folder exists, by its path below the package."""
+        """Return whether a file or folder exists, by its path below the package."""
         return (self.folder / path).exists()
 
     def text(self, path: str) -> SourceText | None:
-        """The text of a file of the package, or None where there is none or it cannot be read."""
+        """The text of a file of the package, or None if there is none or it cannot be read."""
         full = str(self.folder / path)
         unsaved = None if self._overlay is None else self._overlay.text(full)
         if unsaved is not None:

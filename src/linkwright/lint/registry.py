@@ -51,7 +51,7 @@ def has_rules_of_others() -> bool:
 
 
 def find_rule(code_or_name: str) -> Rule | None:
-    """The rule of a code or name, in any case; None where there is none."""
+    """The rule of a code or name, in any case; None if there is none."""
     key = code_or_name.strip().casefold()
     rule = _index(whole=False).get(key)
     if rule is None and (key.startswith(_OURS.casefold()) or not _CODE.fullmatch(key.upper())):

@@ -11,7 +11,7 @@ _CODE = lazy_pattern("[A-Z]+[0-9]{0,3}")
 
 
 def is_selector(word: str) -> bool:
-    """Whether a word can select findings."""
+    """Return whether a word can select findings."""
     if word == ALL or find_rule(word) is not None:
         return True
     if not _CODE.fullmatch(word):

@@ -12,7 +12,7 @@ ALL = "ALL"
 
 
 def matches(selectors: Iterable[str], code: str) -> bool:
-    """Whether one of the (canonical) selectors means a code."""
+    """Return whether one of the (canonical) selectors means a code."""
     return specificity(selectors, code) > 0
 
 

@@ -54,7 +54,7 @@ class Settings:
     arguments: tuple[tuple[str, tuple[Mapping[str, str], ...]], ...] = ()
 
     def runs(self, rule: Switched) -> bool:
-        """Whether a rule is to run at all."""
+        """Return whether a rule is to run at all."""
         return self.selects(rule.code, default=rule.default)
 
     def selects(self, code: str, *, default: bool = True) -> bool:
@@ -79,7 +79,7 @@ class Settings:
         return specificity(self.ignore, code) > 0 and specificity(self.ignore, code) >= wanted
 
     def ignores(self, code: str, file: str) -> bool:
-        """Whether findings of a code are not reported in one file."""
+        """Return whether findings of a code are not reported in one file."""
         if not self.per_file_ignores:
             return False
         return any(
@@ -89,7 +89,7 @@ class Settings:
         )
 
     def arguments_of(self, file: Path) -> tuple[Mapping[str, str], ...]:
-        """The sets of values that a description's arguments are given; none where the settings do not say."""
+        """The sets of values that a description's arguments are given; none if the settings do not say."""
         return tuple(values for pattern, sets in self.arguments if self._is_meant(file, pattern) for values in sets)
 
     def _is_meant(self, file: Path, pattern: str) -> bool:

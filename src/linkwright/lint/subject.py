@@ -82,7 +82,7 @@ class Subject:
 
     @property
     def robot(self) -> Robot | None:
-        """The robot; None when the model is so wrong that urdfdom would refuse it."""
+        """The robot; None if the model is so wrong that urdfdom would refuse it."""
         return self.reading.robot
 
     @property
@@ -145,7 +145,7 @@ class Subject:
 
     @cached_property
     def tree(self) -> KinematicTree | None:
-        """The kinematic tree, or None when there is no robot."""
+        """The kinematic tree, or None if there is no robot."""
         if self.robot is None:
             return None
         from linkwright.kinematics import KinematicTree
@@ -209,7 +209,7 @@ class Subject:
 
     @cached_property
     def frames(self) -> Mapping[str, Placement]:
-        """Every link in the root link's frame, with all joints at zero; none where there is no robot."""
+        """Every link in the root link's frame, with all joints at zero; none if there is no robot."""
         from linkwright.lint.frames import placements
 
         return {} if self.robot is None else placements(self.robot)

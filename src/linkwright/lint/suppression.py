@@ -57,7 +57,7 @@ class Directive:
     used: set[str] = field(default_factory=set)
 
     def suppresses(self, code: str, offset: int) -> bool:
-        """Whether it suppresses a finding of a code at a place; it remembers that it did."""
+        """Return whether it suppresses a finding of a code at a place; it remembers that it did."""
         if self.ranges is not None and not any(start <= offset < end for start, end in self.ranges):
             return False
         if not self.selectors:
@@ -91,7 +91,7 @@ class Suppressions:
         return [*kept, *self._unknown(), *self._unused()]
 
     def audits(self, code: str) -> bool:
-        """Whether a comment is to be shown of use or not by the findings of a code, selected or not."""
+        """Return whether a comment is to be shown of use or not by the findings of a code, selected or not."""
         if not self._audits:
             return False
         return any(

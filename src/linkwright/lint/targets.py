@@ -161,7 +161,7 @@ def _describes_robot(path: Path) -> bool:
 
 
 def _has_content(root: Element) -> bool:
-    """Whether there is more than declarations: a wrapper that only includes others counts as well."""
+    """Return whether there is more than declarations: a wrapper that only includes others counts as well."""
     tags = {element.tag for element in root.elements()}
     return (
         bool(tags - _DECLARATIONS - _WITHOUT_LINKS)

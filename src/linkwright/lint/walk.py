@@ -69,7 +69,7 @@ def bounds(limit: Element) -> tuple[float, float] | None:
 
 
 def value(element: Element, attribute: str) -> float | None:
-    """The number an attribute says; None where it is absent or no number."""
+    """The number an attribute says; None if it is absent or no number."""
     text = element.attributes.get(attribute)
     if text is None:
         return None

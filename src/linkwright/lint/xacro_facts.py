@@ -158,7 +158,7 @@ class FileFacts:
         return facts
 
     def parameters(self, macro: Element) -> tuple[Parameter, ...]:
-        """The parameters that a macro of this file declares; none where they are malformed."""
+        """The parameters that a macro of this file declares; none if they are malformed."""
         try:
             return parse_parameters(macro.attributes.get("params", ""))
         except Fault:
@@ -367,7 +367,7 @@ class XacroFacts:
 
 
 def is_global(name: str) -> bool:
-    """Whether xacro provides a name that properties may hide, such as ``pi``."""
+    """Return whether xacro provides a name that properties may hide, such as ``pi``."""
     return name in MATHEMATICS
 
 

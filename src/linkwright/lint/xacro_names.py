@@ -68,7 +68,7 @@ def mentions(text: str) -> Mentions:
 
 
 def is_constant(text: str) -> bool:
-    """Whether a text has the same value wherever it is evaluated: it mentions nothing."""
+    """Return whether a text has the same value wherever it is evaluated: it mentions nothing."""
     found = mentions(text)
     return not (found.names or found.arguments or found.packages or found.is_open or found.arguments_open) and (
         "$(env" not in text and "$(optenv" not in text and "$(cwd" not in text and "$(dirname" not in text

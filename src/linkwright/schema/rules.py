@@ -68,11 +68,11 @@ class AttributeRule:
         return getattr(instance, self.target) if self.get is None else self.get(instance)
 
     def is_required(self, version: Version) -> bool:
-        """Whether a file of this version must give it."""
+        """Return whether a file of this version must give it."""
         return self.required and (self.until is None or version < self.until)
 
     def absent_value(self, version: Version) -> Any:
-        """Its default in this version of the language; None where there is none."""
+        """Its default in this version of the language; None if there is none."""
         if self.later_default is not None and version >= self.later_default[0]:
             return self.later_default[1]
         return None if self.default is None else self.type.read(self.default)

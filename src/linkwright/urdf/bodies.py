@@ -65,7 +65,7 @@ class Bodies:
         return body is None or WORLD not in body.frames
 
     def stands_for_others(self, link: Link) -> bool:
-        """Whether a link's mass may be that of links with shapes and no mass that are fixed to it, too."""
+        """Return whether a link's mass may be that of links with shapes and no mass that are fixed to it, too."""
         return link.name in self._standing_for_others
 
     def mass(self, body: Body) -> float:

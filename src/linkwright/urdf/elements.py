@@ -116,7 +116,7 @@ class MaterialTable:
             self.known[material.name] = material
 
     def resolve(self, own: Material, owner: Element) -> Material | None:
-        """The material of a visual that names or defines `own`; None when it is nowhere defined so far."""
+        """The material of a visual that names or defines `own`; None if it is nowhere defined so far."""
         defines = own.rgba is not None or own.texture is not None
         if not own.name:
             return own if defines else None

@@ -117,7 +117,7 @@ def _report_roots(roots: Sequence[str], links: Mapping[str, Link], findings: Fin
 
 
 def _is_tree(root: str, links: Mapping[str, Link], joints: Sequence[Joint], moved: set[str]) -> bool:
-    """Whether no link has two parents and all hang from the root."""
+    """Return whether no link has two parents and all hang from the root."""
     if len(moved) != len(joints):
         return False
     parents = {joint.child: joint.parent for joint in joints}

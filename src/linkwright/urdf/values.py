@@ -141,14 +141,14 @@ def vector_hint(text: str, count: int) -> Phrase | None:
 
 
 def looks_like_degrees(*angles: float) -> bool:
-    """Whether angles that should be radians can hardly be: one is a whole multiple of 5, several turns far."""
+    """Return whether angles that should be radians can hardly be: one is a whole multiple of 5, several turns far."""
     if max(map(abs, angles)) < 10:
         return False
     return any(not -10 < angle < 10 and angle % 5 == 0 and -720 <= angle <= 720 for angle in angles)
 
 
 def looks_like_degree_limits(lower: float, upper: float) -> bool:
-    """Whether the bounds of a joint can hardly be radians.
+    """Return whether the bounds of a joint can hardly be radians.
 
     As `looks_like_degrees`, and one of them is an angle that joints have in degrees: limits of 10, 50 or 100 rad are
     written where none are meant, or for a joint with a gear.

@@ -13,7 +13,7 @@ _Path = tuple[str, ...]
 
 
 def meanings(name: str) -> list[Phrase]:
-    """The meanings of a name or path, each in Markdown; none where URDF has no such thing.
+    """The meanings of a name or path, each in Markdown; none if URDF has no such thing.
 
     A path goes from the outside in, may begin anywhere and may end with an attribute: ``joint.limit.effort``
     and ``limit.effort`` are the same, and so are ``limit/effort`` and ``<limit> effort``.

@@ -176,7 +176,7 @@ class _Target:
     # --- which file is meant --------------------------------------------------------------------------------
 
     def _may_be(self, path: Text) -> bool:
-        """Whether a path with its open places may be the description."""
+        """Return whether a path with its open places may be the description."""
         pattern = "".join(re.escape(piece) if isinstance(piece, str) else "\0" for piece in path)
         if "/" not in pattern.strip("\0") and not pattern.strip("\0").endswith(re.escape(self.path.name)):
             # Nothing but a name: any file could be meant, unless a choice tells.
@@ -185,7 +185,7 @@ class _Target:
         return re.fullmatch(expression, self.path.as_posix()) is not None
 
     def _is_target(self, written: str, file: CallingFile) -> bool:
-        """Whether a path whose places are filled is that of the description."""
+        """Return whether a path whose places are filled is that of the description."""
         package, rest = split_mark(written)
         if _MARK.search(rest):
             return False  # a share folder in the middle of a path
@@ -201,7 +201,7 @@ class _Target:
         return os.path.realpath(path) == os.path.realpath(self.path)
 
     def _with_folders(self, value: str) -> str | None:
-        """A value with the share folders in it; None where a package is not here."""
+        """A value with the share folders in it; None if a package is not here."""
         for package in _MARK.findall(value):
             share = self.finder.find(package)
             if share is None:
@@ -250,7 +250,7 @@ class _Target:
 
 
 def _is_open(path: Text) -> bool:
-    """Whether a path has a place for which there may be more texts than those that are known."""
+    """Return whether a path has a place for which there may be more texts than those that are known."""
     return any(_is_open(piece.package) if isinstance(piece, Share) else isinstance(piece, Open) for piece in path)
 
 

@@ -99,7 +99,7 @@ class Side:
     resolve: Callable[[str], Path] | None = None
 
     def mesh(self, address: str) -> Path | None:
-        """The file of a mesh; None where it is not known or not there."""
+        """The file of a mesh; None if it is not known or not there."""
         if self.resolve is None:
             return None
         try:
@@ -163,7 +163,7 @@ class _Comparer:
         yield from _named("joint", old, new, self.matches.joints, inside)
 
     def _follows_a_name(self, difference: Difference) -> bool:
-        """Whether a reference says another name only because what it means was renamed."""
+        """Return whether a reference says another name only because what it means was renamed."""
         if difference.property in ("parent", "child"):
             return self.matches.links.get(difference.old or "") == difference.new
         return difference.property == "mimic joint" and self.matches.joints.get(difference.old or "") == difference.new

@@ -45,7 +45,7 @@ class Fact:
     direction: bool = False
 
     def equals(self, other: Fact, here: Normalize, there: Normalize) -> bool:
-        """Whether two descriptions say the same, within the tolerances.
+        """Return whether two descriptions say the same, within the tolerances.
 
         Args:
             other: what the other one says.
@@ -94,7 +94,7 @@ class Block:
         return ", ".join(" ".join(filter(None, (name, fact.text, fact.unit))) for name, fact in self.facts.items())
 
     def equals(self, other: Block, here: Normalize, there: Normalize) -> bool:
-        """Whether all facts of two blocks are the same."""
+        """Return whether all facts of two blocks are the same."""
         return self.facts.keys() == other.facts.keys() and all(
             fact.equals(other.facts[name], here, there) for name, fact in self.facts.items()
         )

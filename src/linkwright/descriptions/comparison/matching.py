@@ -42,7 +42,7 @@ def match(
     taken = set(joints)
 
     def renamed(before: str, after: str) -> bool:
-        """Whether a link is the other one, which it then counts as."""
+        """Return whether a link is the other one, which it then counts as."""
         if links.get(before) == after:
             return True
         if before in new.links or after in old.links or before in links or after in links.values():

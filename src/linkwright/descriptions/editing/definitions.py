@@ -87,7 +87,7 @@ class Definitions:
                 self._named.setdefault(name, []).append(place)
 
     def _default(self, frame: Frame, name: str) -> Place | None:
-        """The default of a parameter of a macro; None where there is none, or no such parameter."""
+        """The default of a parameter of a macro; None if there is none, or no such parameter."""
         macro = self._macros.get((frame.macro or "").rpartition(".")[2])
         params = None if macro is None else attribute(macro, "params")
         if params is None:

@@ -25,7 +25,7 @@ class Target:
     attribute: str
 
     def owner(self, root: Element) -> Element | None:
-        """The joint, visual or collision in a document; None where there is none any more."""
+        """The joint, visual or collision in a document; None if there is none any more."""
         element: Element | None = root
         for index in self.path:
             element = next(islice(element.elements(), index, None), None) if element is not None else None
@@ -38,7 +38,7 @@ class Target:
 
 
 def path_to(root: Element, element: Element) -> tuple[int, ...] | None:
-    """The path of an element in a document; None where it is not in it."""
+    """The path of an element in a document; None if it is not in it."""
     pending: list[tuple[Element, tuple[int, ...]]] = [(root, ())]
     while pending:
         found, path = pending.pop()

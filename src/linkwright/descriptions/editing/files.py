@@ -36,7 +36,7 @@ class Workspace:
         self.folder = _workspace_of(real)
 
     def refusal(self, path: str) -> Diagnostic | None:
-        """Why a file may not be written (EDIT106); None where it may.
+        """Why a file may not be written (EDIT106); None if it may.
 
         Args:
             path: its real path.

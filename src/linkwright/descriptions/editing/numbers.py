@@ -27,12 +27,12 @@ def shortest(value: float, tolerance: float = EXACT) -> str:
 
 
 def same(some: float, other: float) -> bool:
-    """Whether two numbers are the same, as far as it is asked for."""
+    """Return whether two numbers are the same, as far as it is asked for."""
     return abs(some - other) <= EXACT
 
 
 def numbers_of(text: str, count: int) -> list[float] | None:
-    """The numbers of an attribute; None where it does not have as many, all finite."""
+    """The numbers of an attribute; None if it does not have as many, all finite."""
     try:
         found = [float(word) for word in text.split()]
     except ValueError:
@@ -41,7 +41,7 @@ def numbers_of(text: str, count: int) -> list[float] | None:
 
 
 def part_of_pi(angle: float) -> str | None:
-    """An angle as an expression such as ``-pi/2`` or ``3*pi/4``; None where it is no such part."""
+    """An angle as an expression such as ``-pi/2`` or ``3*pi/4``; None if it is no such part."""
     for parts in _PARTS_OF_PI:
         whole = round(angle / pi * parts)
         if whole and same(whole * pi / parts, angle) and Fraction(whole, parts).denominator == parts:

@@ -62,7 +62,7 @@ def words(place: Place) -> list[Place]:
 
 
 def literal(place: Place) -> Candidate | None:
-    """A number that is written as it is; None where something else is."""
+    """A number that is written as it is; None if something else is."""
     try:
         value = float(place.text)
     except ValueError:
@@ -86,7 +86,7 @@ def added_constants(word: Place) -> Iterator[Candidate]:
 
 
 def is_constant(word: Place) -> bool:
-    """Whether a word is an expression without names other than pi and what turns degrees into radians."""
+    """Return whether a word is an expression without names other than pi and what turns degrees into radians."""
     found = _ONE_EXPRESSION.match(word.text)
     tree = _tree(found[1].strip()) if found is not None and found[1] else None
     return tree is not None and _names(tree) <= _OF_PI
@@ -161,12 +161,12 @@ def _terms(node: ast.expr, inner: Place) -> Iterator[Candidate]:
 
 
 def _is_angle_of_degrees(node: ast.expr) -> bool:
-    """Whether an expression is something like ``30*pi/180``, a product with the degrees in front."""
+    """Return whether an expression is something like ``30*pi/180``, a product with the degrees in front."""
     return _names(node) <= _OF_PI and "pi" in _names(node) and any(_number(each) == 180 for each in ast.walk(node))
 
 
 def _signed_term(node: ast.BinOp, inner: Place) -> Candidate | None:
-    """The last number of a sum with its sign, which may turn; None where brackets are in the way."""
+    """The last number of a sum with its sign, which may turn; None if brackets are in the way."""
     value = _number(node.right)
     if value is None:
         return None

@@ -175,7 +175,7 @@ class _Planner:
     def _tried(
         self, candidate: Candidate, target: Target, index: int, wanted: float, attempts: list[Attempt]
     ) -> _Found | None:
-        """Try one place to write at: the edited description, or None where it does not give the wanted number."""
+        """Try one place to write at: the edited description, or None if it does not give the wanted number."""
         why_not = self._allowed(os.path.realpath(candidate.place.source.name))
         if why_not is not None:
             attempts.append(Attempt(candidate.place, forbidden=why_not))

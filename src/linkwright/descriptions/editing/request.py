@@ -42,7 +42,7 @@ class EditRequest:
         return "axis" if self.part == "axis" else "origin"
 
     def owner(self, robot: Robot) -> Element | None:
-        """The joint, visual, collision or inertial in a robot; None where there is none."""
+        """The joint, visual, collision or inertial in a robot; None if there is none."""
         if self.part in ("joint", "axis"):
             joint = robot.joints.get(self.name)
             if joint is None or (self.part == "axis" and joint.type in WITHOUT_AXIS):

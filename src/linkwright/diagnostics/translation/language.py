@@ -38,7 +38,7 @@ def language() -> str:
 
 
 def language_of(locale: str) -> str | None:
-    """The language of a locale's name such as ``zh_CN.UTF-8``; None when messages are not known in it.
+    """The language of a locale's name such as ``zh_CN.UTF-8``; None if messages are not known in it.
 
     Any Chinese locale reads simplified characters: we have no others.
     """

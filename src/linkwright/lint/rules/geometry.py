@@ -21,7 +21,7 @@ def shapes_of(subject: Subject) -> Iterator[tuple[Link, Visual | Collision]]:
 
 
 def is_scenery(subject: Subject) -> bool:
-    """Whether the description is one fixed thing, such as a ground or a building.
+    """Return whether the description is one fixed thing, such as a ground or a building.
 
     Bullet takes a link of mass zero for one that never moves, and its planes, tables and terrains are written so.
     """

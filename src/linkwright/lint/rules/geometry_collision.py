@@ -79,7 +79,7 @@ class MissingCollision(Rule):
 
 
 def _is_between(body: Body, bodies: Bodies, lacking: list[Body]) -> bool:
-    """Whether what holds a body and something that it holds have collision shapes."""
+    """Return whether what holds a body and something that it holds have collision shapes."""
     above = bodies.of(body.joint.parent) if body.joint is not None else None
     below = [each for each in bodies.all if each.joint is not None and each.joint.parent in body.links]
     return above not in (None, *lacking) and any(body not in lacking for body in below)
@@ -226,7 +226,7 @@ class CollisionSize(Rule):
 
 
 def _is_moved_to_a_child(subject: Subject, link: Link, felt: Bounds) -> bool:
-    """Whether the collision shapes of a link were moved to where visuals of a link below it are."""
+    """Return whether the collision shapes of a link were moved to where visuals of a link below it are."""
     if not all(any(shape.origin.xyz) for shape in link.collisions) or link.name not in subject.frames:
         return False
     below = {joint.child for joint in subject.joints if joint.parent == link.name}

@@ -300,7 +300,7 @@ class RootInertia(Rule):
 
 
 def _is_frame(subject: Subject, link: Link) -> bool:
-    """Whether a link without mass is part of a body that has one, or a root that has nothing else either."""
+    """Return whether a link without mass is part of a body that has one, or a root that has nothing else either."""
     body = subject.bodies.of(link.name)
     if body is None:
         return False
@@ -311,12 +311,12 @@ def _is_frame(subject: Subject, link: Link) -> bool:
 
 
 def _is_scenery(subject: Subject, inertial: Inertial) -> bool:
-    """Whether a single link says by nothing but zeros that it never moves, as Bullet takes it."""
+    """Return whether a single link says by nothing but zeros that it never moves, as Bullet takes it."""
     return len(subject.links) == 1 and not any(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
 
 
 def _is_broken(link: Link) -> bool:
-    """Whether a link has an ``<inertial>`` that could not be read."""
+    """Return whether a link has an ``<inertial>`` that could not be read."""
     return link.element is not None and link.element.first("inertial") is not None and link.inertial is None
 
 

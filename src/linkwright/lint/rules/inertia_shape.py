@@ -407,14 +407,14 @@ def _without_placeholders(subject: Subject) -> Iterator[tuple[Link, Inertial, Bo
 
 
 def _is_at_the_joint(subject: Subject, link: Link, inertial: Inertial) -> bool:
-    """Whether the centre of mass of a body of one link is where it is because no ``<origin>`` was given."""
+    """Return whether the centre of mass of a body of one link is where it is because no ``<origin>`` was given."""
     body = subject.bodies.of(link.name)
     is_alone = body is not None and len(body.frames) == 1
     return is_alone and inertial.element is not None and inertial.element.first("origin") is None
 
 
 def _lies_to_one_side(bounds: Bounds) -> bool:
-    """Whether the origin is beyond 0.45 of an edge from the middle of a box: at its side, or outside."""
+    """Return whether the origin is beyond 0.45 of an edge from the middle of a box: at its side, or outside."""
     ends = zip(bounds.center, bounds.size, strict=True)
     return any(abs(middle) - 0.45 * size > _ALMOST_NOTHING for middle, size in ends)
 
@@ -429,7 +429,7 @@ def _uniform(bounds: Bounds, mass: float) -> float:
 
 
 def _is_made_up(inertial: Inertial) -> bool:
-    """Whether a tensor is one round number three times, such as 1 1 1: it was never in any unit."""
+    """Return whether a tensor is one round number three times, such as 1 1 1: it was never in any unit."""
     return inertial.ixx == inertial.iyy == inertial.izz == float(f"{inertial.ixx:.0e}")
 
 

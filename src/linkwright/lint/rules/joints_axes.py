@@ -47,7 +47,7 @@ class AxisZero(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every moving joint with an ``<axis>`` of no length."""
+        """Report every moving joint with an ``<axis>`` of no length."""
         for joint, _, axis in parts(subject, "axis"):
             if joint.type not in _MOVING:
                 continue
@@ -99,7 +99,7 @@ class AxisNotUnit(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every moving joint whose axis is longer or shorter than 1 by more than rounding explains."""
+        """Report every moving joint whose axis is longer or shorter than 1 by more than rounding explains."""
         for joint, _, axis in parts(subject, "axis"):
             direction = values(axis, "xyz")
             if joint.type not in _MOVING or len(direction) != 3 or not any(direction):
@@ -153,7 +153,7 @@ class AxisImplicit(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every joint that turns and does not name its axis."""
+        """Report every joint that turns and does not name its axis."""
         for joint, element in joints(subject):
             if joint.type in ("revolute", "continuous") and element.first("axis") is None and not _is_locked(joint):
                 yield self.report(
@@ -166,7 +166,7 @@ class AxisImplicit(Rule):
 
 
 def _is_locked(joint: Joint) -> bool:
-    """Whether the limits leave it no way to move, which LW202 tells."""
+    """Return whether the limits leave it no way to move, which LW202 tells."""
     return joint.type == "revolute" and joint.limit is not None and joint.limit.lower == joint.limit.upper
 
 
@@ -195,7 +195,7 @@ class AxisOnFixed(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every axis that is not read."""
+        """Report every axis that is not read."""
         for joint, _, axis in parts(subject, "axis"):
             if joint.type in ("fixed", "floating"):
                 yield self.report(
@@ -234,7 +234,7 @@ class AxisTilted(Rule):
     options = (Option("largest-tilt", 0.1, "the largest tilt, in degrees, that is taken for an accident"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every axis within a small angle of a coordinate axis, without being one."""
+        """Report every axis within a small angle of a coordinate axis, without being one."""
         largest = radians(self.option(subject, "largest-tilt", float))
         for joint, _, axis in parts(subject, "axis"):
             direction = values(axis, "xyz")
@@ -285,7 +285,7 @@ class JointNotPublished(Rule):
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every floating and planar joint."""
+        """Report every floating and planar joint."""
         for joint, element in joints(subject):
             if joint.type == "floating":
                 yield self.report(

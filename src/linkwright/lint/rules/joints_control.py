@@ -162,7 +162,7 @@ class SafetyGainNegative(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every gain below 0."""
+        """Report every gain below 0."""
         for joint, _, safety in parts(subject, "safety_controller"):
             for name in ("k_velocity", "k_position"):
                 gain = value(safety, name)
@@ -206,7 +206,7 @@ class DynamicsNegative(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every damping and friction below 0."""
+        """Report every damping and friction below 0."""
         for joint, _, dynamics in parts(subject, "dynamics"):
             for name in ("damping", "friction"):
                 size = value(dynamics, name)
@@ -251,7 +251,7 @@ class DynamicsOnFixed(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every fixed joint with dynamics."""
+        """Report every fixed joint with dynamics."""
         for joint, _, dynamics in parts(subject, "dynamics"):
             if joint.type == "fixed":
                 yield self.report(
@@ -288,7 +288,7 @@ class CalibrationOutside(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every reference position of a bounded joint that it cannot reach."""
+        """Report every reference position of a bounded joint that it cannot reach."""
         for joint, _, calibration in parts(subject, "calibration"):
             lower, upper = (joint.limit.lower, joint.limit.upper) if joint.limit else (-inf, inf)
             if joint.type not in ("revolute", "prismatic") or not lower < upper:

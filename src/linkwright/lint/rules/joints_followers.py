@@ -61,7 +61,7 @@ class MimicOnFixed(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every fixed joint that is to follow another."""
+        """Report every fixed joint that is to follow another."""
         for joint, mimic in _followers(subject):
             if joint.type == "fixed" and joint.element is not None and is_literal(joint.element, "type"):
                 yield self.report(
@@ -135,7 +135,7 @@ class MimicStandsStill(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every follower with a factor of 0."""
+        """Report every follower with a factor of 0."""
         for joint, mimic in _followers(subject):
             if value(mimic, "multiplier") == 0:
                 yield self.report(
@@ -176,7 +176,7 @@ class MimicBeyondLimits(Rule):
     name = "mimic-beyond-limits"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every bounded follower whose leader takes it out of its range."""
+        """Report every bounded follower whose leader takes it out of its range."""
         for joint, leader, mimic in _pairs(subject):
             own, followed = _range(joint), _range(leader)
             if own is None or followed is None or joint.mimic is None:
@@ -231,7 +231,7 @@ class MimicChain(Rule):
     name = "mimic-chain"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every follower of a follower; circles the URDF reader reports."""
+        """Report every follower of a follower; circles the URDF reader reports."""
         by_name = {joint.name: joint for joint in subject.joints}
         for joint, leader, mimic in _pairs(subject):
             if leader.mimic is None or joint.mimic is None:
@@ -285,7 +285,7 @@ class MimicOtherKind(Rule):
     name = "mimic-other-kind"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every follower of another kind with multiplier 1."""
+        """Report every follower of another kind with multiplier 1."""
         for joint, leader, mimic in _pairs(subject):
             turns = joint.type in _TURNING and leader.type in _SLIDING
             slides = joint.type in _SLIDING and leader.type in _TURNING
@@ -334,7 +334,7 @@ class MimicDrivenByControl(Rule):
     severity = Severity.WARNING
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every command interface of a follower."""
+        """Report every command interface of a follower."""
         followers = {joint.name: joint for joint, _ in _followers(subject)}
         for system in subject.elements("ros2_control"):
             for entry in system.elements("joint"):

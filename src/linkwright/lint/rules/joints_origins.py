@@ -43,7 +43,7 @@ class OriginFar(Rule):
     options = (Option("farthest", 20.0, "the farthest distance in m that is still believed"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every joint whose frame is beyond belief in metres."""
+        """Report every joint whose frame is beyond belief in metres."""
         farthest = self.option(subject, "farthest", float)
         for joint, _, origin in parts(subject, "origin"):
             xyz = values(origin, "xyz")
@@ -140,7 +140,7 @@ class AngleRounded(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every angle within a few thousandths of a simple part of pi, but not closer than six digits."""
+        """Report every angle within a few thousandths of a simple part of pi, but not closer than six digits."""
         for owner, origin in _origins(subject):
             written = origin.attributes.get("rpy", "").split()
             if len(values(origin, "rpy")) != 3 or len(written) != 3:
@@ -192,7 +192,7 @@ class OriginMissing(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every joint without an origin between two links with visuals."""
+        """Report every joint without an origin between two links with visuals."""
         solid = {link.name for link in subject.links if link.visuals}
         for joint, element in joints(subject):
             if element.first("origin") is None and {joint.parent, joint.child} <= solid:

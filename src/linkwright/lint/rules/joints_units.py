@@ -42,7 +42,7 @@ class LimitInDegrees(Rule):
     options = (Option("most-turns", 3.0, "how many turns to either side are still believed"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every limit of a revolute joint that is beyond belief in radians and plausible in degrees."""
+        """Report every limit of a revolute joint that is beyond belief in radians and plausible in degrees."""
         most = self.option(subject, "most-turns", float) * 2 * pi
         for joint, limit in limits(subject, "revolute"):
             ends = bounds(limit)
@@ -93,7 +93,7 @@ class LimitEndless(Rule):
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every revolute joint with both bounds beyond a thousand radians."""
+        """Report every revolute joint with both bounds beyond a thousand radians."""
         for joint, limit in limits(subject, "revolute"):
             ends = bounds(limit)
             if ends is not None and ends[0] <= -UNBOUNDED and ends[1] >= UNBOUNDED:
@@ -138,7 +138,7 @@ class LimitInMillimetres(Rule):
     options = (Option("longest", 20.0, "the longest way in m to either side that is still believed"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every limit of a prismatic joint that is beyond belief in metres."""
+        """Report every limit of a prismatic joint that is beyond belief in metres."""
         longest = self.option(subject, "longest", float)
         for joint, limit in limits(subject, "prismatic"):
             ends = bounds(limit)

@@ -30,13 +30,13 @@ class LaunchRule(PackageRule):
     """A rule about one launch file."""
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         for file in package.launch_files.values():
             yield from self.check_launch(file)
 
     @abstractmethod
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """The findings in a launch file."""
+        """Yield the findings in a launch file."""
 
 
 class LaunchSyntaxError(LaunchRule):
@@ -70,7 +70,7 @@ class LaunchSyntaxError(LaunchRule):
     severity = Severity.ERROR
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """The findings in a launch file."""
+        """Yield the findings in a launch file."""
         if file.error is not None:
             message = phrase(
                 "the launch file '{path}' is not Python: {message}", path=file.path, message=foreign(file.error.message)
@@ -107,7 +107,7 @@ class LaunchFunctionMissing(LaunchRule):
     severity = Severity.ERROR
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """The findings in a launch file."""
+        """Yield the findings in a launch file."""
         if file.python is None or file.has_function or file.is_test:
             return
         if Path(file.source.name).with_name("__init__.py").is_file():
@@ -194,7 +194,7 @@ class LaunchedFileMissing(Rule):
 
 
 def _is_installed_as(package: PackageContext, shared: SharedFile) -> bool:
-    """Whether ``setup.py`` installs some file of the package at that path."""
+    """Return whether ``setup.py`` installs some file of the package at that path."""
     folder, _, name = shared.path.rpartition("/")
     setup = package.setup
     if setup is None:

@@ -118,7 +118,7 @@ class LaunchedExecutableUnknown(PackageRule):
     name = "launched-executable-unknown"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         for file in package.launch_files.values():
             yield from self._of_file(file, package)
 
@@ -279,7 +279,7 @@ def _meant(name: str, package: PackageContext, subject: Subject) -> str | None:
 
 
 def _is_slip(name: str, like: str) -> bool:
-    """Whether one name is the other with a letter or two wrong."""
+    """Return whether one name is the other with a letter or two wrong."""
     if abs(len(name) - len(like)) > 2 or min(len(name), len(like)) < 5:
         return False
     from difflib import SequenceMatcher

@@ -64,7 +64,7 @@ class CommandWithoutBlank(LaunchRule):
     severity = Severity.ERROR
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """The findings in a launch file."""
+        """Yield the findings in a launch file."""
         python = file.python
         if python is None:
             return
@@ -155,7 +155,7 @@ class LaunchArgumentUndeclared(LaunchRule):
     name = "launch-argument-undeclared"
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """The findings in a launch file."""
+        """Yield the findings in a launch file."""
         python = file.python
         if python is None:
             return
@@ -207,7 +207,7 @@ class FixedFrameUnknown(PackageRule):
     name = "fixed-frame-unknown"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         files = [file for file in package.files if file.endswith(".rviz")]
         if not files or not package.descriptions:
             return
@@ -253,7 +253,7 @@ def _link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
 
 
 def _fits(name: str, parts: list[str]) -> bool:
-    """Whether a name has these parts, in their order, with anything between them."""
+    """Return whether a name has these parts, in their order, with anything between them."""
     first, last = parts[0], parts[-1]
     if len(parts) == 1:
         return name == first
@@ -329,7 +329,7 @@ def _trouble_as_yaml(text: str) -> str | None:
 
 
 def _is_program(node: ast.expr, python: PythonFile) -> bool:
-    """Whether a part of a command is a program's name without a blank behind it."""
+    """Return whether a part of a command is a program's name without a blank behind it."""
     text = python.text(node)
     if text is not None:
         return bool(re.search(r"(^|/)(xacro|cat)$", text))

@@ -329,7 +329,7 @@ def _difference(first: Material, second: Material) -> Phrase:
 
 
 def _looks_alike(first: Material, second: Material) -> bool:
-    """Whether two colours differ by too little to be seen unless they are side by side."""
+    """Return whether two colours differ by too little to be seen unless they are side by side."""
     if first.rgba is None or second.rgba is None or first.texture != second.texture:
         return False
     return all(abs(one - other) <= _ALIKE for one, other in zip(first.rgba, second.rgba, strict=True))

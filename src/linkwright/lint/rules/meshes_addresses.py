@@ -35,7 +35,7 @@ def written(element: Element, attribute: str) -> str:
 
 
 def is_portable(uri: str) -> bool:
-    """Whether an address is of the form that ROS tools resolve: a scheme, or an absolute path."""
+    """Return whether an address is of the form that ROS tools resolve: a scheme, or an absolute path."""
     return bool(_SCHEME.match(uri)) or Path(uri).is_absolute()
 
 
@@ -127,7 +127,7 @@ def _is_relative(uri: str) -> bool:
 
 
 def _is_beside_mujoco(folder: Path) -> bool:
-    """Whether a folder holds models for MuJoCo, whose descriptions of robots have addresses relative to it."""
+    """Return whether a folder holds models for MuJoCo, whose descriptions of robots have addresses relative to it."""
     with suppress(OSError):
         return any(_MUJOCO in file.read_bytes()[:_HEAD] for file in folder.glob("*.xml"))
     return False

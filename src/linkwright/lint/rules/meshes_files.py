@@ -36,7 +36,7 @@ def case_twin(path: Path) -> Path | None:
 
 
 def _is_listed(folder: Path, name: str) -> bool:
-    """Whether a folder has an entry of exactly this name; a disk that ignores case finds others too."""
+    """Return whether a folder has an entry of exactly this name; a disk that ignores case finds others too."""
     if (folder / name.swapcase()).exists() and name.swapcase() != name:
         try:
             return any(path.name == name for path in folder.iterdir())

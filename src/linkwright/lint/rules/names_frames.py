@@ -308,12 +308,12 @@ class OpticalFrameRotation(Rule):
 
 
 def _is_optical(joint: Joint | None) -> bool:
-    """Whether a joint turns its child as REP 103 says of optical frames, whatever the child is called."""
+    """Return whether a joint turns its child as REP 103 says of optical frames, whatever the child is called."""
     return joint is not None and angle_between(rotation(joint.origin), _OPTICAL_ROTATION) <= _TOLERANCE
 
 
 def _is_tiny(shape: Geometry) -> bool:
-    """Whether a shape is a mark for a place: some simulators want one on every link."""
+    """Return whether a shape is a mark for a place: some simulators want one on every link."""
     if isinstance(shape, Box):
         return max(shape.size) <= _TINY
     return not isinstance(shape, Mesh) and 2.0 * shape.radius <= _TINY
@@ -326,7 +326,7 @@ def _same_camera(stem: str, parent: str) -> bool:
 
 
 def _is_slip(turned: Matrix) -> bool:
-    """Whether a rotation is by right angles: a camera that looks elsewhere has other angles."""
+    """Return whether a rotation is by right angles: a camera that looks elsewhere has other angles."""
     return all(min(abs(value), abs(abs(value) - 1.0)) < 0.02 for row in turned for value in row)
 
 

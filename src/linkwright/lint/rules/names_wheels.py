@@ -64,7 +64,7 @@ def joints_above(robot: Robot, joint: Joint) -> Iterator[Joint]:
 
 
 def is_wheel(joint: Joint) -> bool:
-    """Whether a joint is that of a wheel, by the names."""
+    """Return whether a joint is that of a wheel, by the names."""
     names = f"{joint.name} {joint.child}"
     return "wheel" in names.lower() and not _NO_WHEEL.search(names)
 
@@ -360,7 +360,7 @@ class WheelsTurnBackward(Rule):
 
 
 def _is_driven(subject: Subject, joint: Joint) -> bool:
-    """Whether a plugin of a simulator or `<ros2_control>` commands the joint."""
+    """Return whether a plugin of a simulator or `<ros2_control>` commands the joint."""
     for gazebo in subject.elements("gazebo"):
         for plugin in gazebo.elements("plugin"):
             if any(joint.name in element.text().split() for element in plugin.walk()):
@@ -382,7 +382,7 @@ def _disc_axes(link: Link) -> Iterator[Vector3]:
 
 
 def _rolls(wheel: Wheel) -> bool:
-    """Whether the joint turns the wheel about the wheel's own axis."""
+    """Return whether the joint turns the wheel about the wheel's own axis."""
     discs = list(_disc_axes(wheel.link))
     if not discs:
         return abs(wheel.axis[1]) >= _AXIS_TOLERANCE
@@ -391,7 +391,7 @@ def _rolls(wheel: Wheel) -> bool:
 
 
 def _is_wide(joint: Joint) -> bool:
-    """Whether the limits leave room for many turns."""
+    """Return whether the limits leave room for many turns."""
     return joint.limit is not None and joint.limit.upper - joint.limit.lower > 1000.0
 
 

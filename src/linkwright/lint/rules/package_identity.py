@@ -57,7 +57,7 @@ class PackageNameDiffers(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         manifest = package.manifest
         if manifest is None:
             return
@@ -118,7 +118,7 @@ class PackageName(ManifestRule):
     name = "package-name"
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """The findings in a manifest."""
+        """Yield the findings in a manifest."""
         name, element = manifest.name, manifest.root.first("name")
         if name is None or element is None:
             return
@@ -154,7 +154,7 @@ class FolderNameDiffers(PackageRule):
     severity = Severity.INFO
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         manifest = package.manifest
         if manifest is None:
             return
@@ -195,7 +195,7 @@ class MaintainerEmail(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """The findings in a manifest."""
+        """Yield the findings in a manifest."""
         for element in manifest.root.elements():
             if element.tag not in ("maintainer", "author"):
                 continue
@@ -243,7 +243,7 @@ class ManifestPlaceholder(ManifestRule):
     severity = Severity.INFO
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """The findings in a manifest."""
+        """Yield the findings in a manifest."""
         for tag in ("description", "license", "maintainer", "author"):
             for element in manifest.root.elements(tag):
                 text = " ".join(element.text().split())

@@ -63,7 +63,7 @@ class PatternMatchesNothing(PackageRule):
     name = "pattern-matches-nothing"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         setup = package.setup
         if setup is None:
             return
@@ -123,7 +123,7 @@ class FolderNotInstalled(PackageRule):
     name = "folder-not-installed"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         if package.setup is not None and package.cmake is None:
             yield from self._by_setup(package, package.setup)
         elif package.cmake is not None and package.setup is None:
@@ -200,7 +200,7 @@ class FileNotInstalled(PackageRule):
     name = "file-not-installed"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         setup = package.setup
         if setup is None or package.cmake is not None or not setup.is_complete:
             return
@@ -249,7 +249,7 @@ class InstalledFileMissing(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         setup, cmake = package.setup, package.cmake
         if setup is not None:
             for item in setup.installed:
@@ -270,7 +270,7 @@ class InstalledFileMissing(PackageRule):
 
 
 def _is_there(package: PackageContext, path: str) -> bool:
-    """Whether a file or folder is among the sources, or is made before the package is installed."""
+    """Return whether a file or folder is among the sources, or is made before the package is installed."""
     place = package.folder / path
     is_ignored = is_ignored_by_git(place) or is_ignored_by_git(place / "_")
     return package.has(path) or is_ignored or is_made_by_cmake(package, path)
@@ -319,7 +319,7 @@ def _covers(directory: str, folder: str) -> bool:
 
 
 def checkout_hint(package: PackageContext, path: str) -> Phrase | None:
-    """A hint to check out the submodule of Git that a path of the package is in, or None where it is in none."""
+    """A hint to check out the submodule of Git that a path of the package is in, or None if it is in none."""
     submodule = submodule_of(package.folder / path)
     if submodule is None:
         return None

@@ -40,20 +40,20 @@ class PackageRule(Rule, ABC):
 
     @abstractmethod
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
 
 
 class ManifestRule(PackageRule):
     """A rule about a ``package.xml`` that is XML."""
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         if package.manifest is not None:
             yield from self.check_manifest(package.manifest)
 
     @abstractmethod
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """The findings in a manifest."""
+        """Yield the findings in a manifest."""
 
 
 class ManifestMalformed(PackageRule):
@@ -82,7 +82,7 @@ class ManifestMalformed(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         error = package.manifest_error
         if error is not None:
             found = error.diagnostics[0]
@@ -126,7 +126,7 @@ class ManifestIncomplete(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """The findings in a manifest."""
+        """Yield the findings in a manifest."""
         root = manifest.root
         if root.tag != "package":
             yield self.report(phrase("the root of package.xml is <{tag}>, not <package>", tag=root.tag), root)
@@ -170,7 +170,7 @@ class ManifestVersion(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """The findings in a manifest."""
+        """Yield the findings in a manifest."""
         version, element = manifest.text("version"), manifest.root.first("version")
         if version and element is not None and not re.fullmatch(r"\d+\.\d+\.\d+", version):
             yield self.report(
@@ -209,7 +209,7 @@ class DependencyRepeated(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """The findings in a manifest."""
+        """Yield the findings in a manifest."""
         generic = {
             dependency.name: dependency for dependency in reversed(manifest.dependencies) if dependency.tag == "depend"
         }
@@ -252,7 +252,7 @@ class DependencyOnItself(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """The findings in a manifest."""
+        """Yield the findings in a manifest."""
         for dependency in manifest.dependencies:
             if dependency.name == manifest.name:
                 message = phrase("the package '{name}' depends on itself", name=dependency.name)
@@ -291,7 +291,7 @@ class BuildTypeDiffers(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         manifest = package.manifest
         if manifest is None:
             return

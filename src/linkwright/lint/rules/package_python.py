@@ -49,7 +49,7 @@ class SetupSyntaxError(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         setup = package.setup
         if setup is not None and setup.error is not None:
             message = phrase("setup.py is not Python: {message}", message=foreign(setup.error.message))
@@ -78,7 +78,7 @@ class MarkerMissing(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         setup = package.setup
         if setup is None or not is_ament_python(package):
             return
@@ -127,7 +127,7 @@ class MarkerNotInstalled(PackageRule):
     name = "marker-not-installed"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         setup = package.setup
         if setup is None or not setup.call or not setup.is_complete or not is_ament_python(package):
             return
@@ -175,7 +175,7 @@ class EntryPointMissing(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         setup = package.setup
         if setup is None:
             return
@@ -229,7 +229,7 @@ class PythonPackageMissing(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         setup = package.setup
         if setup is None or setup.packages is None or "package_dir" in setup.source.text:
             return
@@ -267,7 +267,7 @@ class SetupCfgDiffers(PackageRule):
     name = "setup-cfg-differs"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """The findings in a package."""
+        """Yield the findings in a package."""
         setup = package.setup
         if setup is None or not setup.entry_points or not is_ament_python(package):
             return
@@ -293,7 +293,7 @@ class SetupCfgDiffers(PackageRule):
 
 
 def is_ament_python(package: PackageContext) -> bool:
-    """Whether colcon builds the package with setuptools for ROS 2."""
+    """Return whether colcon builds the package with setuptools for ROS 2."""
     return package.manifest is not None and package.manifest.build_type == "ament_python"
 
 

@@ -98,7 +98,7 @@ class MisplacedElement(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every element that is known elsewhere; a material in a collision has a rule of its own."""
+        """Report every element that is known elsewhere; a material in a collision has a rule of its own."""
         reported = hints_of_reader(subject)
         for place, child in subject.structure.unknown_elements:
             homes = HOMES.get(child.tag, ())
@@ -115,7 +115,7 @@ class MisplacedElement(Rule):
 
 
 def _is_no_offset(origin: Element) -> bool:
-    """Whether an origin would move nothing where it is read either."""
+    """Return whether an origin would move nothing where it is read either."""
     return not any(float(value) for name in ("xyz", "rpy") for value in values(origin, name))
 
 
@@ -200,7 +200,7 @@ class MaterialInCollision(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every material of a collision."""
+        """Report every material of a collision."""
         from linkwright.lint.fix import remove_element
 
         for place in subject.structure.places:

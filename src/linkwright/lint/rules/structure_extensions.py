@@ -42,7 +42,7 @@ class MisspeltExtension(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every element and attribute there whose name is a misspelling of a known one."""
+        """Report every element and attribute there whose name is a misspelling of a known one."""
         for top in subject.elements():
             if top.tag not in CHILDREN:
                 continue

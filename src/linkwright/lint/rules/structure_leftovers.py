@@ -135,7 +135,7 @@ class EmptyName(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every name without a letter."""
+        """Report every name without a letter."""
         named = [element for element in subject.elements() if element.tag in ("link", "joint")]
         for element in [subject.root, *named]:
             name = element.attributes.get("name")

@@ -79,7 +79,7 @@ class GazeboReferenceUnknown(Rule):
     needs_all_sets = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every reference to nothing."""
+        """Report every reference to nothing."""
         links, joints = _names(subject, "link"), _names(subject, "joint")
         named = [
             (element, name) for element in subject.elements("gazebo") if (name := element.attributes.get("reference"))
@@ -165,7 +165,7 @@ class ControlJointUnknown(Rule):
     name = "control-joint-unknown"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every joint of ros2_control that the robot does not have."""
+        """Report every joint of ros2_control that the robot does not have."""
         known = _names(subject, "joint")
         if not known:
             return  # a description of the hardware alone
@@ -209,7 +209,7 @@ class ControlInterfaceMisspelt(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every interface of a joint that is near a standard name without being it."""
+        """Report every interface of a joint that is near a standard name without being it."""
         for _, joint in _control_joints(subject):
             for interface in joint.elements():
                 if interface.tag not in ("command_interface", "state_interface"):
@@ -256,7 +256,7 @@ class ControlPluginMissing(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every ros2_control without a plugin."""
+        """Report every ros2_control without a plugin."""
         for system in subject.elements("ros2_control"):
             hardware = system.first("hardware")
             if hardware is None and any(misspelling_of(child.tag, ["hardware"]) for child in system.elements()):
@@ -310,7 +310,7 @@ class ControlJointRepeated(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every joint after the first of its name."""
+        """Report every joint after the first of its name."""
         for system in subject.elements("ros2_control"):
             first: dict[str, Element] = {}
             for joint in system.elements("joint"):

@@ -152,7 +152,7 @@ class RepeatedElement(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every element after the first of its tag, where one is read."""
+        """Report every element after the first of its tag, where one is read."""
         for place in subject.structure.places:
             first: dict[str, Element] = {}
             for child in place.element.elements():
@@ -206,7 +206,7 @@ class NewerVersion(Rule):
 
 
 def _root_of(name: str, above: dict[str, str]) -> str | None:
-    """The topmost link above one; None where the joints go in a circle."""
+    """The topmost link above one; None if the joints go in a circle."""
     steps = 0
     while name in above:
         name = above[name]

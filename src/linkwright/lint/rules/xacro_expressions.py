@@ -76,7 +76,7 @@ class DeprecatedFunction(XacroRule):
 
 
 def _is_called_by(name: str, file: FileFacts) -> bool:
-    """Whether a file calls a function of a group, by its full name."""
+    """Return whether a file calls a function of a group, by its full name."""
     return file.document.source is not None and f"{name}(" in file.document.source.text
 
 

@@ -26,4 +26,4 @@ class XacroRule(Rule, ABC):
 
     @abstractmethod
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        """The findings in the files of a description."""
+        """Yield the findings in the files of a description."""

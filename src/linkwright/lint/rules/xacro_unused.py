@@ -321,7 +321,7 @@ def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], b
 
 
 def _speaks(element: Element) -> bool:
-    """Whether a property is evaluated where it is defined and tells the user something then."""
+    """Return whether a property is evaluated where it is defined and tells the user something then."""
     lazy = element.attributes.get("lazy_eval", "true").strip() not in ("false", "False", "0")
     return (not lazy or "scope" in element.attributes) and bool(_SPEAKING.search(element.attributes.get("value", "")))
 
@@ -338,7 +338,7 @@ def _is_of_table(definition: Definition, file: FileFacts, used: frozenset[str]) 
 
 
 def _is_mathematics(value: str) -> bool:
-    """Whether a value is pi, a part or multiple of it, or a factor between degrees and radians."""
+    """Return whether a value is pi, a part or multiple of it, or a factor between degrees and radians."""
     if re.fullmatch(r"\$\{[\s\d.*/()-]*\bpi\b[\s\d.*/()-]*\}", value.strip()):
         return True
     try:
@@ -380,7 +380,7 @@ def _included_paths(facts: XacroFacts) -> dict[int, Path]:
 
 
 def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
-    """Whether a comment calls a macro of an included file, which its author can so switch on again."""
+    """Return whether a comment calls a macro of an included file, which its author can so switch on again."""
     defined = {macro.name for macro in facts.files[path].macros} if path in facts.files else set()
     texts = (file.document.source.text for file in facts.own.values() if file.document.source is not None)
     comments = (comment for text in texts for comment in _COMMENT.findall(text))
@@ -388,7 +388,7 @@ def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
 
 
 def _contributes(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
-    """Whether a file, or one that it includes, puts anything into the robot or defines anything used outside.
+    """Return whether a file, or one that it includes, puts anything into the robot or defines anything used outside.
 
     An empty file is one to be filled, and left alone.
     """

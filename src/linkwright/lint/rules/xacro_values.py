@@ -257,7 +257,7 @@ class ParameterHidesGlobal(XacroRule):
 
 
 def _changes(value: str) -> bool:
-    """Whether the literal rule changes what is written for a value."""
+    """Return whether the literal rule changes what is written for a value."""
     return "$" not in value and "'" not in value and str(literal(value)) != value
 
 
