@@ -1,4 +1,4 @@
-"""The one way from a file, or a text that is not saved yet, to a robot or world, its origins and its findings."""
+"""Read files, or texts that are not saved yet, as robots and worlds, with their origins and findings."""
 
 from linkwright.descriptions.description import Description
 from linkwright.descriptions.library import DescriptionLibrary

@@ -1,4 +1,4 @@
-"""Robots, models and worlds as one SDF, in which nothing is included any more."""
+"""Convert robots, models and worlds to one SDF without includes."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def as_sdf(
 
 
 def _as_it_is(world: World) -> World:
-    """A world as it was saved, with its gravity where SDF has had it since 1.6."""
+    """Return a world as it was saved, with its gravity in the place that SDF uses since 1.6."""
     from linkwright.sdf.saved import as_saved
     from linkwright.sdf.worlds import gravity_of
 

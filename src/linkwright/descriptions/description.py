@@ -1,4 +1,4 @@
-"""Descriptions: a file or text with the robot, the origins and the findings that were made of it."""
+"""Descriptions: a file or text with its robot, origins and findings."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Description:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The problems, what xacro remarked, and all findings of the reader."""
+        """The problems, the remarks of xacro, and all findings of the reader."""
         return (*self.problems, *self.remarks, *self.reading.diagnostics)
 
     @property

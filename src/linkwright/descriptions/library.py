@@ -1,4 +1,4 @@
-"""Sharing a description between everything that reads the same text."""
+"""Share a description between all readers of the same text."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class DescriptionLibrary:
         return self._descriptions.get(text)
 
     def files(self, text: str) -> tuple[Path, ...]:
-        """The files of a remembered description, the main file first; empty where none are known."""
+        """Return the files of a stored description, the main file first; empty if it is not stored."""
         known = self._descriptions.get(text)
         return () if known is None else known.files
 
@@ -74,7 +74,7 @@ class DescriptionLibrary:
         return None if known is None else known.provenance(element)
 
     def read(self, text: str) -> Reading:
-        """The reading of a description text, plain URDF or SDF; one that is not XML has no robot and says why."""
+        """Read a description text, plain URDF or SDF; one that is not XML gives no robot, with the reason."""
         known = self._descriptions.get(text)
         if known is None:
             known = _read(text)

@@ -1,4 +1,4 @@
-"""Two descriptions that are to be compared: two files, or one file and what it was in a commit."""
+"""Two descriptions to compare: two files, or a file and its version in a commit."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ class Pair:
         return self.compare(self.old.read_robot(), self.new.read_robot())
 
     def compare(self, old: Robot, new: Robot) -> Comparison:
-        """How robots that were read of the two differ."""
+        """Return the differences between the robots of the two descriptions."""
         before, after = Side(old, resolve=self.old.resolve), Side(new, resolve=self.new.resolve)
         if self.old.revision is not None:
             ours, theirs = self.old.revision.normalizers(self.new.finder)
@@ -126,7 +126,7 @@ class Pair:
 
 
 def text_of_old(description: Description) -> str:
-    """A text for an old description that no new one has: those who read by the text alone must not mix them up."""
+    """Return a text for an old description that no new one has, as readers identify descriptions by their text."""
     return f"{description.text}\n<!-- the old one -->\n"
 
 
@@ -145,7 +145,7 @@ def pair_of(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
 
 
 def against(path: Path, commit: str, values: Mapping[str, str]) -> Pair:
-    """A file, and what it was in a commit, whose files stay until the pair is closed.
+    """Return a file and its version in a commit, whose files exist until the pair is closed.
 
     Raises:
         LinkwrightError: see `linkwright.descriptions.revisions.Revision`.

@@ -1,4 +1,4 @@
-"""Files as a commit of git has them, beside those that are being edited."""
+"""Files of a git commit, beside the edited ones."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _OF_HOOKS = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
 
 
 class Revision:
-    """All files of a commit, in a temporary folder: what a description includes and its meshes come from there, too.
+    """All files of a commit, in a temporary folder, so that includes and meshes come from the commit, too.
 
     Neither the repository nor its working tree is changed. A file that was renamed since is found by its old name, as
     git recognises it. Packages that are not in the commit are looked for where
@@ -132,7 +132,7 @@ def _commit(top: Path, name: str) -> str:
 
 
 def _before_renaming(top: Path, commit: str, inside: Path, name: str) -> Path:
-    """The name that a file of the working tree had in a commit that does not have its name; staged or not.
+    """Return the name in a commit of a file of the working tree that was renamed since, staged or not.
 
     Raises:
         LinkwrightError: CLI344, git recognises it in none of the files that are gone since.

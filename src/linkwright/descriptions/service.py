@@ -1,4 +1,4 @@
-"""Reading a description: what is xacro and what is plain URDF is decided here, and nowhere else."""
+"""Read a description: only this module decides whether it is xacro or plain URDF."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The one way from a file to a world or model in SDF, with what it includes and its findings."""
+"""Read a file as a world or model in SDF, with its includes and its findings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Findings that say the same of many places, told once."""
+"""Combine findings that are alike in many places."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _PLACES = 2
 
 
 def alike_together(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """The diagnostics as people want them: of many alike the first, with a count of the others.
+    """Return the diagnostics for people: of similar ones only the first, with a count of the others.
 
     Alike are those of one code and severity whose messages differ in nothing but names and numbers.
     """

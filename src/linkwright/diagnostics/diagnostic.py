@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Severity(Enum):
-    """How bad a finding is; an error makes a command exit with status 1."""
+    """The severity of a finding; an error makes a command exit with status 1."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -23,7 +23,7 @@ class Severity(Enum):
 
 
 class Note(NamedTuple):
-    """One more fact about a diagnostic, with the place it holds at, such as a macro call on the way there."""
+    """Another fact about a diagnostic, with its place, such as a macro call that led there."""
 
     message: Phrase
     span: Span | None = None
@@ -88,12 +88,12 @@ class Diagnostic:
 
     @property
     def placed_message(self) -> Phrase:
-        """The message, after its place where it has one."""
+        """The message, after its place if it has one."""
         return joined((str(self.span), self.message), ": ") if self.span else self.message
 
 
 class LinkwrightError(Exception):
-    """An error in what the user gave us, never a bug of ours; it carries at least one diagnostic."""
+    """An error in the user's input, never a bug of Linkwright; it has at least one diagnostic."""
 
     def __init__(self, *diagnostics: Diagnostic) -> None:
         if not diagnostics:
@@ -109,7 +109,7 @@ class LinkwrightError(Exception):
 
 
 def in_one_line(diagnostics: Iterable[Diagnostic]) -> Phrase:
-    """The messages of several diagnostics in a row."""
+    """Join the messages of several diagnostics."""
     return joined((diagnostic.message for diagnostic in diagnostics), "; ")
 
 

@@ -1,4 +1,4 @@
-"""The extras of the distribution: libraries that a command asks for by name when they are not installed."""
+"""The extras of the distribution: optional libraries that commands name if they are not installed."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def _newest_python(package: str) -> tuple[int, ...]:
 
 
 def missing_extra(code: str, error: ModuleNotFoundError) -> LinkwrightError:
-    """The error for a user who asks for what an extra is needed for.
+    """Return the error about a missing extra.
 
     Args:
         code: of the finding.

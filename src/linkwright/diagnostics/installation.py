@@ -29,7 +29,7 @@ SOMEWHERE = "PATH_TO_LINKWRIGHT"
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a distribution came from.
+    """The origin of a distribution.
 
     Attributes:
         place: a path, or an address; empty for a package index.
@@ -41,7 +41,7 @@ class Origin:
 
     @property
     def is_gone(self) -> bool:
-        """Whether it was a checkout or a file that is not there any more."""
+        """Whether it was a checkout or a file that no longer exists."""
         return bool(self.place) and "://" not in self.place and not Path(self.place).exists()
 
     def words(self, extras: Iterable[str]) -> list[str]:
@@ -163,7 +163,7 @@ def _extras_in(requirement: str) -> frozenset[str]:
 
 
 def _quoted(words: list[str]) -> str:
-    """A line for the user's shell; that of Windows knows double quotes alone."""
+    """Return a line for the user's shell; that of Windows only has double quotes."""
     if sys.platform == "win32":
         return " ".join(word if _PLAIN.fullmatch(word) else f'"{word}"' for word in words)
     return shlex.join(words)

@@ -24,13 +24,13 @@ RULES = "rule"
 
 
 class Wording(Protocol):
-    """A language's catalogue, as gettext's translations are; a text that it does not know comes back as it is."""
+    """A language's catalogue, like gettext's translations; an unknown text is returned unchanged."""
 
     def gettext(self, message: str, /) -> str:
         """The template in this language."""
 
     def ngettext(self, one: str, many: str, count: int, /) -> str:
-        """The one of two templates that fits the number, in this language."""
+        """Return the template for the number, in this language."""
 
     def pgettext(self, context: str, message: str, /) -> str:
         """The translation of a template that has several by context."""
@@ -57,7 +57,7 @@ class Phrase(str):
         return self
 
     def __str__(self) -> Phrase:
-        """Itself, so that an exception that was raised with a phrase gives it back."""
+        """Return the phrase itself, so that an exception raised with it returns it."""
         return self
 
     def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
@@ -69,11 +69,11 @@ class Phrase(str):
 
     @property
     def chosen_template(self) -> str:
-        """The English template that was filled in; of a singular and a plural one, that which fits the count."""
+        """The English template; of a singular and a plural one, the one for the count."""
         return self.template
 
     def translated(self, wording: Wording) -> Phrase:
-        """The text in another language, which still knows what it is made of."""
+        """Return the text in another language, with its template and arguments."""
         return _Said(self.said_in(wording), self)
 
     def _filled(self, template: str, wording: Wording) -> str:
@@ -220,13 +220,13 @@ def title_of_page(text: str) -> Phrase:
 
 
 def foreign(words: object) -> Phrase:
-    """A text of another program, such as that of an exception; translated where a catalogue has exactly this."""
+    """Return a text of another program, such as that of an exception; translated if a catalogue has it."""
     text = str(words)
     return text if isinstance(text, Phrase) else _Known(text, FOREIGN)
 
 
 def quoted(name: object) -> Phrase:
-    """A name between quotation marks, which are others in other languages."""
+    """Return a name in the quotation marks of the language."""
     return phrase("'{name}'", name=name)
 
 
@@ -247,7 +247,7 @@ def quoted_names(names: Iterable[object], last: str | None = None) -> Phrase:
 
 
 def as_phrase(text: str) -> Phrase:
-    """The text itself where it is a phrase, else one of it as a whole."""
+    """Return the text if it is a phrase, else a phrase of the whole text."""
     return text if isinstance(text, Phrase) else Phrase(text)
 
 
@@ -261,7 +261,7 @@ def _in_a_row(items: Iterable[str], separator: str, last: str) -> str:
 
 
 def _spaced(left: str, right: str) -> str:
-    """Two texts in a row, with a blank where Latin and Chinese letters meet, as Chinese is set."""
+    """Join two texts, with a blank between Latin and Chinese letters, as is usual in Chinese."""
     return f"{left} {right}" if _meet(left[-1:], right[:1]) else left + right
 
 

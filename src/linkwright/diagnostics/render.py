@@ -168,7 +168,7 @@ def printable(text: str) -> str:
 
 
 def shown_width(text: str) -> int:
-    """How many columns of a terminal a text takes."""
+    """Return the number of terminal columns of a text."""
     return sum(map(_columns, text))
 
 

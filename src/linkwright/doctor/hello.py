@@ -17,7 +17,7 @@ def greeting(host: str) -> str:
 
 
 def host_of(text: str) -> str:
-    """The computer that said a greeting; empty when it is none."""
+    """Return the computer of a greeting; empty if the text is not one."""
     words = text.split()
     return words[-1] if words else ""
 

@@ -36,7 +36,7 @@ class Bounds(NamedTuple):
         return hypot(*self.size)
 
     def gap(self, other: Bounds) -> float:
-        """How far two boxes are apart, in m; 0 where they touch."""
+        """Return the distance between two boxes, in m; 0 if they touch."""
         between = (subtracted(self.low, other.high), subtracted(other.low, self.high))
         return hypot(*(max(0.0, before, after) for before, after in zip(*between, strict=True)))
 

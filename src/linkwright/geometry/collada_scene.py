@@ -33,11 +33,11 @@ MatrixT = TypeVar("MatrixT")
 
 
 class Unusual(Exception):  # noqa: N818 - no error: another reader takes the file
-    """A file has something that a plain reader does not know."""
+    """A file has content that a plain reader does not support."""
 
 
 class Numbers(Protocol[MadeT_co, MatrixT, FacesT]):
-    """Makes meshes and matrices of texts; each method raises `Unusual` or ValueError for a text that is not usual."""
+    """Makes meshes and matrices from texts; each method raises `Unusual` or ValueError for unusual texts."""
 
     def identity(self) -> MatrixT:
         """No transform."""
@@ -54,7 +54,7 @@ class Numbers(Protocol[MadeT_co, MatrixT, FacesT]):
 
 @dataclass(frozen=True, slots=True)
 class _Source:
-    """A ``<source>``: how many rows it has, and its numbers as text."""
+    """A ``<source>``: its number of rows, and its numbers as text."""
 
     rows: int
     width: int

@@ -70,7 +70,7 @@ def thickened(corners: Array) -> Array:
 
 
 def _components(faces: Faces, count: int) -> list[NDArray[np.int64]]:
-    """The faces of each part that hangs together, as indices of faces."""
+    """Return the faces of each connected part, as indices of faces."""
     labels = _joined(faces, count)[faces[:, 0]]
     order = np.argsort(labels, kind="stable")
     starts = np.flatnonzero(np.diff(labels[order], prepend=-1))

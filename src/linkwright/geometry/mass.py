@@ -93,7 +93,7 @@ class MassProperties:
 
 
 def combine(parts: Iterable[MassProperties]) -> MassProperties:
-    """The body that several make, all in one frame; where they overlap, their masses add up."""
+    """Return the union of several bodies, all in one frame; where they overlap, their masses add up."""
     bodies = list(parts)
     mass = sum(body.mass for body in bodies)
     if not mass > 0:

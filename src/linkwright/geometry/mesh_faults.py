@@ -170,7 +170,7 @@ def _element_faults(element: Element, known: set[str]) -> Iterator[Phrase]:
 
 
 def _index_faults(mesh: Element) -> Iterator[Phrase]:
-    """Indices that no list of the mesh is long enough for."""
+    """Yield the faults of indices beyond the lists of the mesh."""
     counts = [element.attributes.get("count", "") for element in mesh.walk() if element.tag == "accessor"]
     longest = max((int(count) for count in counts if count.isdecimal()), default=0)
     for element in mesh.walk():

@@ -176,7 +176,7 @@ def _collada_scene(data: bytes, **options: Any) -> Any:
 
 
 def _well_formed(data: bytes) -> bytes | None:
-    """A COLLADA file as XML where it has what XML forbids and Gazebo and RViz read all the same; None for others.
+    """Return a COLLADA file as XML if it has mistakes that Gazebo and RViz tolerate; None for others.
 
     Exporters write such files: assimp names the nodes of an STL ``<STL_BINARY>``.
     """
@@ -192,7 +192,7 @@ def _well_formed(data: bytes) -> bytes | None:
 
 
 def _without_broken_materials(data: bytes) -> bytes:
-    """A COLLADA file without its references to materials that are not there or cannot be read."""
+    """Return a COLLADA file without its references to materials that are missing or cannot be read."""
     from collada import Collada  # type: ignore[import-untyped]  # pycollada has no types
     from collada.common import DaeError
 
@@ -208,7 +208,7 @@ def _without_broken_materials(data: bytes) -> bytes:
 
 
 def said_by_parser(error: Exception) -> Phrase:
-    """The first line of a parser's error, where nothing better is known."""
+    """Return the first line of a parser's error, if nothing better is known."""
     if isinstance(error, FileNotFoundError):
         return phrase("the file '{name}' that it references does not exist", name=str(error.filename or error))
     lines = str(error).strip().splitlines()

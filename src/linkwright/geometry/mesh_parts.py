@@ -162,7 +162,7 @@ def _rgb(color: Any) -> tuple[float, float, float]:
 
 
 def read_png(path: Path) -> bytes | None:
-    """An image in a file as PNG; None if it is none, or Pillow is not installed."""
+    """Return an image in a file as PNG; None if it is not an image, or Pillow is not installed."""
     try:
         return _as_png(path.read_bytes())
     except (ModuleNotFoundError, OSError, ValueError, SyntaxError):

@@ -80,7 +80,7 @@ class SmallMesh:
 
     @cached_property
     def is_watertight(self) -> bool:
-        """Whether every edge is run through as often there as back, once corners at one place are made one."""
+        """Return whether each edge occurs equally often in both directions, after merging corners at one place."""
         box = _around(self._corners)
         size = max(box.size)
         if not size > POINT:

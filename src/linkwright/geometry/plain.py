@@ -1,4 +1,4 @@
-"""Triangles without colours, and the numbers of which files of text make them."""
+"""Triangles without colours, and the numbers in text files that make them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.lean_typing import Any
 
 
 class PlainMesh:
-    """The triangles of a file, with as much of a `trimesh.Trimesh` as is asked for here.
+    """The triangles of a file, with the part of the interface of `trimesh.Trimesh` that is used here.
 
     Attributes:
         vertices: corners, shape (n, 3), in the file's unit.

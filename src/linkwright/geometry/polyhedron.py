@@ -51,7 +51,7 @@ def polyhedron_properties(vertices: Array, faces: Faces, density: float = 1.0) -
 
 
 def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
-    """The mesh with corners at one place made one, and without triangles that lose their area by it.
+    """Return the mesh with corners at one place merged, and without triangles that lose their area by it.
 
     STL has no shared corners at all, and other formats split them where normals or textures differ.
     """

@@ -42,7 +42,7 @@ SimpleShape = Box | Cylinder | Capsule | Sphere
 
 
 def volume_of(shape: SimpleShape) -> float:
-    """The volume of a shape in m3; 0 where a size is zero or less, infinite where it is beyond all numbers."""
+    """Return the volume of a shape in m3; 0 if a size is zero or less, infinite on overflow."""
     if isinstance(shape, Box):
         return prod(shape.size) if min(shape.size) > 0 else 0.0
     r = max(shape.radius, 0.0)

@@ -83,7 +83,7 @@ def normalized(x: float, y: float, z: float, w: float, *, least: float = 0.0) ->
 
 
 def axis_and_angle(quaternion: Quaternion) -> tuple[Vector3, float]:
-    """The axis, of length 1, and the angle from 0 to 2 pi that a rotation turns by about it; x where it does not."""
+    """Return the axis, of length 1, and the angle from 0 to 2 pi of a rotation; x for the identity."""
     x, y, z, w = quaternion
     norm = sqrt(x * x + y * y + z * z)  # not by 1 - w², which has few digits left for a small angle
     angle = 2.0 * atan2(norm, w)
@@ -93,7 +93,7 @@ def axis_and_angle(quaternion: Quaternion) -> tuple[Vector3, float]:
 
 
 def rotation_from_z(axis: Vector3) -> Quaternion:
-    """The shortest rotation that turns z to an axis of any length; about x where it turns it round."""
+    """Return the shortest rotation that turns z to an axis of any length; about x for the opposite direction."""
     x, y, z = axis
     norm = sqrt(x * x + y * y + z * z)
     if norm == 0.0:

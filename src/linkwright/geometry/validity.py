@@ -110,7 +110,7 @@ def triangle_excess(tensor: Array | Matrix) -> float:
 
 
 def excessive_products(tensor: Array | Matrix, tolerance: float = TOLERANCE) -> list[tuple[str, float]]:
-    """Products of inertia that are larger than the moments on the diagonal allow, with the largest allowed.
+    """Return products of inertia larger than the moments on the diagonal allow, with the largest allowed.
 
     ``ab <= (a2 + b2) / 2`` under the integral gives ``|Ixy| <= Izz / 2`` and so on, and a positive definite tensor has
     ``Ixy2 < Ixx Iyy``.
@@ -145,7 +145,7 @@ def largest_moment_within(center: Vector3, box: Bounds, mass: float) -> float:
 
 
 def problems(properties: MassProperties) -> list[Phrase]:
-    """The reasons why mass properties cannot be those of a body, in words; empty for valid ones."""
+    """Return why mass properties cannot be those of a body, in words; empty for valid ones."""
     found = []
     if not properties.mass > 0:
         found.append(phrase("the mass is not positive"))

@@ -104,7 +104,7 @@ class MeshLibrary:
         return (self._outlines[key] or self.read(path)).scaled(mesh.scale)
 
     def _checked(self, mesh: Mesh, element: Element | None) -> Path:
-        """The file of a mesh that is not scaled beyond all bounds."""
+        """Return the file of a mesh, unless its scale is out of range."""
         path = self.locate(mesh.filename, element)
         if max(map(abs, mesh.scale)) > FARTHEST:
             from linkwright.geometry.meshes import unreadable
@@ -119,7 +119,7 @@ class MeshLibrary:
 
 
 def _size_of(_: object, mesh: TriangleMesh) -> int:
-    """Bytes of a mesh, with as many again for what is worked out from it."""
+    """Return the bytes of a mesh, doubled for the data computed from it."""
     return 2 * (mesh.vertices.nbytes + mesh.faces.nbytes)
 
 

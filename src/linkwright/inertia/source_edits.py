@@ -25,7 +25,7 @@ _EXPRESSION = lazy_pattern(r"\$[{(](?!find\b)")
 
 
 class NotWritableError(Exception):
-    """A link's ``<inertial>`` is not plain text of a file; the text of the error says why, as a clause."""
+    """A link's ``<inertial>`` is not literal text of a file; the message is the reason, as a clause."""
 
 
 def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[Replacement]]:

@@ -91,7 +91,7 @@ def _place(link: Link) -> tuple[str, int]:
 
 
 def _current(file: str, text: str) -> str:
-    """The text of a file as it is now, with its byte order mark; offsets of the text that was read hold in it."""
+    """Return the current text of a file, with its byte order mark; offsets of the text that was read are valid."""
     try:
         now = read_bytes(file).decode("utf-8")
     except UnicodeDecodeError:

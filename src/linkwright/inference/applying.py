@@ -34,7 +34,7 @@ def completed(document: Document, inference: Inference) -> Document:
 
 
 def _grown(element: Element, added: dict[int, list[Element]]) -> Element:
-    """An element with those that belong into it, as a copy; itself where there are none."""
+    """Return a copy of an element with its new children, or the element itself if there are none."""
     new = added.pop(id(element), [])
     if not new and element.tag != "robot":
         return element

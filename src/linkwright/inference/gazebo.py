@@ -225,7 +225,7 @@ def _ackermann(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, s
 
 
 def _torque(robot: Robot, drive: Drive, mass: float) -> float:
-    """The greatest torque of a wheel in N m: what makes it slip, and what its joint takes."""
+    """Return the greatest torque of a wheel in N m: the slipping torque, plus its joint's friction and damping."""
     wheels = (*drive.left, *drive.right)
     slipping = _GRAVITY * mass * drive.radius / len(wheels)
     dynamics = [robot.joints[wheel.joint].dynamics for wheel in wheels]

@@ -1,4 +1,4 @@
-"""From a description to what it lacks to be driven in a simulated world."""
+"""Infer the elements that a description lacks to be driven in a simulated world."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ class _Inferring:
         return {name: mass for name, mass in masses.items() if mass > 0.0}
 
     def _held(self) -> tuple[str, ...]:
-        """The joints that something has to hold, as nothing else moves them."""
+        """Return the joints that nothing else moves, and that a controller has to hold."""
         if self._own is not None and self._idle is None:
             return ()
         rolling = {wheel.joint for wheel in self._wheels.values()} | self._under.swivelling
@@ -246,7 +246,7 @@ def _verdict(survey: Survey, under: Undercarriage, kind: DriveKind | None, chose
 
 
 def _without_wheels(survey: Survey, under: Undercarriage) -> Verdict:
-    """Return whether a robot that does not roll is an arm, whose base stands still."""
+    """Return whether a robot without wheels is an arm, whose base does not move."""
     if under.hanging:
         wheel, height = under.hanging[0]
         reason = phrase(

@@ -118,7 +118,7 @@ class CarDrive:
         return forward, forward * tan(angle) / self.wheelbase
 
     def _aside(self, angle: float) -> float:
-        """The difference of the inner wheel's speed from the middle, as a share."""
+        """Return the difference of the inner wheel's speed from the middle, as a fraction."""
         return self.traction_track / 2.0 * tan(angle) / self.wheelbase
 
 

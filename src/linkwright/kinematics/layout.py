@@ -1,4 +1,4 @@
-"""A robot laid out for computing: its bodies, the constants between them, and which joints mimic others.
+"""A robot laid out for computing: its bodies, the constants between them, and its mimic joints.
 
 Links joined by fixed joints move as one. So only moving joints matter: each carries a body, whose own frame is at the
 joint with z along the joint's axis. Then a joint turns its body about z or slides it along z, whatever its axis is:
@@ -50,7 +50,7 @@ class Layout:
 
 
 def lay_out(robot: Robot) -> Layout:
-    """The layout of a robot; links that do not hang from its root are left out."""
+    """Return the layout of a robot, without links that are not below its root."""
     children, above = children_of(robot), parent_joints(robot)
     link_names = [robot.root]
     link_bodies = [0]

@@ -151,7 +151,7 @@ def _edited(text: str, edits: Iterable[Edit]) -> str:
 
 
 def _text(file: str) -> str | None:
-    """The text of a file as it is on the disk, without a byte order mark; None if it is not UTF-8."""
+    """Return the text of a file on the disk, without a byte order mark; None if it is not UTF-8."""
     try:
         return read_bytes(file).removeprefix(_MARK).decode("utf-8")
     except (LinkwrightError, UnicodeDecodeError):

@@ -132,7 +132,7 @@ class SetCheck:
         return self._together(kept, self._needs(kept[0], default, common, sets))
 
     def _expanded(self, sets: Sequence[ArgumentSet]) -> _Run | None:
-        """The check of a file that launch files give to xacro, whatever it is called; None if xacro would fail."""
+        """Return the check of a file that launch files give to xacro, whatever its name; None if xacro would fail."""
         if not sets:
             return None
         self._xacro = True
@@ -301,7 +301,7 @@ def _numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key, Diagnost
 
 
 def _is_excused(run: _Run, tried: Sequence[_Run], common: frozenset[Key]) -> bool:
-    """Return whether a set fails only for values that do not go together: what sets it apart works in another."""
+    """Return whether a set only fails because its values do not fit together: each works in another set."""
     if run.is_fine(common) or not run.given.varied:
         return False
     if run.given.is_mixed:
@@ -316,7 +316,7 @@ def _holds_for_all_sets(diagnostic: Diagnostic) -> bool:
 
 
 def _under_condition(diagnostic: Diagnostic, having: Sequence[_Run], runs: Sequence[_Run]) -> Diagnostic:
-    """A finding of some runs; an error is a warning where launch arguments merely offer what leads to it.
+    """Return a finding of some runs; an error is a warning if it needs choices that launch arguments offer.
 
     Another argument may have to go with the offered value, such as the number of joints with the kind of arm.
     """

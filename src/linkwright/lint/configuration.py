@@ -52,13 +52,13 @@ _KINDS = {
 
 
 def settings_for(path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
-    """The settings for a file or folder, with what is wrong with their text."""
+    """Return the settings for a file or folder, with the mistakes in their text."""
     found = find_configuration(path)
     return (Settings(), ()) if found is None else read_settings(found)
 
 
 def find_configuration(path: Path) -> Path | None:
-    """The configuration that holds for a file or folder: the nearest upwards, ``linkwright.toml`` before the other."""
+    """Return the configuration of a file or folder: the nearest upwards, ``linkwright.toml`` first."""
     start = path.absolute()
     for folder in (start, *start.parents):
         own = folder / CONFIGURATION
@@ -71,7 +71,7 @@ def find_configuration(path: Path) -> Path | None:
 
 
 def read_settings(file: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
-    """The settings that a configuration file says, with what is wrong with it (LINT1##)."""
+    """Return the settings of a configuration file, with its mistakes (LINT1##)."""
     try:
         stamp = file.stat().st_mtime_ns
     except OSError:
@@ -122,7 +122,7 @@ def _syntax_error(source: SourceText, error: Exception) -> Diagnostic:
 
 
 class _Reader:
-    """Turns a table into settings; `found` collects what is wrong."""
+    """Turns a table into settings; `found` collects the mistakes."""
 
     def __init__(self, source: SourceText, prefix: tuple[str, ...]) -> None:
         self._source = source

@@ -186,7 +186,7 @@ def _found_by(rule: Rule, subject: Subject) -> Iterable[Diagnostic]:
 
 
 def _may_run(rule: Rule, subject: Subject) -> bool:
-    """Whether what a rule finds is true, although parts may be missing or there to be put together by other files."""
+    """Return whether a rule's findings hold for a file with missing parts, or with parts for other files."""
     if rule.scope is Scope.PACKAGE or rule.holds_for_parts:
         return True
     return subject.is_whole and (rule.holds_for_libraries or not subject.is_library)
@@ -308,7 +308,7 @@ def _with_trail(diagnostic: Diagnostic) -> Diagnostic:
 
 
 def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """One finding for each rule and place: a macro that is called four times is written once."""
+    """Return one finding for each rule and place: a macro that is called four times is written once."""
     first: dict[tuple[str, object, str], int] = {}
     kept: list[Diagnostic] = []
     more: dict[int, int] = {}

@@ -89,7 +89,7 @@ def known_codes() -> tuple[str, ...]:
 
 
 def nearest_codes(word: str) -> list[str]:
-    """Codes and rule names like a word that is neither."""
+    """Return codes and rule names that are similar to a word."""
     upper = word.upper()
     names = [rule.name for rule in all_rules()]
     codes = known_codes()

@@ -62,7 +62,7 @@ class Examined(NamedTuple):
 
     @classmethod
     def of(cls, checked: Checked, file: Path) -> Examined:
-        """Keep of a check what the check of its folder needs."""
+        """Return the part of a check that the check of its folder needs."""
         return cls(file, tuple(map(without_element, checked.diagnostics)), _parts(checked))
 
 
@@ -125,7 +125,7 @@ def _of_a_folder(found: Iterable[Diagnostic], *, is_aside: bool) -> Iterator[Dia
 def _without_those_of_source(
     examined: Examined, others: Sequence[Examined], found: Iterable[Diagnostic]
 ) -> Iterable[Diagnostic]:
-    """Drop from a URDF file the findings of a xacro file with the same robot: it is probably made of that file."""
+    """Drop the findings of a URDF file that a xacro file with the same robot has: it was probably made from it."""
     if examined.file.suffix != ".urdf" or examined.parts is None:
         return found
     sources = [other for other in others if other.parts == examined.parts and other.file.suffix == ".xacro"]

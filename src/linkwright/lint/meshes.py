@@ -66,7 +66,7 @@ class MeshFacts:
 
     @cached_property
     def files(self) -> tuple[tuple[MeshUse, Path], ...]:
-        """The uses whose URI leads somewhere, with the path; whether there is a file is not asked."""
+        """The uses with a valid URI, with the path, whether or not the file exists."""
         found = ((use, self.path(use)) for use in self.uses)
         return tuple((use, path) for use, path in found if path is not None)
 

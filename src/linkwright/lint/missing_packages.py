@@ -14,7 +14,7 @@ _MISSING = "PKG101"
 
 
 def judged(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """The diagnostics; a missing package is a warning where who names it, or a package beside that, declares it."""
+    """Yield the diagnostics; a missing package that its user, or a package beside it, declares is a warning."""
     packages: dict[Path, PackageContext | None] = {}
     for diagnostic in diagnostics:
         if diagnostic.code != _MISSING or diagnostic.span is None:

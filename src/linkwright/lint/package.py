@@ -1,4 +1,4 @@
-"""The ROS package around a description: its files, and what they say about one another."""
+"""The ROS package around a description: its files, and their references to one another."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class PackageContext:
 
     @property
     def name(self) -> str:
-        """The name of the package; that of the folder where the manifest does not tell."""
+        """The name of the package, or that of its folder if the manifest has none."""
         return (self.manifest and self.manifest.name) or self.folder.name
 
     @cached_property
@@ -93,7 +93,7 @@ class PackageContext:
 
     @cached_property
     def folders(self) -> frozenset[str]:
-        """All folders that hold a file, directly or deeper, as paths below the package."""
+        """All folders with files, directly or deeper, as paths below the package."""
         found: set[str] = set()
         for file in self.files:
             parts = file.split("/")[:-1]
@@ -135,7 +135,7 @@ class PackageContext:
 
     @cached_property
     def launch_files(self) -> Mapping[str, LaunchFile]:
-        """Its Python launch files: path below the package -> what it says."""
+        """Its Python launch files: path below the package -> content."""
         from linkwright.packages.readers.launch_files import is_launch_file, read_launch_file
 
         found = {}

@@ -36,7 +36,7 @@ def all_rules() -> tuple[Rule, ...]:
 
 
 def rules_of(scopes: Collection[Scope]) -> tuple[Rule, ...]:
-    """One of each rule of some scopes, in the order of their codes; those of packages are imported where asked for."""
+    """Return the rules of some scopes, in the order of their codes; those about packages are imported on demand."""
     return tuple(rule for rule in _found(whole=Scope.PACKAGE in scopes)[0] if rule.scope in scopes)
 
 
@@ -66,7 +66,7 @@ def _index(*, whole: bool) -> Mapping[str, Rule]:
 
 @cache
 def _found(*, whole: bool) -> tuple[tuple[Rule, ...], tuple[Diagnostic, ...]]:
-    """The rules; unless `whole`, without ours of packages, where no other package brings rules.
+    """Return the rules; unless `whole`, without Linkwright's rules about packages if no other package adds rules.
 
     The names of those of other packages are compared with ours of packages, too.
     """

@@ -63,7 +63,7 @@ class Rule:
     replaces: ClassVar[tuple[str, ...]] = ()
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """The findings of the rule; it never raises for what the description says."""
+        """Yield the findings of the rule; no content of a description makes it raise."""
         raise NotImplementedError(f"{self.code} cannot check {subject.path}")
 
     def option(self, subject: Subject, name: str, kind: type[Value]) -> Value:

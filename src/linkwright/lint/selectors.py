@@ -1,4 +1,4 @@
-"""Selectors: what settings, suppressing comments and the command line name rules by.
+"""Selectors: the words by which settings, suppression comments and the command line name rules.
 
 A selector is the code of a rule or of another diagnostic (``LW201``), the beginning of one (``LW2``), the name of a
 rule (``limit-inverted``), or ``ALL``.

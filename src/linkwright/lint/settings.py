@@ -74,7 +74,7 @@ class Settings:
         return wanted > specificity(self.ignore, code)
 
     def is_ignored(self, code: str) -> bool:
-        """Whether findings of a code are ignored, by a selector that says more of it than one that selects it."""
+        """Return whether a code is ignored, by a selector that is more specific than one that selects it."""
         wanted = specificity((*(self.select or ()), *self.extend_select), code)
         return specificity(self.ignore, code) > 0 and specificity(self.ignore, code) >= wanted
 
@@ -89,7 +89,7 @@ class Settings:
         )
 
     def arguments_of(self, file: Path) -> tuple[Mapping[str, str], ...]:
-        """The sets of values that a description's arguments are given; none if the settings do not say."""
+        """Return the sets of values for a description's arguments in the settings; empty if there are none."""
         return tuple(values for pattern, sets in self.arguments if self._is_meant(file, pattern) for values in sets)
 
     def _is_meant(self, file: Path, pattern: str) -> bool:
@@ -108,7 +108,7 @@ class Settings:
         return severity
 
     def with_words(self, select: tuple[str, ...] | None, ignore: tuple[str, ...]) -> Settings:
-        """These settings with what the command line says: its selection replaces, what it ignores is added."""
+        """Return the settings combined with the command line: its selection replaces, its ignored codes are added."""
         changed = replace(self, ignore=(*self.ignore, *ignore))
         if select is not None:
             changed = replace(changed, select=select, extend_select=(), ignore=ignore)

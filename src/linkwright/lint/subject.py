@@ -201,7 +201,7 @@ class Subject:
 
     @cached_property
     def tensor_flaws(self) -> list[tuple[Link, Inertial, Flaw]]:
-        """The links whose inertia tensor no body can have, with what is wrong with it first of all."""
+        """The links with an impossible inertia tensor, with its first flaw."""
         from linkwright.lint.tensors import flaw_of
 
         inertials = ((link, link.inertial) for link in self.links if link.inertial is not None)

@@ -86,7 +86,7 @@ class Suppressions:
                 self._directives[str(path)] = list(directives(document.source))
 
     def apply(self, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-        """The diagnostics that no comment suppresses, and what is wrong with the comments."""
+        """Return the diagnostics that no comment suppresses, and those about the comments."""
         kept = [diagnostic for diagnostic in diagnostics if not self._suppresses(diagnostic)]
         return [*kept, *self._unknown(), *self._unused()]
 

@@ -1,4 +1,4 @@
-"""Inertia tensors as descriptions write them, and the first thing that is wrong with one."""
+"""Inertia tensors as descriptions write them, and their first flaw."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NAMED = 4
 
 @dataclass(frozen=True, slots=True)
 class Flaw:
-    """The first thing that is wrong with a link's tensor; by it each tensor is reported by one rule only.
+    """The first flaw of a link's tensor, so that only one rule reports each tensor.
 
     Attributes:
         kind: ``zero``, ``diagonal``, ``product``, ``indefinite`` or ``triangle``.
@@ -60,7 +60,7 @@ def _rounding(inertial: Inertial) -> float:
 
 
 def flaw_of(inertial: Inertial) -> Flaw | None:
-    """The first thing that is wrong with a tensor, or None."""
+    """Return the first flaw of a tensor, or None."""
     moments = [getattr(inertial, name) for name in DIAGONAL]
     products = [getattr(inertial, name) for name in PRODUCTS]
     if not any(moments) and not any(products):

@@ -99,7 +99,7 @@ def hints_of_reader(subject: Subject) -> dict[Span | None, str]:
 
 
 def meant_element(rule: ElementRule, child: Element) -> str | None:
-    """The element that is meant by one that is not known here, or None."""
+    """Return the element that an unknown one means, or None."""
     if child.tag in HOMES:
         return None
     known = [child.tag for child in rule.children]
@@ -117,7 +117,7 @@ def is_misspelt(name: str, meant: str) -> bool:
 
 
 def meant_attribute(place: Place, attribute: str) -> str | None:
-    """The attribute that is meant by one that is not known here, and is not given; or None."""
+    """Return the missing attribute that an unknown one means, or None."""
     known = [rule.name for rule in place.rule.attributes if rule.name not in place.element.attributes]
     other = _OTHER_ATTRIBUTES.get(attribute.casefold())
     if other in known:

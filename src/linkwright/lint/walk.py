@@ -34,7 +34,7 @@ _SIMULATORS = lazy_pattern(r"gz|gazebo|ign|mujoco|webots|isaac|unity|drake|bulle
 
 
 def is_for_simulation(subject: Subject) -> bool:
-    """Whether a description says that it is simulated: it speaks to Gazebo or names a simulator's hardware plugin.
+    """Return whether a description is for simulation: it has elements for Gazebo or a simulator's plugin.
 
     Hardware that only pretends, such as ``mock_components/GenericSystem``, needs no physics.
     """
@@ -69,7 +69,7 @@ def bounds(limit: Element) -> tuple[float, float] | None:
 
 
 def value(element: Element, attribute: str) -> float | None:
-    """The number an attribute says; None if it is absent or no number."""
+    """Return the number of an attribute; None if it is absent or not a number."""
     text = element.attributes.get(attribute)
     if text is None:
         return None

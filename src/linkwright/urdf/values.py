@@ -157,12 +157,12 @@ def looks_like_degree_limits(lower: float, upper: float) -> bool:
 
 
 def degrees_hint(*angles: float) -> Phrase:
-    """A hint with angles in radians, taken as degrees."""
+    """Return a hint with angles converted from degrees to radians."""
     return phrase("angles are in radians: '{angles}'", angles=" ".join(f"{radians(angle):.6g}" for angle in angles))
 
 
 def plain(value: float) -> str:
-    """A number as short as it can be written without loss, in a form the reader accepts."""
+    """Return a number as short as possible without loss, in a form that the reader accepts."""
     return repr(value).removesuffix(".0")
 
 

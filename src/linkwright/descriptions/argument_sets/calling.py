@@ -255,13 +255,13 @@ def _is_open(path: Text) -> bool:
 
 
 def _varied(call: XacroCall, one: ArgumentSet, other: ArgumentSet) -> tuple[str, ...]:
-    """The arguments that differ; where some are a choice themselves, without paths and other texts made of choices."""
+    """Return the arguments that differ; if some are choices, without texts made of choices, such as paths."""
     names = tuple(name for name, value in one.values.items() if other.values.get(name) != value)
     return tuple(name for name in names if len(call.arguments.get(name, ())) == 1) or names
 
 
 def _unquoted(value: str) -> str:
-    """A value as a command line has it, without quotes."""
+    """Return a value of a command line without its quotes."""
     return "".join(_words(value)) if set(value) & {'"', "'"} else value
 
 

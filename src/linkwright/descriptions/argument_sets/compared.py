@@ -1,4 +1,4 @@
-"""The values of its arguments that a description itself speaks of: those that its conditions compare them with."""
+"""The values of arguments that a description mentions: those that its conditions compare them with."""
 
 from __future__ import annotations
 

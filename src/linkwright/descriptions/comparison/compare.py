@@ -34,7 +34,7 @@ _Part = TypeVar("_Part", Link, Joint)
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where something is written, and the macro calls and includes that brought it there, innermost first."""
+    """The place of a difference, and the macro calls and includes that led there, innermost first."""
 
     span: Span
     calls: tuple[Span, ...] = ()
@@ -302,7 +302,7 @@ def _named(
     matched: Mapping[str, str],
     inside: Callable[[_Part, _Part], Iterator[Difference]],
 ) -> Iterator[Difference]:
-    """Links or joints that came, that are called or described otherwise, and that are gone."""
+    """Yield added, renamed, changed and removed links or joints."""
     names = {after: before for before, after in matched.items()}
     for name, part in new.items():
         if name not in names:

@@ -100,12 +100,12 @@ class Block:
         )
 
     def number(self, name: str, value: float | None, unit: str, element: Element | None, attribute: str) -> None:
-        """Add a number; None is not said."""
+        """Add a number; None adds nothing."""
         if value is not None:
             self.facts[name] = Fact("", (value,), unit, element, attribute)
 
     def words(self, name: str, value: str, element: Element | None, attribute: str) -> None:
-        """Add words; empty ones are not said."""
+        """Add words; empty ones add nothing."""
         if value:
             self.facts[name] = Fact(value, (), "", element, attribute)
 

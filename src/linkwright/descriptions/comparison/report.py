@@ -51,7 +51,7 @@ def sentence(difference: Difference) -> Phrase:
 
 
 def as_data(comparison: Comparison, label: Label) -> list[dict[str, Any]]:
-    """The differences as JSON-ready data: places are 1-based, absent ones are None."""
+    """Return the differences as JSON-ready data: places are 1-based, missing ones are None."""
     return [
         {
             "subject": difference.subject,
@@ -79,7 +79,7 @@ def _span_data(span: Span, label: Label) -> dict[str, Any]:
 
 
 def _where(place: Place, label: Label) -> str:
-    """Where something is written, and what called or included that; outer calls are data for programs."""
+    """Return a place with the calls and includes that led to it; outer calls are data for programs."""
     written = _written(place.span, label)
     if not place.calls:
         return written

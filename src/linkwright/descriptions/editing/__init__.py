@@ -1,4 +1,4 @@
-"""Editing a robot: from where something shall stand to the smallest edit of the text that makes it."""
+"""Edit a robot: find the smallest edit of the text for a requested pose."""
 
 from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.files import EditHistory, Workspace

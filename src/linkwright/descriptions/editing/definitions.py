@@ -1,4 +1,4 @@
-"""Where the names of a description get their values: properties, arguments, parameters of macros, YAML files."""
+"""The sources of the values of names in a description: properties, arguments, macro parameters, YAML files."""
 
 from __future__ import annotations
 

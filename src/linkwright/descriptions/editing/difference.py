@@ -1,4 +1,4 @@
-"""In what two expansions of one description differ."""
+"""Compare two expansions of one description."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Target:
     attribute: str
 
     def owner(self, root: Element) -> Element | None:
-        """The joint, visual or collision in a document; None if there is none any more."""
+        """Return the joint, visual or collision in a document; None if it no longer exists."""
         element: Element | None = root
         for index in self.path:
             element = next(islice(element.elements(), index, None), None) if element is not None else None
@@ -78,7 +78,7 @@ def others(before: Element, after: Element, target: Target) -> Iterator[tuple[El
 
 
 def described(trail: tuple[Element, ...]) -> str:
-    """The element that a trail leads to, in words, such as ``joint 'wheel_joint'``."""
+    """Return the element of a trail in words, such as ``joint 'wheel_joint'``."""
     named = [element for element in trail if element.attributes.get("name") or element.attributes.get("reference")]
     if not trail:
         return term("robot")
@@ -91,12 +91,12 @@ def described(trail: tuple[Element, ...]) -> str:
 
 
 def _place(old: Element, child: Element, index: int, is_owner: bool) -> int:
-    """The index of a child among its siblings; in the owner `index` does not count the one taken out before."""
+    """Return the index of a child among its siblings; in the owner, `index` does not count the removed one."""
     return next(i for i, each in enumerate(old.elements()) if each is child) if is_owner else index
 
 
 def _taken(elements: list[Element], tag: str) -> Element | None:
-    """The first of a tag, taken out of the list."""
+    """Remove and return the first element of a tag."""
     found = next((element for element in elements if element.tag == tag), None)
     if found is not None:
         elements.remove(found)

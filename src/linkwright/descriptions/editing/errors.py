@@ -6,7 +6,7 @@ from linkwright.diagnostics import Diagnostic
 
 
 class EditRefusedError(Exception):
-    """A description cannot be edited so; nothing was written.
+    """An edit of a description is refused; nothing was written.
 
     Attributes:
         diagnostic: which text, where, why, and what to do.

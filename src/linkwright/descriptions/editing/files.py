@@ -1,4 +1,4 @@
-"""The files of edited robots: which may be written, writing them, and taking that back."""
+"""The files of edited robots: permission to write, writing, and undo."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Workspace:
         self.folder = _workspace_of(real)
 
     def refusal(self, path: str) -> Diagnostic | None:
-        """Why a file may not be written (EDIT106); None if it may.
+        """Return why a file may not be written (EDIT106); None if it may.
 
         Args:
             path: its real path.
@@ -62,7 +62,7 @@ class Step:
 
 
 class EditHistory:
-    """Edits that were written, the last of which can be taken back."""
+    """Written edits, the last of which can be undone."""
 
     def __init__(self) -> None:
         self._done: list[Step] = []
@@ -70,12 +70,12 @@ class EditHistory:
 
     @property
     def can_undo(self) -> bool:
-        """Whether there is an edit to be taken back."""
+        """Whether there is an edit to undo."""
         return bool(self._done)
 
     @property
     def can_redo(self) -> bool:
-        """Whether an edit was taken back."""
+        """Whether there is an edit to redo."""
         return bool(self._undone)
 
     def apply(self, plan: EditPlan) -> list[str]:
@@ -102,7 +102,7 @@ class EditHistory:
         return list(files)
 
     def undo(self) -> list[str]:
-        """Take the last edit back; nothing where there is none.
+        """Undo the last edit, if there is one.
 
         Returns:
             The files that were written.
@@ -120,7 +120,7 @@ class EditHistory:
         return list(step.files)
 
     def redo(self) -> list[str]:
-        """Make the edit again that was taken back last; as `undo`."""
+        """Redo the last edit that was undone."""
         if not self._undone:
             return []
         step = self._undone[-1]

@@ -13,7 +13,7 @@ _PARTS_OF_PI = (1, 2, 3, 4, 6, 12)
 
 
 def shortest(value: float, tolerance: float = EXACT) -> str:
-    """A number with as few digits as there can be, without an exponent.
+    """Return a number with as few digits as possible, without an exponent.
 
     Args:
         value: finite.
@@ -41,7 +41,7 @@ def numbers_of(text: str, count: int) -> list[float] | None:
 
 
 def part_of_pi(angle: float) -> str | None:
-    """An angle as an expression such as ``-pi/2`` or ``3*pi/4``; None if it is no such part."""
+    """Return an angle as an expression such as ``-pi/2`` or ``3*pi/4``; None if it is not such a part of pi."""
     for parts in _PARTS_OF_PI:
         whole = round(angle / pi * parts)
         if whole and same(whole * pi / parts, angle) and Fraction(whole, parts).denominator == parts:
@@ -51,6 +51,6 @@ def part_of_pi(angle: float) -> str | None:
 
 
 def in_degrees(angle: float) -> str | None:
-    """An angle in degrees where that is short, as for ``radians()``; None for others."""
+    """Return an angle in degrees if that is short, as for ``radians()``, or None."""
     text = shortest(degrees(angle), _EXACT_DEGREES)
     return text if len(text.lstrip("-").replace(".", "")) <= 5 else None

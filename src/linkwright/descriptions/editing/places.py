@@ -1,4 +1,4 @@
-"""Places of texts that decide numbers, and the candidates for editing them."""
+"""Places of texts that determine numbers, and the candidates for editing them."""
 
 from __future__ import annotations
 
@@ -57,12 +57,12 @@ class Candidate:
 
 
 def words(place: Place) -> list[Place]:
-    """The words of a text, where expressions are in one piece."""
+    """Return the words of a text; an expression is one word."""
     return [place.part(*found.span()) for found in _WORD.finditer(place.text)]
 
 
 def literal(place: Place) -> Candidate | None:
-    """A number that is written as it is; None if something else is."""
+    """Return a candidate for a literal number; None if the word is not one."""
     try:
         value = float(place.text)
     except ValueError:
@@ -71,7 +71,7 @@ def literal(place: Place) -> Candidate | None:
 
 
 def added_constants(word: Place) -> Iterator[Candidate]:
-    """Numbers in an expression on which its value depends evenly: terms of a sum, alone or in ``radians()``."""
+    """Yield numbers on which an expression depends linearly: terms of a sum, alone or in ``radians()``."""
     found = _ONE_EXPRESSION.match(word.text)
     inside = None if found is None else found[1]
     if inside is None or not inside.isascii():

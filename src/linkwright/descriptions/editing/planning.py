@@ -57,7 +57,7 @@ class EditPlan:
 
 
 def plan_edit(description: Description, request: EditRequest, allowed: Allowed = lambda _: None) -> EditPlan:
-    """The smallest edit of text that does what is asked for, and nothing else.
+    """Find the smallest edit of text that makes a requested change, and nothing else.
 
     Args:
         description: read from a file a moment ago.
@@ -74,14 +74,14 @@ def plan_edit(description: Description, request: EditRequest, allowed: Allowed =
 
 
 class _Found(NamedTuple):
-    """An edited description that has the wanted number, and the names of other parts that changed with it."""
+    """An edited description that has the requested number, and the names of other parts that changed with it."""
 
     snapshot: Snapshot
     also: tuple[str, ...]
 
 
 class _Planner:
-    """Makes one plan, attribute by attribute and number by number; `_now` is the description as far as it has come."""
+    """Makes one plan, attribute by attribute and number by number; `_now` is the description edited so far."""
 
     def __init__(self, description: Description, request: EditRequest, allowed: Allowed) -> None:
         self._request, self._allowed = request, allowed
@@ -96,7 +96,7 @@ class _Planner:
         self._also_changed: dict[str, None] = {}
 
     def wanted(self) -> Iterator[tuple[str, list[float]]]:
-        """The attributes to be edited, and their numbers."""
+        """Return the attributes to edit, and their numbers."""
         request = self._request
         for given in (request.xyz, request.rpy):
             if given is not None and not all(isfinite(each) and abs(each) <= _LARGEST for each in given):
@@ -175,7 +175,7 @@ class _Planner:
     def _tried(
         self, candidate: Candidate, target: Target, index: int, wanted: float, attempts: list[Attempt]
     ) -> _Found | None:
-        """Try one place to write at: the edited description, or None if it does not give the wanted number."""
+        """Try one place: return the edited description, or None if it does not have the requested number."""
         why_not = self._allowed(os.path.realpath(candidate.place.source.name))
         if why_not is not None:
             attempts.append(Attempt(candidate.place, forbidden=why_not))
@@ -308,7 +308,7 @@ class _Planner:
         return numbers_of(element.attributes[target.attribute], 4 if target.attribute == "quat_xyzw" else 3)
 
     def _written(self, element: Element, name: str) -> Place:
-        """Where the text of an attribute stands: on its element, or in an ``<xacro:attribute>``."""
+        """Return the place of an attribute's text: on its element, or in an ``<xacro:attribute>``."""
         place = attribute(element, name)
         if place is not None:
             return place

@@ -1,4 +1,4 @@
-"""The texts that may have made a number of an attribute, the most telling first."""
+"""Yield the texts that may determine a number of an attribute, the most likely first."""
 
 from __future__ import annotations
 

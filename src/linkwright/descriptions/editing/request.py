@@ -1,4 +1,4 @@
-"""Requests to edit a robot: which part, which values."""
+"""Requests to edit a robot: the part and its new values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ WITHOUT_AXIS = ("fixed", "floating")
 
 @dataclass(frozen=True, slots=True)
 class EditRequest:
-    """One edit: where something stands, or the axis of a joint.
+    """One edit: the pose of a part, or the axis of a joint.
 
     Attributes:
         part: what is edited: the origin of a joint, visual, collision or inertial, or the axis of a joint.

@@ -1,4 +1,4 @@
-"""Snapshots of a description: its files' texts, some replaced by edits that are being tried."""
+"""Snapshots of a description: its files' texts, some replaced by trial edits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The forms there are, by the names that ``--format`` takes."""
+"""The formats, by the values of ``--format``."""
 
 from __future__ import annotations
 

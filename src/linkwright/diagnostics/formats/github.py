@@ -11,7 +11,7 @@ _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO
 
 
 def to_text(diagnostics: Iterable[Diagnostic]) -> str:
-    """The diagnostics, a command each."""
+    """Return the diagnostics, one command for each."""
     return "".join(f"{_command(diagnostic)}\n" for diagnostic in diagnostics)
 
 

@@ -45,14 +45,14 @@ def to_text(diagnostics: Iterable[Diagnostic]) -> str:
 
 
 def _rule(code: str, found: Iterable[Diagnostic]) -> dict[str, Any]:
-    """A code with the messages it has here; a message's id is its template in English."""
+    """Return a rule of SARIF for a code with its messages here; a message's id is its English template."""
     messages = {diagnostic.message: as_phrase(diagnostic.message) for diagnostic in found if diagnostic.code == code}
     templates = {message.chosen_template: {"text": _numbered(message)[0]} for message in messages.values()}
     return {"id": code, "messageStrings": templates}
 
 
 def _message(diagnostic: Diagnostic) -> dict[str, Any]:
-    """The text for those who show it; template and arguments for those who group or translate (SARIF 2.1.0, 3.11)."""
+    """Return the text to show, and template and arguments for grouping or translation (SARIF 2.1.0, 3.11)."""
     message = as_phrase(diagnostic.message)
     hint = f". Hint: {diagnostic.hint}" if diagnostic.hint else ""
     result: dict[str, Any] = {"text": message + hint, "id": message.chosen_template}
@@ -61,7 +61,7 @@ def _message(diagnostic: Diagnostic) -> dict[str, Any]:
 
 
 def _numbered(message: Phrase) -> tuple[str, list[str]]:
-    """The template of a message with numbered placeholders, as SARIF has it, and what fills them, in order."""
+    """Return the template of a message with numbered placeholders, as in SARIF, and their values in order."""
     template = message.chosen_template
     if not message.arguments:
         return _without_placeholders(template), []

@@ -1,4 +1,4 @@
-"""Rules about simple shapes and where they stand."""
+"""Rules about simple shapes and their places."""
 
 from __future__ import annotations
 

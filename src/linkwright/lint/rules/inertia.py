@@ -16,7 +16,7 @@ from linkwright.xmltree import Element
 
 
 def part(inertial: Inertial, tag: str) -> Element | None:
-    """A child of an ``<inertial>``, or the element itself where it lacks the child."""
+    """Return a child of an ``<inertial>``, or the element itself if the child is missing."""
     element = inertial.element
     return (element.first(tag) or element) if element is not None else None
 

@@ -1,4 +1,4 @@
-"""Rules about what drives joints: greatest effort and velocity."""
+"""Rules about the drives of joints: limits of effort and velocity."""
 
 from __future__ import annotations
 

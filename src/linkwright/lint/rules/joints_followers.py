@@ -231,7 +231,7 @@ class MimicChain(Rule):
     name = "mimic-chain"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every follower of a follower; circles the URDF reader reports."""
+        """Report every follower of a follower; the URDF reader reports cycles."""
         by_name = {joint.name: joint for joint in subject.joints}
         for joint, leader, mimic in _pairs(subject):
             if leader.mimic is None or joint.mimic is None:

@@ -46,7 +46,7 @@ class LimitInverted(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every bounded joint whose lower limit is above the upper one; URDF 1.2 files the reader checks."""
+        """Report every bounded joint whose lower limit is above the upper one; the reader checks URDF 1.2 files."""
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return
         for joint, limit in limits(subject, *BOUNDED):
@@ -100,7 +100,7 @@ class LimitEmpty(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every bounded joint that says the same bound twice."""
+        """Report every bounded joint with the same bound twice."""
         for joint, limit in limits(subject, *BOUNDED):
             ends = bounds(limit)
             has_bounds = "lower" in limit.attributes or "upper" in limit.attributes
@@ -322,7 +322,7 @@ class ZeroOutsideLimits(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every bounded joint whose range does not hold 0."""
+        """Report every bounded joint whose range does not contain 0."""
         for joint, limit in limits(subject, *BOUNDED):
             ends = bounds(limit)
             if ends is not None and ends[0] < ends[1] and (ends[0] > 0 or ends[1] < 0):

@@ -1,4 +1,4 @@
-"""Rules about where joints stand: distances and angles of ``<origin>``."""
+"""Rules about the places of joints: distances and angles of ``<origin>``."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class OriginFar(Rule):
     options = (Option("farthest", 20.0, "the farthest distance in m that is still believed"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every joint whose frame is beyond belief in metres."""
+        """Report every joint whose frame is implausibly far away in metres."""
         farthest = self.option(subject, "farthest", float)
         for joint, _, origin in parts(subject, "origin"):
             xyz = values(origin, "xyz")

@@ -42,7 +42,7 @@ class LimitInDegrees(Rule):
     options = (Option("most-turns", 3.0, "how many turns to either side are still believed"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every limit of a revolute joint that is beyond belief in radians and plausible in degrees."""
+        """Report every limit of a revolute joint that is implausible in radians and plausible in degrees."""
         most = self.option(subject, "most-turns", float) * 2 * pi
         for joint, limit in limits(subject, "revolute"):
             ends = bounds(limit)
@@ -138,7 +138,7 @@ class LimitInMillimetres(Rule):
     options = (Option("longest", 20.0, "the longest way in m to either side that is still believed"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every limit of a prismatic joint that is beyond belief in metres."""
+        """Report every limit of a prismatic joint that is implausible in metres."""
         longest = self.option(subject, "longest", float)
         for joint, limit in limits(subject, "prismatic"):
             ends = bounds(limit)

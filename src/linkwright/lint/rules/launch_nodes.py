@@ -221,7 +221,7 @@ def _used_packages(package: PackageContext) -> dict[str, Note]:
 
 
 def _declare(manifest: Manifest, names: list[str]) -> Fix | None:
-    """Lines behind the last dependency that is not for tests alone, indented as that one is."""
+    """Return the edit that adds lines after the last dependency that is not only for tests, with its indentation."""
     source = manifest.document.source
     if source is None or not manifest.dependencies:
         return None
@@ -271,7 +271,7 @@ def _is_known(name: str, package: PackageContext, subject: Subject) -> bool:
 
 
 def _meant(name: str, package: PackageContext, subject: Subject) -> str | None:
-    """The package that is meant by a name that is not known and looks misspelt; else None."""
+    """Return the package that a misspelt name means, or None."""
     if not name or name in WELL_KNOWN or _is_known(name, package, subject):
         return None
     like = next(iter(nearest(name, [*WELL_KNOWN, package.name], 1)), None)

@@ -1,4 +1,4 @@
-"""Rules about what is in mesh files, and how large it comes out."""
+"""Rules about the content of mesh files, and its size."""
 
 from __future__ import annotations
 

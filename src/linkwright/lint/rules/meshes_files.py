@@ -1,4 +1,4 @@
-"""Rules about mesh files: whether there is one where the address leads, and whether it is one."""
+"""Rules about mesh files: whether the file of an address exists, and whether it is a mesh."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.packages import PackageNotFoundError, enclosing_package
 
 
 def case_twin(path: Path) -> Path | None:
-    """The file that is meant when a path does not exist as it is written, but with other capitals does."""
+    """Return the existing file whose path differs only in capitals, or None."""
     current = Path(path.anchor)
     changed = False
     for name in path.relative_to(path.anchor).parts:

@@ -280,7 +280,7 @@ class ControlPluginMissing(Rule):
 
 
 def _written(element: Element) -> str:
-    """The element as its file has it, with what xacro left out."""
+    """Return the element as its file has it, including the parts that xacro left out."""
     found = element_range(element)
     return "" if element.source is None or found is None else element.source.text[slice(*found)]
 

@@ -1,4 +1,4 @@
-"""Rules about the whole: the tree of links, what is said twice, what is left over."""
+"""Rules about the whole robot: the tree of links, repeated elements, and a single shape."""
 
 from __future__ import annotations
 
@@ -206,7 +206,7 @@ class NewerVersion(Rule):
 
 
 def _root_of(name: str, above: dict[str, str]) -> str | None:
-    """The topmost link above one; None if the joints go in a circle."""
+    """Return the topmost link above one; None if the joints form a cycle."""
     steps = 0
     while name in above:
         name = above[name]

@@ -365,7 +365,7 @@ def _hint(name: str, used: frozenset[str], form: str = "${...}") -> Phrase:
 
 
 def _included_paths(facts: XacroFacts) -> dict[int, Path]:
-    """For each include with a file name that is known without evaluating much: the file that was read for it."""
+    """Yield each include with a simple file name, and the file that was read for it."""
     found: dict[int, Path] = {}
     by_name: dict[str, list[Path]] = {}
     for path in facts.files:

@@ -1,4 +1,4 @@
-"""Values in xacro files that are not what they look like."""
+"""Rules about misleading values in xacro files."""
 
 from __future__ import annotations
 
