@@ -51,8 +51,8 @@ class NonPositiveSize(Rule):
     ## Why
 
     urdfdom before URDF 1.2 reads any number. RViz then shows nothing or a shape turned inside out, and physics engines
-    stop with an assertion. A visual all of whose sizes are zero is an information: some give one to what only marks a
-    place.
+    stop with an assertion. For a visual whose sizes are all zero, which some authors use as a marker, the finding is an
+    information.
 
     ## Example
 

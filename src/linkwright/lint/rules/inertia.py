@@ -33,10 +33,10 @@ class MissingInertial(Rule):
 
     ## Why
 
-    Gazebo drops a link without mass, together with the joint that moves it, and dynamics libraries give it none. A
-    link fixed to another one needs no inertia of its own, because simulators merge the two; so the rule looks at
-    links that move as one. Where nothing says that the robot is simulated, one without shapes, such as a command that a
-    driver reads, is an information.
+    Gazebo drops a link without mass, together with the joint that moves it, and dynamics libraries give it none. A link
+    fixed to another one needs no inertia of its own, because simulators merge the two; so the rule checks links that
+    move as one. If the robot is not for simulation, the finding on a link without shapes, such as one that a driver
+    commands, is an information.
 
     ## Example
 
@@ -180,7 +180,7 @@ class TinyMass(Rule):
     ## Why
 
     Solvers divide by masses. A joint that carries a milligram under one that carries kilograms makes a simulation
-    jitter or explode. Such masses come from placeholders, or from numbers in tonnes.
+    jitter or explode. Such masses are placeholders, or numbers in tonnes.
 
     ## Example
 

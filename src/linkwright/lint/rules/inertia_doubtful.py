@@ -134,7 +134,7 @@ class TinyInertia(Rule):
 
     ## Why
 
-    Integrators with steps of a millisecond become unstable where a joint turns something of almost no inertia.
+    Integrators with steps of a millisecond become unstable if a joint turns a body of almost no inertia.
 
     ## Example
 

@@ -124,8 +124,8 @@ class DensityTooLow(Rule):
 
     ## Why
 
-    Air has 1.2 kg/m3. A solid lighter than that is a mass in tonnes, or shapes in millimetres or centimetres. Links
-    that fixed joints connect are weighed together, by their collision shapes where they have any.
+    Air has 1.2 kg/m3. A solid lighter than that has a mass in tonnes, or shapes in millimetres or centimetres. Links
+    that fixed joints connect are weighed together, by their collision shapes if they have any.
 
     ## Example
 
@@ -284,10 +284,9 @@ class InertiaTooLarge(Rule):
 
     ## Why
 
-    With all of its mass in the farthest corner of its shapes a body would have the largest moment there is. A larger
-    one is in other units, as when CAD programs give kg mm2 or g mm2, or it is about another point than the centre of
-    mass, or made up. The robot then turns as if in honey. A tensor that no body can have is left to the rules about
-    that.
+    A body with all of its mass in the farthest corner of its shapes would have the largest possible moment. A larger
+    one is in other units, such as kg mm2 or g mm2 of CAD programs, is about another point than the centre of mass, or
+    is made up. The robot then turns as if in honey. Other rules report a tensor that is impossible for any body.
 
     ## Example
 

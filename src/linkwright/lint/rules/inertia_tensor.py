@@ -162,9 +162,9 @@ class IndefiniteInertia(_TensorRule):
 
     ## Why
 
-    About some axis the moment is negative, which no body has. Gazebo and Drake refuse it, others go wrong at
-    the first contact. Mostly the products have a wrong sign, or were taken about another point than the moments. A thin
-    body whose smallest moment went below zero by rounding to the digits of the file is left alone.
+    About some axis the moment is negative, which is impossible. Gazebo and Drake refuse it, other simulators fail at
+    the first contact. Usually the products have a wrong sign, or are about another point than the moments. A thin body
+    whose smallest moment is negative only because the file has few digits is not reported.
 
     ## Example
 

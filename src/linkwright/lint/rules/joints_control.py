@@ -267,7 +267,7 @@ class CalibrationOutside(Rule):
 
     ## Why
 
-    The joint can never reach the place where its reference signal changes, so a calibration never ends. Nothing in
+    The joint can never reach the position where its reference signal changes, so a calibration never ends. Nothing in
     ROS 2 reads it, so the rule is off by default.
 
     ## Example

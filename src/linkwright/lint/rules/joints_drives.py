@@ -78,7 +78,7 @@ class VelocityZero(_Zero):
     ## Why
 
     It may not move at all. MoveIt cannot time a trajectory through it and controllers hold it still. A joint that
-    mimics another, or that Gazebo moves by a spring, is left alone.
+    mimics another, or that Gazebo moves by a spring, is not reported.
 
     ## Example
 
@@ -155,8 +155,8 @@ class VelocityNegative(_Negative):
 
     ## Why
 
-    `velocity` is a size that holds in both directions; a negative one leaves no admissible speed. MoveIt refuses to
-    time trajectories with it.
+    `velocity` is a magnitude for both directions; a negative one allows no speed. MoveIt refuses to time trajectories
+    with it.
 
     ## Example
 

@@ -41,8 +41,8 @@ class MimicOnFixed(Rule):
 
     ## Why
 
-    It does not move, whatever it follows. Usually the type was changed and the rest forgotten. A type that xacro
-    works out may be another one next time, and is left alone.
+    It does not move, whatever it follows. Usually the type was changed and the rest forgotten. A type from a xacro
+    expression may differ in another expansion, and is not reported.
 
     ## Example
 

@@ -80,8 +80,8 @@ class LimitEmpty(Rule):
     ## Why
 
     It cannot move. joint_state_publisher_gui gives it no slider and planners treat it as fixed, with the cost of a
-    joint that moves. Where it holds a sensor at 0, by the names, the finding is an information: Gazebo merges a link on
-    a fixed joint with its parent, and such a joint keeps the link of the sensor.
+    joint that moves. If the names show that it keeps a sensor at 0, the finding is an information: Gazebo merges a link
+    on a fixed joint with its parent, and such a joint preserves the link of the sensor.
 
     ## Example
 

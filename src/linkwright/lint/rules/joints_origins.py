@@ -22,7 +22,7 @@ class OriginFar(Rule):
     ## Why
 
     Lengths are in metres. An arm whose elbow is 400 m from its shoulder was exported in millimetres; RViz shows nothing
-    where the robot should be. A robot may stand anywhere in its `world`.
+    in the robot's place. A robot may be anywhere in its `world`.
 
     ## Example
 

@@ -83,9 +83,9 @@ class LaunchFunctionMissing(LaunchRule):
 
     ## Why
 
-    `ros2 launch` calls this function and nothing else. Tests of launch_testing, launch_pytest and pytest have others
-    and are left alone, as are modules of a Python package, beside an `__init__.py`. A file without a statement is still
-    to be written, or was taken out of use: that is an information.
+    `ros2 launch` only calls this function. Not reported are tests of launch_testing, launch_pytest and pytest, which
+    have other functions, and modules of a Python package, beside an `__init__.py`. For a file without a statement,
+    which is unfinished or disabled, the finding is an information.
 
     ## Example
 
@@ -138,8 +138,8 @@ class LaunchedFileMissing(Rule):
 
     ## Why
 
-    The launch fails, or the node starts without what it was to read. Files that are made later are left out: those that
-    git ignores, maps, what a launch file writes itself, and those of which a script or a README of the package speaks.
+    The launch fails, or the node starts without its file. Files that are made later are not reported: those that git
+    ignores, maps, files that a launch file itself writes, and those that a script or a README of the package mentions.
 
     ## Example
 

@@ -107,9 +107,9 @@ class InvisibleMaterial(Rule):
 
     ## Why
 
-    The fourth number is the opacity. With 0 the part is there and cannot be seen; in exports from CAD it often comes
-    from a transparency of 0. Of a material that is defined twice the first definition counts, and one that says in its
-    name that it cannot be seen is left alone.
+    The fourth number is the opacity. With 0 the part exists but is invisible; exports from CAD often confuse it with a
+    transparency of 0. Of a material with two definitions the first one counts. A material whose name shows that it is
+    invisible is not reported.
 
     ## Example
 
@@ -158,7 +158,7 @@ class EmptyReference(Rule):
 
     ## Why
 
-    It refers to nothing, so the part gets whatever colour the tool has for parts without one.
+    It refers to nothing, so the part gets the tool's default colour.
 
     ## Example
 
@@ -199,8 +199,8 @@ class UnusedMaterial(Rule):
 
     ## Why
 
-    Palettes are written once and used in part, so this is harmless; but a material that was made for one part and is
-    not used often means that the part names another one.
+    Palettes are often only used in part, so this is harmless; but an unused material that was made for one part often
+    means that the part names another one.
 
     ## Example
 

@@ -119,7 +119,7 @@ class TextureOnStl(Rule):
 
     ## Why
 
-    STL has no texture coordinates, so there is no telling which part of the image belongs where, and none is shown.
+    STL has no texture coordinates, so the image cannot be placed, and is not shown.
 
     ## Example
 

@@ -40,7 +40,7 @@ class ZeroScale(Rule):
 
     ## Why
 
-    It flattens the mesh to nothing. urdfdom takes it without a word.
+    It flattens the mesh to nothing. urdfdom accepts it silently.
 
     ## Example
 
@@ -171,8 +171,8 @@ class Millimetres(Rule):
     ## Why
 
     STL and OBJ have no unit, and CAD programs write millimetres. URDF takes the numbers as metres, so the part is a
-    thousand times too large, and the camera of RViz is inside it: one sees nothing. A single link of mass zero is
-    scenery, such as a terrain, and may be of any size.
+    thousand times too large, and the camera of RViz is inside it and shows nothing. A single link of mass zero is
+    scenery, such as a terrain, and may have any size.
 
     ## Example
 

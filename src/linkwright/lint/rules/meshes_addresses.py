@@ -44,8 +44,7 @@ class MalformedUri(Rule):
 
     ## Why
 
-    RViz and Gazebo take `package://PACKAGE/PATH` and `file:///PATH`. Anything else ends in an empty place where the
-    part should be.
+    RViz and Gazebo accept `package://PACKAGE/PATH` and `file:///PATH`. With any other address the part is not shown.
 
     ## Example
 
@@ -138,8 +137,8 @@ class HomePath(Rule):
 
     ## Why
 
-    On every other computer, and in every container, there is no such folder, or another one. Only what is written in
-    the file counts: `file://$(find PACKAGE)/...` is found wherever the package is.
+    On every other computer, and in every container, this folder does not exist, or is another one. Only the text of the
+    file counts: `file://$(find PACKAGE)/...` is found wherever the package is.
 
     ## Example
 
@@ -229,9 +228,9 @@ class AwkwardName(Rule):
 
     ## Why
 
-    RViz fetches meshes through a library for web addresses, where a blank is not allowed. Non-ASCII letters are
-    compared byte by byte, so the same name typed on a Mac is another one on Linux; as the file is found on the computer
-    that it comes from, those are an information.
+    RViz fetches meshes through a library for web addresses, which does not allow blanks. Non-ASCII letters are compared
+    byte by byte, so the same name typed on a Mac is another one on Linux; as the file is found on its own computer, the
+    finding on these is an information.
 
     ## Example
 

@@ -62,7 +62,7 @@ class VisualAsCollision(Rule):
 
     ## Why
 
-    What looks good has more triangles than contacts need, and is often not closed.
+    A mesh for viewing has more triangles than contacts need, and is often not closed.
 
     ## Example
 

@@ -74,9 +74,9 @@ class UnknownPackage(Rule):
 
     ## Why
 
-    Without the package there is no mesh. Either its name is misspelt, or the workspace that holds it is not there or
-    not sourced, or a folder such as `meshes` stands where the package's name belongs. It is an information where
-    `package.xml`, or that of a package beside, declares the package: it is only not here.
+    Without the package there is no mesh. Its name is misspelt, or the workspace with it is missing or not sourced, or a
+    folder such as `meshes` is in the place of the package's name. The finding is an information if `package.xml`, or
+    that of a package beside it, declares the package: it is only missing on this machine.
 
     ## Example
 
@@ -293,8 +293,8 @@ class UnreadableMesh(Rule):
 
     ## Why
 
-    It is empty, cut short, or not what its ending says. Where the repository keeps meshes with Git LFS, the file may be
-    a pointer to the mesh, a text of three lines.
+    It is empty, truncated, or has another format than its extension. If the repository stores meshes with Git LFS, the
+    file may be a pointer to the mesh, a text of three lines.
 
     ## Example
 

@@ -79,7 +79,7 @@ class BaseLinkNotAtTheTop(Rule):
     ## Why
 
     REP 105 has `odom` as the parent of `base_link`. A frame has one parent, so a link of the robot above it either
-    takes that place or is cut off. Pedantic: where the odometry is given for the root of the tree, all works.
+    takes that place or is disconnected. Pedantic: everything works if the odometry is for the root of the tree.
 
     ## Example
 
@@ -125,8 +125,8 @@ class FootprintBelowBase(Rule):
 
     ## Why
 
-    `base_footprint` is where the robot stands, and its height and tilt over the ground are the transform from there to
-    `base_link` (REP 120). Pedantic: the other order is in use, and works where nothing gives odometry for
+    `base_footprint` is the position of the robot on the ground, and its height and tilt are the transform from there to
+    `base_link` (REP 120). Pedantic: the other order is in use, and works if nothing publishes odometry for
     `base_footprint`.
 
     ## Example
@@ -335,8 +335,8 @@ class CameraWithoutOpticalFrame(Rule):
 
     ## Why
 
-    Images and point clouds say in which frame they are, and REP 103 wants that to be one with z forward. Pedantic: a
-    camera that is only looked at needs none.
+    Images and point clouds name their frame, and REP 103 requires z to point forward in it. Pedantic: a camera for
+    viewing alone does not need one.
 
     ## Example
 

@@ -29,8 +29,8 @@ class NameEdgeBlank(Rule):
 
     ## Why
 
-    The blank belongs to the name. A parent, a transform lookup or a joint state that says the name without it means
-    another one, and the difference cannot be seen.
+    The blank is part of the name. A parent, a transform lookup or a joint state without it names another link or joint,
+    and the difference is invisible.
 
     ## Example
 
@@ -255,8 +255,8 @@ class NamesDifferInCase(Rule):
 
     ## Why
 
-    They are two names to ROS and one to a reader, so one of them is used where the other is meant. Gazebo and mesh
-    files on Windows and macOS take them for one.
+    They are two names for ROS and one for a reader, so one of them is used in place of the other. Gazebo, and mesh
+    files on Windows and macOS, do not distinguish them.
 
     ## Example
 
@@ -297,8 +297,8 @@ class NameSuffixDoubled(Rule):
 
     ## Why
 
-    It happens when a macro appends `_link` to a parameter that has it already. The name works, and everybody who writes
-    it from memory writes another one.
+    A macro appends `_link` to a parameter that has it already. The name works, but anyone who writes it from memory
+    writes another one.
 
     ## Example
 

@@ -240,9 +240,9 @@ class WheelsTurnAgainst(Rule):
     ## Why
 
     Equal velocities then turn the wheels against each other, and a controller for differential drive makes the robot
-    spin where it should go straight. Where nothing in the description drives the wheels, neither a plugin of a
-    simulator nor `<ros2_control>`, the finding is an information: the driver of the robot may negate the velocity of
-    one side. Where a plugin does so, the configuration can ignore this rule.
+    spin instead of driving straight. If nothing in the description drives the wheels, neither a plugin of a simulator
+    nor `<ros2_control>`, the finding is an information: the driver of the robot may negate the velocity of one side. If
+    a plugin does so, the configuration can ignore this rule.
 
     ## Example
 

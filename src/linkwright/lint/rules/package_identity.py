@@ -30,8 +30,8 @@ class PackageNameDiffers(PackageRule):
 
     ## Why
 
-    With two names the build stops, or installs under one name what is looked for under the other. It happens when a
-    package is copied and renamed.
+    With two names the build stops, or it installs files under one name that are looked for under the other. It happens
+    when a package is copied and renamed.
 
     ## Example
 

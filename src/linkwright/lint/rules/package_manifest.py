@@ -150,7 +150,7 @@ class ManifestVersion(ManifestRule):
 
     ## Why
 
-    REP 149 wants MAJOR.MINOR.PATCH. colcon refuses a package with another form.
+    REP 149 requires MAJOR.MINOR.PATCH. colcon refuses a package with another form.
 
     ## Example
 

@@ -208,8 +208,8 @@ class PythonPackageMissing(PackageRule):
 
     ## Why
 
-    The build stops with "package directory does not exist". A package that holds descriptions alone needs its Python
-    folder too, with an empty `__init__.py`.
+    The build stops with "package directory does not exist". Even a package with only descriptions needs its Python
+    folder, with an empty `__init__.py`.
 
     ## Example
 

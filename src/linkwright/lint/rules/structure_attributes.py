@@ -22,8 +22,8 @@ class MisspeltAttribute(Rule):
 
     ## Why
 
-    urdfdom passes over every attribute it does not know, without a word: `<limit loewr="-1" .../>` leaves the lower
-    limit at 0, `<origin rpw="0 0 1"/>` does not turn anything.
+    urdfdom silently ignores every unknown attribute: `<limit loewr="-1" .../>` leaves the lower limit at 0, `<origin
+    rpw="0 0 1"/>` does not turn anything.
 
     ## Example
 
@@ -66,8 +66,8 @@ class UnknownAttribute(Rule):
 
     ## Why
 
-    urdfdom passes over it, and what its author expects does not happen. Attributes with a prefix, and names that URDF
-    has nowhere, such as those that a vendor's software reads, are left alone.
+    urdfdom ignores it, so it does not have the intended effect. Attributes with a prefix, and names that URDF does not
+    have anywhere, such as those for a vendor's software, are not reported.
 
     ## Example
 

@@ -28,7 +28,7 @@ class MisspeltElement(Rule):
 
     ## Why
 
-    urdfdom passes over every element it does not know, without a word: `<inertail>` leaves the link without inertia.
+    urdfdom silently ignores every unknown element: `<inertail>` leaves the link without inertia.
 
     ## Example
 
@@ -70,7 +70,7 @@ class MisplacedElement(Rule):
     ## Why
 
     An `<origin>` inside `<geometry>` does not move the shape, a `<mass>` directly in a link gives it no mass: urdfdom
-    passes over them without a word.
+    silently ignores them.
 
     ## Example
 
@@ -131,9 +131,9 @@ class UnknownElement(Rule):
 
     ## Why
 
-    urdfdom passes over it, and what its author expects does not happen: SDF's `<max_contacts>` has no effect in a
-    `<collision>`. Elements directly in `<robot>`, and names that are of no format around URDF, such as those that a
-    vendor's software reads, are left alone.
+    urdfdom ignores it, so it does not have the intended effect: SDF's `<max_contacts>` has no effect in a
+    `<collision>`. Elements directly in `<robot>`, and names that no format around URDF has, such as those for a
+    vendor's software, are not reported.
 
     ## Example
 

@@ -19,8 +19,8 @@ class MisspeltExtension(Rule):
 
     ## Why
 
-    URDF readers pass these parts on, and those who read them pass over what they do not know: a
-    `<command_interfce>` is an interface that no controller can claim.
+    URDF readers pass these parts on, and their readers ignore unknown elements: a `<command_interfce>` is an interface
+    that no controller can claim.
 
     ## Example
 

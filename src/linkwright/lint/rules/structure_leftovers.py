@@ -64,7 +64,7 @@ class StrayText(Rule):
 
     ## Why
 
-    URDF says everything in attributes; a text such as `<mass>3</mass>` or a forgotten `-->` is not read.
+    URDF has all its values in attributes; a text such as `<mass>3</mass>` or a forgotten `-->` is not read.
 
     ## Example
 
@@ -114,7 +114,8 @@ class EmptyName(Rule):
 
     ## Why
 
-    urdfdom takes it, and then the frame has no name: TF refuses frames without one, and joint states cannot be matched.
+    urdfdom accepts it, and then the frame has no name: TF refuses frames without one, and joint states cannot be
+    matched.
 
     ## Example
 

@@ -57,9 +57,9 @@ class GazeboReferenceUnknown(Rule):
 
     ## Why
 
-    Gazebo drops what is in it without a word: the wheel has no friction, the camera no sensor. Where nothing has a
-    similar name, nothing but colours and surfaces is lost, and most references of the description lead somewhere, the
-    part is one that this robot does not have: the finding is an information.
+    Gazebo silently drops its content: the wheel has no friction, the camera no sensor. The finding is an information if
+    no name is similar, only colours and surfaces are lost, and most references of the description are valid: then the
+    part is one that this robot does not have.
 
     ## Example
 
@@ -331,7 +331,7 @@ class ControlOfFixedJoint(Rule):
 
     ## Why
 
-    The joint does not move, whatever is commanded. Usually the type was changed for a test.
+    The joint ignores all commands. Usually the type was changed for a test.
 
     ## Example
 
@@ -371,9 +371,9 @@ class TransmissionIgnored(Rule):
 
     ## Why
 
-    It is the form of ROS 1. ros2_control and its Gazebo plugins read joints, interfaces and transmissions inside
-    `<ros2_control>` only. Packages that build with catkin, which ROS 1 has, and robots that have both are left alone.
-    So are files in no package, of which nothing says that they are for ROS 2.
+    It is the form of ROS 1. ros2_control and its Gazebo plugins only read joints, interfaces and transmissions inside
+    `<ros2_control>`. Not reported are packages that build with catkin, which ROS 1 has, robots that have both, and
+    files outside a package, which may be for ROS 1.
 
     ## Example
 

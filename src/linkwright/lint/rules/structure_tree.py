@@ -131,8 +131,8 @@ class RepeatedElement(Rule):
 
     ## Why
 
-    urdfdom reads the first `<origin>`, `<geometry>`, `<limit>`, ... of its parent and passes over the others. A change
-    made in the second one changes nothing.
+    urdfdom reads the first `<origin>`, `<geometry>`, `<limit>`, ... of its parent and ignores the others. A change of
+    the second one has no effect.
 
     ## Example
 

@@ -85,8 +85,8 @@ class ConstantCondition(XacroRule):
 
     ## Why
 
-    What is inside is always there or never. A condition written as a constant is left from a trial, and hides what
-    the robot is made of.
+    The content is always there or never. A constant condition is left from a trial, and hides the structure of the
+    robot.
 
     ## Example
 

@@ -420,8 +420,7 @@ class MacroDefinedTwice(XacroRule):
 
     ## Why
 
-    The second definition silently takes the place of the first. Calls before it and calls after it make different
-    things.
+    The second definition silently replaces the first. Calls before it and calls after it make different elements.
 
     ## Example
 

@@ -157,8 +157,8 @@ class ShadowedProperty(XacroRule):
 
     ## Why
 
-    Inside the macro the name means something else than around it, and a macro that is called there sees the inner one:
-    scopes in xacro follow the calls. Pedantic: parameters are often called like the property that is handed to them.
+    Inside the macro the name has another meaning than outside, and a macro that is called there sees the inner one:
+    scopes in xacro follow the calls. Pedantic: parameters often have the name of the property that is passed to them.
 
     ## Example
 
@@ -217,8 +217,8 @@ class ParameterHidesGlobal(XacroRule):
 
     ## Why
 
-    Inside the macro the name no longer means the constant or function, and expressions that use it as such give wrong
-    numbers without any error. Pedantic: calls of the macro are warned of anyway.
+    Inside the macro the name no longer means the constant or function, and expressions with it give wrong numbers
+    without any error. Pedantic: xacro warns of calls of the macro anyway.
 
     ## Example
 
