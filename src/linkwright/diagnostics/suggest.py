@@ -134,7 +134,7 @@ def _like(name: str, names: Iterable[str]) -> list[str]:
 
 
 def _parts(name: str) -> tuple[str, str]:
-    """The name of a file without its ending, and the ending: that of 'robot.urdf.xacro' is '.urdf.xacro'."""
+    """Return the name of a file without its extension, and the extension: '.urdf.xacro' for 'robot.urdf.xacro'."""
     dot = name.find(".", 1)
     return (name, "") if dot < 0 else (name[:dot], name[dot:])
 

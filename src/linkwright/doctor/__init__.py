@@ -1,4 +1,4 @@
-"""Finds the classic problems of a running graph: observed for a few seconds, examined as plain data."""
+"""Find common problems of a running graph: observe it for a few seconds, and examine plain data."""
 
 from linkwright.doctor.examination import examine
 from linkwright.doctor.parameter_files import examine_parameter_files

@@ -96,7 +96,7 @@ def _numbers(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _circle(transforms: Sequence[TransformSeen]) -> list[str]:
-    """The frames of a cycle of parents that a frame is in; empty if it is in none."""
+    """Return the frames of the cycle of parents that a frame is in; empty if it is not in one."""
     parent = {transform.child: transform.parent for transform in transforms}
     done: set[str] = set()
     for start in parent:
@@ -112,7 +112,7 @@ def _circle(transforms: Sequence[TransformSeen]) -> list[str]:
 
 
 def _missing(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
-    """Findings on missing frames of a robot's links; frames with the same reason together."""
+    """Yield findings on missing frames of a robot's links, one for frames with the same reason."""
     there = {transform.child for transform in seen.transforms}
     without = [joint for joint in robot.joints if robot.frame(joint.child) not in there]
     if not without:

@@ -1,4 +1,4 @@
-"""Greetings between computers, over a topic and by UDP multicast, and the table of whose greetings arrived."""
+"""Greetings between computers, over a topic and by UDP multicast, and the table of received ones."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ class Greetings:
     received: Counter[str] = field(default_factory=Counter)
 
     def heard_on_topic(self, text: str) -> None:
-        """Count a greeting that came over the topic."""
+        """Count a greeting received on the topic."""
         self._count(self.subscribed, text)
 
     def heard_by_multicast(self, text: str) -> None:
-        """Count a greeting that came by multicast."""
+        """Count a greeting received by multicast."""
         self._count(self.received, text)
 
     def _count(self, heard: Counter[str], text: str) -> None:

@@ -194,7 +194,7 @@ def nodes_of(endpoints: Iterable[EndpointInfo]) -> list[str]:
 
 
 def listed(names: Iterable[str], limit: int = 6) -> Phrase:
-    """Names in quotes with commas between; of many the first, and how many more there are."""
+    """Return names in quotes, separated by commas; of many the first ones, and the number of the others."""
     every = list(names)
     shown = quoted_names(every[:limit])
     return phrase("{names} and {more} more", names=shown, more=len(every) - limit) if len(every) > limit else shown

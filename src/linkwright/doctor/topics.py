@@ -117,15 +117,15 @@ def _qos(seen: Observation) -> Iterator[Diagnostic]:
     if seen.over_zenoh:
         return
     publishers = seen.of_kind(EndpointKind.PUBLISHER)
-    said = set()
+    reported = set()
     for subscription in seen.of_kind(EndpointKind.SUBSCRIPTION):
         for publisher in publishers:
             if publisher.name != subscription.name or publisher.type_name != subscription.type_name:
                 continue
             policies = tuple(incompatible_policies(publisher.qos, subscription.qos))
             key = (publisher.name, node_of(publisher), node_of(subscription), policies)
-            if policies and key not in said:
-                said.add(key)
+            if policies and key not in reported:
+                reported.add(key)
                 yield _mismatch(publisher, subscription, policies)
 
 
@@ -174,7 +174,7 @@ def _remedy(policy: QoSPolicyKind) -> Phrase:
 
 
 def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
-    """The value of a policy at an endpoint, in the names that code and command lines have for it."""
+    """Return the value of a policy at an endpoint, by its name in code and on command lines."""
     value = getattr(endpoint.qos, policy.name.lower())
     if policy is QoSPolicyKind.LIVELINESS:
         return f"{value.name} ({endpoint.qos.liveliness_lease_duration})"
@@ -182,7 +182,7 @@ def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
 
 
 def _misnamed(seen: Observation) -> Iterator[tuple[str, str, list[EndpointInfo], str]]:
-    """Topics without a publisher, with type and subscriptions, and the published one that is probably meant."""
+    """Yield findings on topics without a publisher, with the published topic that is probably meant."""
     published: dict[str, set[str]] = {}
     senders: dict[str, set[str]] = {}
     for endpoint in seen.of_kind(EndpointKind.PUBLISHER):
@@ -286,7 +286,7 @@ def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _alike(name: str, candidates: list[str]) -> str | None:
-    """The candidate that is probably meant: with the same last part in another namespace, or of similar spelling."""
+    """Return the candidate that is probably meant: in another namespace, or with similar spelling."""
     last = name.rpartition("/")[2]
     same_end = [candidate for candidate in candidates if candidate.rpartition("/")[2] == last]
     near = nearest(name, [candidate for candidate in candidates if abs(len(candidate) - len(name)) <= _MOST_DIFFERENT])

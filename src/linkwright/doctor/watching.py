@@ -286,7 +286,7 @@ class _Watcher:
         self._frames[topic, sender] = _frame_of(data)
 
     def _note_stamp(self, topic: str, sender: str, seconds: int, nanoseconds: int) -> None:
-        """Note the stamp of a message; one that was kept for late subscribers, as maps are, may be of any age."""
+        """Record the stamp of a message; a latched one, such as a map, may have any age."""
         if topic in self._latched and (seconds or nanoseconds):
             return
         self._stamps[topic, sender] = (seconds * _SECOND + nanoseconds, time.time_ns())
@@ -317,7 +317,7 @@ class _Watcher:
         return tuple(found)
 
     def stamps_seen(self, sim_time: Mapping[str, bool]) -> tuple[StampSeen, ...]:
-        """The stamps relative to the clock of their senders: simulated time, where they follow or make that.
+        """Return the stamps relative to the clock of their senders: simulated time if they use or publish it.
 
         One that does not may hand stamps on that others made, so the nearer clock counts.
         """
@@ -364,7 +364,7 @@ class _Watcher:
         return [FixedFrame(answer.values[0].string_value, f"'{node}'") for node, answer in sorted(answers.items())]
 
     async def _ask_all(self, kind: str, service: str, among: set[str] | None = None, **fields: Any) -> dict[str, Any]:
-        """The responses of the nodes with a service, as far as they come in time, by their full names."""
+        """Return the responses of the nodes with a service that arrive in time, by their full names."""
         from linkwright.messages import get_service
 
         served = {

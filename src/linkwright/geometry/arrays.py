@@ -24,7 +24,7 @@ _PARALLEL = 0.9995
 
 
 def last_axis(values: ArrayLike, length: int, what: str) -> Array:
-    """The values as a float64 array whose last axis has a certain length.
+    """Return the values as a float64 array, and check the length of its last axis.
 
     Raises:
         ValueError: it has another length.
@@ -59,7 +59,7 @@ def quaternion_from_rpy(rpy: ArrayLike) -> Array:
 
 
 def quaternion_multiply(first: ArrayLike, second: ArrayLike) -> Array:
-    """The rotation that does `second`, then `first`: the product first * second.
+    """Return the rotation that applies `second`, then `first`: the product first * second.
 
     Args:
         first: shape (..., 4).
@@ -80,7 +80,7 @@ def quaternion_multiply(first: ArrayLike, second: ArrayLike) -> Array:
 
 
 def quaternion_inverse(quaternion: ArrayLike) -> Array:
-    """The rotation back; shape (..., 4) to (..., 4)."""
+    """Return the inverse rotation; shape (..., 4) to (..., 4)."""
     inverse: Array = last_axis(quaternion, 4, "a quaternion") * np.array((-1.0, -1.0, -1.0, 1.0))
     return inverse
 

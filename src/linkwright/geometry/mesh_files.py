@@ -117,9 +117,9 @@ def told_triangles(path: Path) -> int | None:
         with path.open("rb") as file:
             head = file.read(STL_HEADER)
             if kind == ".stl" and len(head) == STL_HEADER:
-                (said,) = struct.unpack_from("<I", head, STL_HEADER - 4)
-                if path.stat().st_size == STL_HEADER + said * STL_TRIANGLE:
-                    return int(said)
+                (declared,) = struct.unpack_from("<I", head, STL_HEADER - 4)
+                if path.stat().st_size == STL_HEADER + declared * STL_TRIANGLE:
+                    return int(declared)
             mark = _FACE_LINES.get(kind)
             return None if mark is None else (head + file.read()).count(mark)
     except OSError:

@@ -102,8 +102,11 @@ def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
         reasons += _of_comparison(comparison, computed)
     if reasons:
         worst = min(reasons, key=lambda reason: _ORDER.index(reason.standing)).standing
-        said = [reason for reason in reasons if reason.standing is worst]
-        words, badness = joined([reason.words for reason in said], "; "), max(reason.badness for reason in said)
+        worst_reasons = [reason for reason in reasons if reason.standing is worst]
+        words, badness = (
+            joined([reason.words for reason in worst_reasons], "; "),
+            max(reason.badness for reason in worst_reasons),
+        )
         return Verdict(worst, words, badness, present, density, comparison)
     if computed is None:
         return Verdict(Standing.UNJUDGED, phrase("there is no shape to compare with"), 0.0, present)

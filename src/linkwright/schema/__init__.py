@@ -1,4 +1,4 @@
-"""XML languages as data: elements and attributes in tables that drive reading, writing and explaining.
+"""XML languages as data: tables of elements and attributes for reading, writing and explaining.
 
 A language is a tree of `ElementRule` objects. This room knows no language itself; URDF's is `linkwright.urdf.schema`.
 """

@@ -7,7 +7,7 @@ from linkwright.schema.rules import AttributeRule, ElementRule, Version
 
 
 def describe_element(rule: ElementRule) -> Phrase:
-    """An element in Markdown: what it is, what it must and may carry and contain."""
+    """Return an element in Markdown: its meaning, its attributes and its children."""
     tag = joined([f"`<{rule.tag}>`", *_since(rule.since)])
     head = phrase("{name}: {meaning}", name=tag, meaning=term(rule.meaning))
     lines = [phrase("- {line}", line=describe_attribute(attribute)) for attribute in rule.attributes]
@@ -40,7 +40,7 @@ def describe_attribute(attribute: AttributeRule) -> Phrase:
 
 
 def _describe_value(rule: ElementRule) -> Phrase:
-    """An element that says one value, in one line of Markdown as an attribute."""
+    """Return an element with one value in one line of Markdown, like an attribute."""
     assert rule.text is not None
     facts = _facts(rule.text)
     if rule.many:

@@ -37,7 +37,7 @@ _memories: list[_Memory] = []
 
 
 def forget() -> None:
-    """Empty what readers remember; for benchmarks."""
+    """Clear the memory of readers; for benchmarks."""
     for memory in _memories:
         memory.clear()
 
@@ -53,7 +53,7 @@ def reader_of(rule: ElementRule, version: Version) -> ElementReader:
 
 
 def _flat_reader(rule: ElementRule, version: Version) -> ElementReader:
-    """For elements that have attributes or a text, and no children."""
+    """Make the reader of elements with attributes or a text, and no children."""
     values = rule.values
     make, check = rule.make, rule.check
 
@@ -74,7 +74,7 @@ def _flat_reader(rule: ElementRule, version: Version) -> ElementReader:
 
 
 def _choice_reader(rule: ElementRule, version: Version) -> ElementReader:
-    """For elements in which the first child decides what they are."""
+    """Make the reader of elements whose first child decides their kind."""
     table = {child.tag: child for child in rule.children if child.since <= version}
     check = rule.check
 
@@ -96,7 +96,7 @@ def _choice_reader(rule: ElementRule, version: Version) -> ElementReader:
 
 
 def _nested_reader(rule: ElementRule, version: Version) -> ElementReader:
-    """For elements that have children, or whose object knows its element."""
+    """Make the reader of elements with children, or whose object has its element."""
     scope = _scope(rule, version)
     for index, child in enumerate(rule.children):
         if child.since <= version:
@@ -107,7 +107,7 @@ def _nested_reader(rule: ElementRule, version: Version) -> ElementReader:
 
 
 def _compiled_later(name: str, rule: ElementRule, version: Version, scope: dict[str, Any]) -> Read:
-    """A reader that takes its own place when the first such element comes: most robots use half of the language."""
+    """Return a reader that replaces itself at the first such element: most robots use half of the language."""
 
     def read(*arguments: Any) -> Any:
         scope[f"{name}_read"], scope[f"{name}_memory"] = reader_of(rule, version)

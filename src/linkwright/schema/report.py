@@ -13,7 +13,7 @@ UNREADABLE: Final = type("Unreadable", (), {"__repr__": lambda _: "UNREADABLE"})
 
 
 class Report(Protocol):
-    """Takes the findings of a reader, and words them for one XML language.
+    """Receives the findings of a reader, and formulates them for one XML language.
 
     `owner` is the element that messages name an element's place by: the link or joint that it is part of.
 
@@ -30,7 +30,7 @@ class Report(Protocol):
         """Report a malformed attribute or text, and return the value to continue with, or `UNREADABLE`."""
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """An attribute is ignored, because it came with a later version of the language."""
+        """Report that an attribute is ignored, because a later version of the language added it."""
 
     def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:
         """Report that a required child is missing."""
@@ -39,7 +39,7 @@ class Report(Protocol):
         """Report that none of several children exists."""
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
-        """A child stands where one of several is expected, and is none of them in this version of the language."""
+        """Report a child that is not one of the expected ones in this version of the language."""
 
 
 Read = Callable[[Element, Element, Report], Any]

@@ -60,11 +60,11 @@ class AttributeRule:
 
     @property
     def target(self) -> str:
-        """The field that its value goes to."""
+        """The field of its value."""
         return self.field or self.name
 
     def value_in(self, instance: Any) -> Any:
-        """The value that an object gives it."""
+        """Return the value of an object for it."""
         return getattr(instance, self.target) if self.get is None else self.get(instance)
 
     def is_required(self, version: Version) -> bool:
@@ -137,21 +137,21 @@ class ElementRule:
 
     @property
     def target(self) -> str:
-        """The field of the object around it that its own goes to."""
+        """The field of the parent's object for its own object."""
         return self.field or self.tag
 
     @property
     def is_inline(self) -> bool:
-        """Whether its values are fields of the object around it."""
+        """Whether its values are fields of the parent's object."""
         return self.make is None and not self.choice
 
     @property
     def is_value(self) -> bool:
-        """Whether it is there for one value alone, the text inside, as ``<mass>2.5</mass>`` of SDF."""
+        """Whether its only value is the text inside, as for ``<mass>2.5</mass>`` of SDF."""
         return self.text is not None and not (self.attributes or self.children)
 
     def value_in(self, instance: Any) -> Any:
-        """The object, or objects, that the object around it has for this element."""
+        """Return the object, or objects, of the parent's object for this element."""
         return getattr(instance, self.target) if self.get is None else self.get(instance)
 
     @property

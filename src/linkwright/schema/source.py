@@ -41,7 +41,7 @@ _REMEMBERED = 4096
 
 
 def is_remembered(rule: ElementRule) -> bool:
-    """Whether elements of a rule are kept by their attributes: those that have nothing else, and more than names."""
+    """Return whether elements of a rule are cached by their attributes: if they only have these, and not just names."""
     only_attributes = not (rule.children or rule.nests or rule.located or rule.text is not None)
     return only_attributes and any(attribute.type.read is not str for attribute in rule.attributes)
 

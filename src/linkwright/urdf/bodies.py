@@ -56,7 +56,7 @@ class Bodies:
         return [self._robot.links[name] for name in body.frames]
 
     def turns(self, link: str) -> bool:
-        """Whether a link's body can turn: not where it is on a link `WORLD`, or slides on one that does not turn."""
+        """Return whether a link's body can turn: not if only prismatic joints connect it to a link `WORLD`."""
         body = self._by_link.get(link)
         while body is not None and body.joint is not None:
             if body.joint.type != "prismatic":

@@ -25,7 +25,7 @@ _UNSIGNED = ("effort", "velocity", "acceleration", "deceleration", "jerk")
 
 
 def pose_of(xyz: Vector3, rpy: Vector3, quaternion: Quaternion | None) -> Pose:
-    """The pose that an ``<origin>`` gives; a quaternion is brought to unit length, one without length does not turn."""
+    """Return the pose of an ``<origin>``; a quaternion is normalised, and one of zeros is the identity."""
     if quaternion is None:
         return Pose(xyz, rpy)
     norm = sqrt(sum(part * part for part in quaternion))
@@ -36,7 +36,7 @@ def pose_of(xyz: Vector3, rpy: Vector3, quaternion: Quaternion | None) -> Pose:
 
 
 def check_origin(pose: Pose, element: Element, owner: Element, findings: Findings) -> Any:
-    """One kind of rotation, and angles that are not degrees."""
+    """Check that there is one kind of rotation, and that angles are not in degrees."""
     if pose.quaternion is not None:
         if "rpy" not in element.attributes:
             return pose
@@ -57,7 +57,7 @@ def check_origin(pose: Pose, element: Element, owner: Element, findings: Finding
 
 
 def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Findings) -> Any:
-    """URDF 1.2 wants every size above zero; older files may say anything."""
+    """Check that every size is above zero, as URDF 1.2 requires; older versions accept anything."""
     if findings.version < (1, 2):
         return geometry
     good = True
@@ -77,7 +77,7 @@ def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Fi
 
 
 def check_end(ends: tuple[str], element: Element, owner: Element, findings: Findings) -> tuple[str]:
-    """The name of a joint's parent or child link is not empty."""
+    """Check that the name of a joint's parent or child link is not empty."""
     if not ends[0]:
         message = phrase("'link' in <{tag}> of {owner} is empty", tag=element.tag, owner=owner_name(owner))
         findings.error("URDF124", message, element, "link", hint=phrase("give the name of a link"))
@@ -85,7 +85,7 @@ def check_end(ends: tuple[str], element: Element, owner: Element, findings: Find
 
 
 def check_dynamics(dynamics: Dynamics, element: Element, owner: Element, findings: Findings) -> Any:
-    """One of the two attributes is given."""
+    """Check that one of the two attributes is set."""
     if "damping" in element.attributes or "friction" in element.attributes:
         return dynamics
     message = phrase("<dynamics> of {owner} has neither 'damping' nor 'friction'", owner=owner_name(owner))
@@ -95,7 +95,7 @@ def check_dynamics(dynamics: Dynamics, element: Element, owner: Element, finding
 
 
 def check_limit(limit: Limit, element: Element, owner: Element, findings: Findings) -> Limit:
-    """URDF 1.2 wants bounds in order and sizes without a sign; braking is as strong as accelerating unless given."""
+    """Check ordered bounds and positive sizes, as URDF 1.2 requires; deceleration defaults to acceleration."""
     if findings.version < (1, 2):
         return limit
     given = element.attributes

@@ -30,7 +30,7 @@ _WITHOUT_AXIS = replace(JOINT, children=tuple(child for child in JOINT.children 
 
 
 def read_link(element: Element, materials: MaterialTable, findings: UrdfReport) -> Link:
-    """A link with what could be read of it; materials defined in it become known."""
+    """Return a link with its readable parts, and add the materials that it defines."""
     name = element.attributes.get("name")
     if name is None:
         findings.missing_attribute(element, LINK, LINK.attributes[0], element)
@@ -44,7 +44,7 @@ def read_link(element: Element, materials: MaterialTable, findings: UrdfReport) 
 
 
 def _drop_what_urdfdom_drops(values: dict[str, Any], findings: UrdfReport) -> None:
-    """Leave only the parts before the first one that cannot be read, and say at its first error what is lost."""
+    """Keep only the parts before the first unreadable one, and report at its first error which ones are lost."""
     element: Element = values["element"]
     inertial = element.first("inertial")
     first_lost: tuple[ElementRule, Element] | None = None
@@ -65,7 +65,7 @@ def _drop_what_urdfdom_drops(values: dict[str, Any], findings: UrdfReport) -> No
 
 
 def _first_error(rule: ElementRule, part: Element, owner: Element, version: Version) -> Diagnostic:
-    """The error that urdfdom stops at, which goes through the children of a part in the order of the rule."""
+    """Return the error that urdfdom stops at, which reads the children of a part in the order of the rule."""
     for child in rule.children:
         alone = UrdfReport(version)
         element = part.first(child.tag)
@@ -116,7 +116,7 @@ class MaterialTable:
             self.known[material.name] = material
 
     def resolve(self, own: Material, owner: Element) -> Material | None:
-        """The material of a visual that names or defines `own`; None if it is nowhere defined so far."""
+        """Return the material of a visual that names or defines `own`; None if it is not defined so far."""
         defines = own.rgba is not None or own.texture is not None
         if not own.name:
             return own if defines else None
@@ -130,7 +130,7 @@ class MaterialTable:
         return known
 
     def report_undefined(self) -> None:
-        """Warn of the names that were not defined when they were used."""
+        """Report the names that were not defined when they were used."""
         for material, owner in self._undefined:
             element = material.element
             assert element is not None

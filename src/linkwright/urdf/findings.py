@@ -1,4 +1,4 @@
-"""The diagnostics of one reading: collected as they come, handed out in the order of the text."""
+"""The diagnostics of one reading, collected in any order and returned in the order of the text."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.xmltree import Element
 
 
 class Findings:
-    """The findings of one reading, and whether they keep a robot from being made.
+    """The findings of one reading, and whether they reject the robot.
 
     Attributes:
         version: the URDF version the file is read as.
@@ -82,7 +82,7 @@ class Findings:
         )
 
     def first_error(self) -> Diagnostic:
-        """The error that was found first; there is one."""
+        """Return the first error; there is one."""
         return next(found for found in self._found if found.severity is Severity.ERROR)
 
     def annotate(self, finding: Diagnostic, note: Note) -> None:
@@ -93,7 +93,7 @@ class Findings:
                 return
 
     def in_order(self) -> tuple[Diagnostic, ...]:
-        """All of them by place; files in the order in which they were first met."""
+        """Return all findings by place, and files in the order in which they first occurred."""
         files: dict[str, int] = {}
 
         def place(diagnostic: Diagnostic) -> tuple[int, int, int]:

@@ -1,4 +1,4 @@
-"""XML text as urdfdom's parser takes it, which is not quite as XML says.
+"""XML text as urdfdom's parser reads it, which differs from the XML standard.
 
 tinyxml2 keeps tabs and line breaks inside attribute values, where XML makes them spaces, and urdfdom does not take them
 between numbers. It also does not mind blanks before the XML declaration, and what `linkwright.xmltree.tinyxml` lists.

@@ -91,7 +91,7 @@ def _read_robot(root: Element, findings: UrdfReport) -> Robot | None:
 
 
 def _by_name(kind: str, parts: Iterable[PartT], findings: UrdfReport) -> dict[str, PartT]:
-    """Links or joints by their names; of several of one name the first."""
+    """Return links or joints by name; of several with one name the first."""
     found: dict[str, PartT] = {}
     for part in parts:
         first = found.setdefault(part.name, part)
@@ -163,7 +163,7 @@ def _report_leftover_xacro(root: Element, extensions: list[Element], findings: U
 
 
 def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
-    """Warn of mimic joints that follow nothing; urdfdom does not look."""
+    """Report mimic joints without a leader, which urdfdom does not check."""
     for joint in joints.values():
         if joint.mimic is None:
             continue

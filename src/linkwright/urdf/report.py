@@ -57,7 +57,7 @@ def owner_name(owner: Element) -> Phrase:
 
 
 class UrdfReport(Findings):
-    """The findings of one reading, and the words for what the reader of elements meets (`linkwright.schema.report`)."""
+    """The findings of one reading, with messages for the reader of elements (`linkwright.schema.report`)."""
 
     __slots__ = ()
 
@@ -108,7 +108,7 @@ class UrdfReport(Findings):
         return UNREADABLE
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """An attribute is ignored, because it came with a later version of URDF."""
+        """Report that an attribute is ignored, because a later version of URDF added it."""
         message = phrase(
             "'{name}' in <{tag}> of {owner} is ignored: it needs URDF {version}",
             name=attribute.name,
@@ -148,7 +148,7 @@ class UrdfReport(Findings):
         self.error("URDF131", phrase("<geometry> of {owner} is empty", owner=owner_name(owner)), element, hint=hint)
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
-        """An element in the place of a shape is none, or none in this version."""
+        """Report an element in the place of a shape that is not one, or not in this version."""
         if child.tag in rule.child_rules:
             hint = phrase('write <robot version="1.1" ...>, or build it from a cylinder and two spheres')
             self.error(

@@ -19,7 +19,7 @@ _MOST_VISITS = 64
 
 
 def children_of(robot: Robot) -> Mapping[str, tuple[Joint, ...]]:
-    """For every link the joints that hang from it, in the order of their names; empty for a leaf."""
+    """Return the child joints of every link, in the order of their names; empty for a leaf."""
     children: dict[str, list[Joint]] = {name: [] for name in robot.links}
     for _, joint in sorted(robot.joints.items()):
         children[joint.parent].append(joint)
@@ -27,7 +27,7 @@ def children_of(robot: Robot) -> Mapping[str, tuple[Joint, ...]]:
 
 
 def parent_joints(robot: Robot) -> Mapping[str, Joint]:
-    """For every link but the root the joint above it; of several the last by name, as in urdfdom."""
+    """Return the parent joint of every link except the root; of several the last by name, as in urdfdom."""
     return {joint.child: joint for _, joint in sorted(robot.joints.items())}
 
 
@@ -187,7 +187,7 @@ def _check_reachable(root: str, links: Mapping[str, Link], joints: Sequence[Join
 
 
 def _loop_from(link: str, joints: Sequence[Joint]) -> list[str]:
-    """Up from a link through parent joints until one comes up again: that loop, from parent to child."""
+    """Return the loop that the parent joints of a link lead to, from parent to child."""
     parents = {joint.child: joint.parent for joint in joints}
     path = [link]
     while path[-1] in parents and parents[path[-1]] not in path:

@@ -1,4 +1,4 @@
-"""Attribute values as urdfdom reads them: numbers and vectors, what to say about bad ones; the types of attributes.
+"""Attribute values as urdfdom reads them: types, numbers and vectors, and hints for malformed ones.
 
 urdfdom hands an attribute to a C++ stream in the classic locale and wants all of it used up. So a blank may lead a
 number but not follow it; ``1e3``, ``.5``, ``5.`` and ``+1`` are numbers; ``inf``, ``nan``, ``0x10``, ``0,5`` and the

@@ -14,7 +14,7 @@ _asked: str | None = None
 
 
 def set_language(code: str | None) -> None:
-    """Ask for a language, one of `LANGUAGES`, for the rest of the program's run; None leaves it to the environment."""
+    """Set the language, one of `LANGUAGES`, for the rest of the program's run; None for that of the environment."""
     global _asked  # noqa: PLW0603 - the language is one for the whole process, as the locale is
     if code is not None and code not in LANGUAGES:
         raise ValueError(f"there is no language '{code}'; the languages are {', '.join(LANGUAGES)}")
@@ -22,7 +22,7 @@ def set_language(code: str | None) -> None:
 
 
 def asked_language() -> str | None:
-    """The language that was asked for, or None. Output for programs is in another than English only when asked for."""
+    """Return the language that was set, or None. Output for programs is not in English only if a language was set."""
     return _asked
 
 

@@ -13,7 +13,7 @@ _LABELS = ("error", "warning", "info", "note", "hint", ": ")
 
 
 def labels(lang: str | None = None) -> Mapping[str, str]:
-    """The labels of severities, notes and hints, and the colon after them; in the reader's language if not told."""
+    """Return the labels of severities, notes and hints, and the colon after them, by default in the user's language."""
     lang = language() if lang is None else lang
     return {label: label if lang == "en" else term(label).said_in(wording(lang)) for label in _LABELS}
 
@@ -30,7 +30,7 @@ def translated(diagnostics: Iterable[Diagnostic], *, for_programs: bool = False)
 
 
 def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
-    """The diagnostic with its message, notes and hint in a language of `LANGUAGES`; texts not known stay English."""
+    """Return the diagnostic with its texts in a language of `LANGUAGES`; unknown texts stay English."""
     if lang == "en":
         return diagnostic
     words = wording(lang)
@@ -48,7 +48,7 @@ def localized(text: str, lang: str | None = None) -> str:
 
 
 def said_in(text: Phrase, lang: str) -> str:
-    """A phrase in a language of `LANGUAGES`, whatever language it is in now."""
+    """Return a phrase in a language of `LANGUAGES`, whatever its present language."""
     return text.said_in(wording(lang))
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @cache
 def wording(language: str) -> NullTranslations:
-    """The catalogue of a language, read once; an empty one in a checkout where it was not compiled."""
+    """Return the catalogue of a language, read once; an empty one in a checkout without a compiled one."""
     from gettext import GNUTranslations, NullTranslations  # English needs none of it
 
     try:

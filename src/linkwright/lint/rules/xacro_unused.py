@@ -137,11 +137,10 @@ class UnusedMacro(XacroRule):
 
     ## Why
 
-    Its content is missing in the robot. Either the call was forgotten, or the macro is left from a time when there was
-    one.
+    Its content is missing in the robot. Either the call was forgotten, or the macro is left from an earlier version.
 
-    Only macros of the checked file are looked at, and only where it makes a robot itself: files of macros for others
-    are there to be chosen from.
+    The rule only checks macros of the checked file, and only if it makes a robot itself: files of macros for others
+    offer a choice.
 
     ## Example
 
