@@ -16,7 +16,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.whole_files import write_whole_file
 
-PICTURE_ENDINGS = (".pdf", ".svg", ".png")
+IMAGE_ENDINGS = (".pdf", ".svg", ".png")
 
 
 def render(gv_text: str, path: str | Path) -> None:
@@ -28,9 +28,9 @@ def render(gv_text: str, path: str | Path) -> None:
     """
     path = Path(path)
     ending = path.suffix.lower()
-    if ending not in PICTURE_ENDINGS:
-        hint = did_you_mean(ending, PICTURE_ENDINGS) or phrase(
-            "it is one of {picture_endings}", picture_endings=joined(PICTURE_ENDINGS)
+    if ending not in IMAGE_ENDINGS:
+        hint = did_you_mean(ending, IMAGE_ENDINGS) or phrase(
+            "it is one of {image_endings}", image_endings=joined(IMAGE_ENDINGS)
         )
         raise LinkwrightError(
             Diagnostic(
