@@ -47,7 +47,8 @@ _ADDRESSES = {"xacro": "http://www.ros.org/wiki/xacro", "xi": "http://www.w3.org
 """Of the prefixes that descriptions use."""
 _AMPERSAND_HINT = phrase("write '&amp;' for the character '&'")
 _AND_HINT = phrase("write 'and' in an expression, or '&amp;' for each '&'")
-_MERGE_MARK = """"The beginning of a conflict that git leaves in a file."""
+_MERGE_MARK = "<<<<<<< "
+"""The beginning of a conflict that git leaves in a file."""
 _LESS_HINT = phrase("close the quotes of the attribute before it, or write '&lt;' for the character '<'")
 
 
@@ -131,7 +132,6 @@ class _Fault:
             )
         if code == _MISPLACED_DECLARATION:
             message = phrase("the XML declaration '<?xml' must be the very first thing in the file")
-<<<<<<< HEAD
             return self._diagnostic("XML206", message, 5, hint=phrase("remove everything before it"))
         if code == _NO_ELEMENT:
             return self._diagnostic(
