@@ -4,9 +4,8 @@ The names below are the way in for programs. Each is loaded when a program first
 """
 
 from linkwright._version import __version__
-from linkwright.deferred import deferred
-from linkwright.lean_typing import TYPE_CHECKING
 
+TYPE_CHECKING = False  # true to type checkers, by its name; nothing more may be loaded before Ctrl-C is handled
 if TYPE_CHECKING:
     from linkwright.bag.reading import open_recording
     from linkwright.descriptions.service import load
@@ -31,20 +30,25 @@ __all__ = [
     "show",
 ]
 
-__getattr__ = deferred(
-    __name__,
-    {
-        "bag.reading": ("open_recording",),
-        "descriptions.service": ("load",),
-        "kinematics.tree": ("KinematicTree",),
-        "lint.engine": ("check",),
-        "testing.scenes": ("read_world",),
-        "testing.simulated": ("SteppedSimulation",),
-        "viewer.notebook": ("show",),
-        "vision.datasets.dataset": ("make_dataset",),
-        "xacro.engine": ("expand",),
-    },
-)
+_MODULES = {
+    "bag.reading": ("open_recording",),
+    "descriptions.service": ("load",),
+    "kinematics.tree": ("KinematicTree",),
+    "lint.engine": ("check",),
+    "testing.scenes": ("read_world",),
+    "testing.simulated": ("SteppedSimulation",),
+    "viewer.notebook": ("show",),
+    "vision.datasets.dataset": ("make_dataset",),
+    "xacro.engine": ("expand",),
+}
+
+
+def __getattr__(name: str) -> object:
+    if name not in __all__:  # such as a module that is about to be imported
+        raise AttributeError(f"module 'linkwright' has no attribute '{name}'")
+    from linkwright.deferred import deferred
+
+    return deferred(__name__, _MODULES)(name)
 
 
 def __dir__() -> list[str]:

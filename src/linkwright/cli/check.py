@@ -54,7 +54,7 @@ _DEFAULTS: dict[str, Any] = {
     "strict": False,
     "unsafe_fixes": False,
 }
-"""What holds without an option."""
+"""The values of options that are not given."""
 _Found: TypeAlias = "dict[tuple[str, Span | None, str], Diagnostic]"
 
 
