@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from socket import socket
 from threading import Lock
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.wire.dds.confinement import confine
 from linkwright.wire.dds.cyclone import LOG_ERRORS, load
-from linkwright.wire.dds.settings import Settings, most_participants
+from linkwright.wire.dds.settings import Settings, most_participants, own_addresses
 from linkwright.wire.dds.topic_types import TopicTypes
 from linkwright.wire.dds.type_descriptions import WireTypes
 
@@ -21,11 +23,13 @@ class OpenDomain:
         users: how many participants are on it.
         descriptions: of types.
         types: of topics, as Cyclone has them.
+        members: keeps announcements in the machine; None where they may leave it.
     """
 
-    def __init__(self, number: int, handle: int) -> None:
+    def __init__(self, number: int, handle: int, members: socket | None = None) -> None:
         self.number = number
         self.handle = handle
+        self.members = members
         self.users = 0
         self.descriptions = WireTypes()
         self.types = TopicTypes()
@@ -45,7 +49,7 @@ def open_domain(settings: Settings) -> OpenDomain:
     with _lock:
         domain = _opened.get(settings.domain_id)
         if domain is None:
-            domain = _opened[settings.domain_id] = OpenDomain(settings.domain_id, _create_domain(settings))
+            domain = _opened[settings.domain_id] = _create_domain(settings)
         domain.users += 1
         return domain
 
@@ -58,20 +62,30 @@ def close_domain(domain: OpenDomain) -> None:
             del _opened[domain.number]
             if load().dds_delete(domain.handle) >= 0:
                 domain.types.free()
+            if domain.members is not None:
+                domain.members.close()
 
 
-def _create_domain(settings: Settings) -> int:
-    """The domain with the first configuration that Cyclone accepts; it prints itself what it rejects in one.
+def _create_domain(settings: Settings) -> OpenDomain:
+    """Open the domain with the first configuration that Cyclone accepts; Cyclone prints what it rejects in one.
 
     Raises:
-        LinkwrightError: DDS102 or DDS103, it takes none.
+        LinkwrightError: DDS102 or DDS103, it accepts none.
     """
-    code = _first_taken(settings.domain_id, settings.configurations)
+    configurations, members = settings.configurations, None
+    if settings.on_loopback:
+        try:
+            members = confine(own_addresses())
+        except OSError:
+            configurations = settings.on_loopback
+    code = _first_taken(settings.domain_id, configurations)
     if code >= 0:
         if not settings.user_configuration:
             # Each broken or foreign packet causes a warning, so any process could flood the log.
             load().dds_set_log_mask(LOG_ERRORS)
-        return code
+        return OpenDomain(settings.domain_id, code, members)
+    if members is not None:
+        members.close()
     if settings.user_configuration:
         without = _first_taken(settings.domain_id, settings.own_configurations)
         if without >= 0:

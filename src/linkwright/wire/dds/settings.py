@@ -73,6 +73,7 @@ class Settings:
         peers: other machines to be asked without multicast.
         enclave: the security enclave of the nodes.
         fragment_size: the bytes of a sample up to which it surely goes into one packet.
+        on_loopback: the configurations that use loopback alone; empty where discovery may leave the machine.
     """
 
     domain_id: int
@@ -85,6 +86,7 @@ class Settings:
     peers: tuple[str, ...] = ()
     enclave: str = "/"
     fragment_size: int = _CYCLONES_FRAGMENT_SIZE
+    on_loopback: tuple[str, ...] = ()
 
 
 def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: int | None = None) -> Settings:
@@ -106,16 +108,18 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
     user = variables.get("CYCLONEDDS_URI", "")
     domain_id = read_domain_id(variables, domain_id)
     own = tuple(_fragments(reach, peers, most_participants(domain_id)))
+    configurations = tuple(",".join(part for part in (configuration, user) if part) for configuration in own)
     return Settings(
         domain_id=domain_id,
         range=reach,
-        configurations=tuple(",".join(part for part in (configuration, user) if part) for configuration in own),
+        configurations=configurations,
         gid_size=OLD_GID_SIZE if is_before_iron(variables) else GID_SIZE,
         warnings=tuple(warnings),
         user_configuration=user,
         own_configurations=own,
         peers=() if reach in (Range.OFF, Range.SYSTEM_DEFAULT) else tuple(peers),
         fragment_size=_FRAGMENT_SIZE if not user and _stays_here(reach, peers) else _CYCLONES_FRAGMENT_SIZE,
+        on_loopback=configurations[-_ON_LOOPBACK:] if _stays_here(reach, peers) else (),
     )
 
 
@@ -165,6 +169,9 @@ that fit the receive buffer of a process with Linux's default."""
 
 _OWN_ADDRESSES = 3
 """At how many addresses besides loopback others of this machine are looked for."""
+
+_ON_LOOPBACK = 2
+"""How many of the configurations for this machine use loopback alone; they come last."""
 
 _LOOPBACK = '<NetworkInterface address="127.0.0.1" multicast="true"/>'
 _OTHERS = '<NetworkInterface autodetermine="true"/>'

@@ -1,0 +1,49 @@
+"""Keeping announcements by multicast inside the machine, on Linux.
+
+A time to live of 0 is meant to do that. But Linux drops such a packet only on an interface where the machine itself is
+a member of the packet's group (``ip_mc_output``); on any other interface it sends the packet out. So the process joins
+the group on each of its interfaces, with its own address as the only source: packets of other machines to the group
+stay refused.
+"""
+
+from __future__ import annotations
+
+import socket
+import struct
+import sys
+from collections.abc import Sequence
+
+_GROUP = "239.255.0.1"
+"""The group of announcements to everybody in a domain (DDSI-RTPS 2.5, 9.6.1.4.1)."""
+
+_ADD_SOURCE_MEMBERSHIP = 39
+"""``IP_ADD_SOURCE_MEMBERSHIP`` of Linux, which Python's `socket` has from 3.12 on."""
+
+_Membership = struct.Struct("4s4s4s")
+"""``struct ip_mreq_source``: group, interface, source."""
+
+
+def confine(addresses: Sequence[str]) -> socket.socket | None:
+    """Keep announcements with a time to live of 0 in the machine.
+
+    Args:
+        addresses: the IPv4 addresses of the interfaces beside loopback.
+
+    Returns:
+        A socket that must stay open as long as announcements are sent; None on systems that need none.
+
+    Raises:
+        OSError: the system refuses a membership, so announcements could leave the machine.
+    """
+    if not sys.platform.startswith("linux"):
+        return None
+    members = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        for address in addresses:
+            own = socket.inet_aton(address)
+            membership = _Membership.pack(socket.inet_aton(_GROUP), own, own)
+            members.setsockopt(socket.IPPROTO_IP, _ADD_SOURCE_MEMBERSHIP, membership)
+    except OSError:
+        members.close()
+        raise
+    return members

@@ -1,0 +1,61 @@
+"""By default no announcement leaves the machine: each interface has the membership that Linux needs to drop them."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright.graph import Graph
+from linkwright.wire.dds import join, open_domains
+from linkwright.wire.dds.settings import own_addresses
+from tests.waiting import SECONDS
+
+pytestmark = pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="Linux alone sends packets with no time to live"
+)
+
+GROUP = "0xefff0001"
+
+
+def memberships() -> set[str]:
+    """The addresses that are the only source of the group of announcements on their interface."""
+    rows = [line.split() for line in Path("/proc/self/net/mcfilter").read_text().splitlines()[1:]]
+    sources = [source for _, _, group, source, included, _ in rows if group == GROUP and int(included)]
+    return {socket.inet_ntoa(int(source, 16).to_bytes(4, "big")) for source in sources}
+
+
+def opened() -> Graph:
+    """Return a graph that is on the network as far as the settings allow."""
+    graph = Graph(threads=True)
+    transport = join(graph)
+    assert transport is not None
+    assert transport.wait_until_ready(SECONDS)
+    return graph
+
+
+def test_each_interface_accepts_announcements_of_its_own_address_alone():
+    graph = opened()
+    assert memberships() >= set(own_addresses())
+    asyncio.run(graph.close())
+
+
+def test_loopback_alone_is_used_where_the_system_refuses_a_membership(monkeypatch):
+    def refuse(addresses):
+        raise OSError("no buffer space")
+
+    used = []
+    first_taken = open_domains._first_taken
+
+    def note(number, configurations):
+        used.extend(configurations)
+        return first_taken(number, configurations)
+
+    monkeypatch.setattr(open_domains, "confine", refuse)
+    monkeypatch.setattr(open_domains, "_first_taken", note)
+    asyncio.run(opened().close())
+    assert used
+    assert not any("autodetermine" in configuration for configuration in used)
