@@ -28,6 +28,7 @@ PACKAGE = ROOT / "src" / "linkwright"
 PAGE = ROOT / "frontend" / "src"
 REFUSED = Path(__file__).with_suffix(".toml")
 
+_END = re.compile(r"(?<=[.;:!?]) ")
 _PAGE_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*"|`(?:[^`\\]|\\.)*`|/\*.*?\*/|//[^\n]*', re.DOTALL)
 
 
@@ -37,7 +38,7 @@ class Refusal:
 
     Attributes:
         pattern: the words.
-        unless: a text that this matches, too, is accepted.
+        unless: a sentence that this matches, too, is accepted.
         plain: what to write instead.
     """
 
@@ -46,9 +47,13 @@ class Refusal:
     plain: str
 
     def matches(self, text: str) -> str | None:
-        """Return the refused words of a text, or None."""
-        found = self.pattern.search(text)
-        return found[0] if found and not (self.unless and self.unless.search(text)) else None
+        """Return the first refused words of a text, or None."""
+        for found in self.pattern.finditer(text):
+            sentence = text[_END.sub("\0", text[: found.start()]).rfind("\0") + 1 :]
+            sentence = _END.split(sentence, maxsplit=1)[0]
+            if self.unless is None or not self.unless.search(sentence):
+                return found[0]
+        return None
 
 
 @dataclass

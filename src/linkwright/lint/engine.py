@@ -40,10 +40,10 @@ class Checked:
 
     Attributes:
         path: the file.
-        robot: the robot, or None when there is none.
-        diagnostics: everything found, in the order of the text; those of rules are `Finding`.
-        subject: what the rules looked at; None when nothing of the file could be read or expanded.
-        sdf: of a world or model in SDF, what it says, with its includes; None for others and where it is no SDF.
+        robot: the robot, or None if there is none.
+        diagnostics: all findings in the order of the text; those of rules are `Finding`.
+        subject: the subject of the rules; None if the file could not be read or expanded.
+        sdf: the world or model of an SDF file with its includes; None for other files, and if it is not SDF.
     """
 
     path: Path
@@ -60,7 +60,7 @@ def check(
     packages: Packages = None,
     settings: Settings | None = None,
 ) -> list[Diagnostic]:
-    """Everything there is to say about a URDF, xacro or SDF file, in the order of the text.
+    """Return all findings about a URDF, xacro or SDF file, in the order of the text.
 
     Args:
         path: the file.
