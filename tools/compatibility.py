@@ -45,10 +45,10 @@ ENGLISH = Words(
 
 The modules that programs and launch files import where ROS 2 is not installed, and the names in them. The measure is
 ROS 2 Humble: a name that is not listed here cannot be imported, because a program that takes it would fail on the
-robot. What came with a later distribution says so. [Your own nodes](nodes.md#what-differs) tells what behaves
-otherwise as a whole.
+robot. Names that came with a later distribution are marked. [Your own nodes](nodes.md#what-differs) describes the overall differences in
+behavior.
 
-An editor or mypy finds the types of all of them in a folder that it has to be told:
+An editor or mypy finds all their types in one folder, which you set in its configuration:
 `python -c "import linkwright.standins as s; print(s.__path__[0] + '/stubs')"`.
 """,
     packages="| package | modules | names | of them since later | absent |\n| --- | ---: | ---: | ---: | ---: |",
