@@ -248,7 +248,7 @@ def test_editing_a_robot_and_comparing_two(start, open_page, tmp_path: Path):
     page = open_page(start("view", str(file)))
     page.get_by_role("tab", name="Links").click()
     page.get_by_text("fore", exact=True).first.click()
-    page.get_by_role("button", name="Move and turn this link").click()
+    page.get_by_role("button", name="Move and rotate the joint").click()
     for text in ("0.77", "1e400"):
         page.locator("[data-number=xyz2]").fill(text)
         page.locator("[data-number=xyz2]").press("Enter")

@@ -45,7 +45,7 @@ def edited(page, link: str) -> None:
     """Have a link edited, by way of its card."""
     page.get_by_role("tab", name="Links").click()
     page.get_by_text(link, exact=True).first.click()
-    page.get_by_role("button", name="Move and turn this link").click()
+    page.get_by_role("button", name="Move and rotate the joint").click()
     page.locator(".editing-part").first.wait_for()
 
 

@@ -62,7 +62,7 @@ def test_inspect_says_what_is_not_there_and_closes_as_a_menu_does(start, open_pa
     card, button = page.locator(".inspect-card"), page.locator(".inspect > button")
     button.click()
     switch(page, "contrast", "joints")
-    assert "No joint moves" in page.locator(".inspect-facts").inner_text()
+    assert "All joints are fixed" in page.locator(".inspect-facts").inner_text()
     assert "No link has a <collision>" in page.locator(".inspect-facts").inner_text()
     page.locator(".canvas-box").focus()
     page.keyboard.press("Escape")

@@ -36,7 +36,7 @@ def modelled(start, open_page, tmp_path: Path):
     path = tmp_path / "yard.world"
     path.write_text(YARD)
     page = open_page(start("sim", str(path)))
-    page.get_by_role("button", name="Model the world: time stands still").click()
+    page.get_by_role("button", name="Model the world: the simulation is paused").click()
     page.get_by_role("option", name="crate").wait_for()
     return page, path
 

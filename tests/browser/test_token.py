@@ -113,7 +113,7 @@ def test_a_browser_without_the_token_is_told_where_it_is_and_may_be_given_it(vie
     becomes(door.locator(".problem").inner_text, "This text contains no token.")
     field.fill(f"{bare(viewer)}?token={'x' * 32}")
     field.press("Enter")
-    door.get_by_text("does not know this token", exact=False).wait_for()
+    door.get_by_text("This token is not valid", exact=False).wait_for()
     field.fill(viewer.url)
     page.get_by_role("button", name="Open", exact=True).click()
     door.wait_for(state="hidden")

@@ -109,7 +109,7 @@ def test_a_measurement_that_hits_nothing_says_so(scene):
     box = scene.page.locator(".canvas-box canvas").bounding_box()
     scene.page.mouse.click(box["x"] + 3, box["y"] + box["height"] - 3)
     notice = scene.page.locator("[data-notice=tool]")
-    notice.get_by_text("Nothing was hit there").wait_for()
+    notice.get_by_text("There is nothing at this point").wait_for()
     scene.click(-0.4, 0)
     notice.wait_for(state="hidden")
 

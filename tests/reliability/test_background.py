@@ -32,7 +32,7 @@ COMMANDS = {
     "bag record": (("bag", "record", "-a", "-o", "recorded"), "Listening for topics"),
     "bag play": (("bag", "play", "--loop", "played"), ""),
     "service call": (("service", "call", "/nobody", "std_srvs/srv/Empty"), "waiting for service"),
-    "doctor": (("doctor",), "looking at the running graph"),
+    "doctor": (("doctor",), "observing the running graph"),
     "bridge": (("bridge", "dds:{domain}", "dds:{other}"), ""),
 }
 

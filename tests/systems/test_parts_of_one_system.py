@@ -51,6 +51,7 @@ KNOWN: dict[str, str] = {
     "viewer/web/server.py": "O_NONBLOCK",
     "vision/datasets/workers.py": "get_context",
     "wire/background.py": "register_at_fork",
+    "wire/dds/confinement.py": "platform",
     "wire/dds/local_sockets.py": "/proc/self/fd /proc/self/net",
     "wire/dds/participant.py": "/proc/self/ns/pid",
     "wire/dds/remote.py": "/proc/ kill",
