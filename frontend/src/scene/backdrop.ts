@@ -1,7 +1,7 @@
 import { Color, Matrix4, Mesh, PlaneGeometry, ShaderMaterial } from "three";
 import type { Theme } from "../state/theme";
 
-/** Squares along each side in which colours are computed; between their corners nobody sees a difference. */
+/** Squares along each side in which colours are computed; between their corners no user sees a difference. */
 const SQUARES = 24;
 /** The render order of the backdrop: drawn before everything else. */
 const FIRST = -1000;

@@ -1,30 +1,30 @@
 import { Box3, DataTexture, Group, LinearFilter, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from "three";
 import { samplesOf } from "./robot/surface-samples";
 
-/** Texels along each side of the picture of the shadow. */
+/** Texels along each side of the image of the shadow. */
 const TEXELS = 96;
-/** How much wider than what stands on it the ground is that the picture shows. */
+/** The width of the ground that the image shows, in widths of the robot on it. */
 const WIDER = 1.7;
 /** How dark it is at most. */
 const DARKEST = 0.62;
-/** At this height above the ground, in sizes of what stands on it, a surface shades it less by a factor of e. */
+/** At this height above the ground, in sizes of the robot on it, a surface shades it less by a factor of e. */
 const [NEAR, FAR] = [0.05, 0.35];
 /** How much of the shade of a surface comes from afar. */
 const FROM_AFAR = 0.35;
 /** Texels to each side that shade spreads, as often as given. */
 const [SPREAD, TIMES] = [2, 3];
-/** Drawn first of the transparent objects, so that lines on the ground lie over it. */
+/** Drawn first of the transparent objects, so that lines on the ground cover it. */
 const FIRST = -1;
 
 const place = new Vector3();
 
 /**
  * The shade that a robot casts on the ground by being there, as on a cloudy day. It is computed of a few points of each
- * surface, and only where the robot moved: no light and no picture of the scene is needed for it.
+ * surface, and only where the robot moved: no light and no image of the scene is needed for it.
  */
 export class ContactShadow {
   readonly root = new Group();
-  /** The part of the ground that the picture of the shadow is on. */
+  /** The part of the ground that the image of the shadow is on. */
   readonly ground: Mesh<PlaneGeometry, MeshBasicMaterial>;
   private readonly pixels = new Uint8Array(4 * TEXELS * TEXELS);
   private readonly texture = new DataTexture(this.pixels, TEXELS, TEXELS);

@@ -26,7 +26,7 @@ export class Controls {
   ) {
     const { canvas } = stage.viewport;
     canvas.tabIndex = 0;
-    // Screen readers leave its keys to it, and say which ones it has.
+    // Screen readers leave its keys to it, and read out its list of keys.
     canvas.setAttribute("role", "application");
     canvas.setAttribute("aria-label", strings.scene.keys);
     canvas.addEventListener("pointerdown", (event) => this.pressed(event));

@@ -20,7 +20,7 @@ export class DepthMap {
   private readonly camera: Camera;
   private readonly at = new Vector3();
 
-  /** Draws the scene once more, unseen; the camera must be aimed. What is seen through hides nothing. */
+  /** Draws the scene once more, unseen; the camera must be aimed. Transparent objects hide nothing. */
   constructor({ renderer, scene, camera, size }: Viewport) {
     this.camera = camera;
     this.size = new Vector2(size.width, size.height).floor();
@@ -64,7 +64,7 @@ export class DepthMap {
     return false;
   }
 
-  /** The distance from the eye to the nearest surface at a pixel, m along the line of sight. */
+  /** The distance from the camera to the nearest surface at a pixel, m along the line of sight. */
   private surface(column: number, row: number): number {
     if (column < 0 || row < 0 || column >= this.size.x || row >= this.size.y) return 0;
     const first = (row * this.size.x + column) * 4;

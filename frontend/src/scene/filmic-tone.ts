@@ -20,8 +20,8 @@ const TONE = /* glsl */ `
 `;
 
 /**
- * Has a surface shown as film would: what lamps light strongly keeps its shape and shades are deep, and what is between is
- * as without. It is computed where surfaces are, so marks, lines, grids and backgrounds keep their exact colours.
+ * Has a surface shown as film would: what lamps light strongly keeps its shape and shades are deep, and shades between
+ * stay as they are. It is computed where surfaces are, so marks, lines, grids and backgrounds keep their exact colours.
  */
 export function filmic<T extends Material>(material: T): T {
   material.onBeforeCompile = (shader) => {

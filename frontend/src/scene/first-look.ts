@@ -7,7 +7,7 @@ import { around, overview } from "../state/views/surroundings";
 import type { ViewValues } from "../state/views/view-controller";
 import { TOUCHED } from "./layers";
 
-/** What a camera that nobody has put anywhere looks at: a world, and then the robots in it. */
+/** The target of a camera that no user has placed: a world, and then the robots in it. */
 const WORLD_SEEN = "world";
 const ROBOTS_SEEN = "robots";
 /** A camera of a world's file that sees nothing turns about a point this far ahead; no nearer one is taken. m. */
@@ -24,7 +24,7 @@ export interface LookedAt {
 }
 
 /**
- * Puts a camera that nobody has put anywhere where a world's file says; else before its robots, with what is around
+ * Puts a camera that no user has placed where a world's file says; else before its robots, with what is around
  * them; or, until there are some, where all of the world is seen, as when they have fallen out of it.
  */
 export function lookFirst(world: LookedAt, view: ViewState, size: ViewSize): void {
@@ -40,7 +40,7 @@ export function lookFirst(world: LookedAt, view: ViewState, size: ViewSize): voi
   else view.propose(all ? overview(view.values, all, size) : {}, WORLD_SEEN, world.hasRobots);
 }
 
-/** The values of an Orbit that looks as a camera of the world's file does, but for its roll. */
+/** The values of an Orbit that looks as a camera of the world's file does, except its roll. */
 function throughCamera(world: LookedAt, camera: Matrix4): ViewValues {
   const eye = new Vector3().setFromMatrixPosition(camera);
   const direction = new Vector3(1, 0, 0).transformDirection(camera);
@@ -49,7 +49,7 @@ function throughCamera(world: LookedAt, camera: Matrix4): ViewValues {
   return aroundFrom(focal.toArray(), eye.toArray());
 }
 
-/** Whether nothing but robots stands between an eye and a place. */
+/** Whether nothing except robots is between a camera and a place. */
 function sees(world: LookedAt, eye: Vector, place: Vector): boolean {
   const from = new Vector3(...eye);
   const direction = new Vector3(...place).sub(from);

@@ -6,18 +6,18 @@ const TOLERANCE_MS = 4;
 const IDLE_AFTER_MS = 600;
 /** A frame that comes this long after it was due was held up by the ones before it: most of a tick of the screen. */
 const LATE_MS = 12;
-/** So many more late frames than timely ones make moving pictures coarser. */
+/** So many more late frames than timely ones make moving images coarser. */
 const LATE_FRAMES = 4;
-/** So many frames at the beginning tell nothing of the pace: they wait for programs that are compiled. */
+/** So many frames at the beginning do not show the pace: they wait for programs that are compiled. */
 const FIRST_FRAMES = 6;
 /** So many timely frames without a late one let them be finer again; twice as many the next time. */
 const TIMELY_FRAMES = 300;
 /** After a coarse frame, how long nothing must move until a fine one is drawn. */
 const STILL_AFTER_MS = 250;
 
-/** The detail of a frame: with antialiasing or without, and the share of the canvas's pixels along a side. */
+/** The detail of a frame: with or without antialiasing, and the share of the canvas's pixels along a side. */
 export interface Detail {
-  /** Of a moving picture that the machine is slow at: what nobody sees may be left out. */
+  /** Of a moving image that the machine draws slowly: details that no user sees may be left out. */
   readonly moving: boolean;
   readonly smooth: boolean;
   readonly share: number;
@@ -33,9 +33,9 @@ const DETAILS: readonly Detail[] = [
 
 /**
  * Draws on demand: nothing while nothing changes, never more often than the rate. Where the machine does not keep up,
- * as software renderers, moving frames are drawn more and more coarsely, and a fine one follows when the scene stands still.
+ * as software renderers, moving frames are drawn more and more coarsely, and a fine one follows when the scene is still.
  *
- * What is shown beside the scene at a rate of its own, as pictures of cameras, changes with the frames: browsers put
+ * Content beside the scene with a rate of its own, as images of cameras, changes with the frames: browsers put
  * the whole page together for each change, which without a GPU costs as much as the scene does.
  */
 export class FrameLoop {
@@ -53,7 +53,7 @@ export class FrameLoop {
   private lateness = 0;
   private timely = 0;
   private patience = TIMELY_FRAMES;
-  /** In `DETAILS`, of moving pictures. */
+  /** In `DETAILS`, of moving images. */
   private level = 0;
   private lastIsFine = false;
   private stillTimer = 0;
@@ -75,7 +75,7 @@ export class FrameLoop {
     return this.requestedAt === null && this.besides.size === 0 && this.lastIsFine;
   }
 
-  /** Draws moving pictures coarsely from the first one on, as the renderer is known to be slow. */
+  /** Draws moving images coarsely from the first one on, as the renderer is known to be slow. */
   expectSlow(): void {
     this.level = Math.max(this.level, 1);
   }

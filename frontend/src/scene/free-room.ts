@@ -14,9 +14,9 @@ interface Seen {
   below: number;
 }
 
-/** The part of the canvas that nothing lies over, and robots that go there. */
+/** The part of the canvas that nothing covers, and robots that go there. */
 export class FreeRoom {
-  /** How many pixels at the right of the canvas something lies over. */
+  /** How many pixels at the right of the canvas something covers. */
   covered: () => number = () => 0;
   private above = 0;
 
@@ -53,7 +53,7 @@ export class FreeRoom {
     if (viewport.aside !== before) this.invalidate();
   }
 
-  /** Robots whose heads something lies over, so many pixels high, go down as far as their feet stay on the canvas. */
+  /** Robots whose heads something covers, so many pixels high, go down as far as their feet stay on the canvas. */
   makeRoomAbove(height: number): void {
     const { viewport } = this;
     const before = viewport.below;

@@ -130,7 +130,7 @@ export function slideTowards(ray: Ray, axis: Vector3, grabbed: Vector3): number 
 /**
  * By which angle a point must turn about an axis to come closest to a ray, rad.
  *
- * It is looked for around the angle before, so that the point goes on over whole turns, and stays on its side of the
+ * It is looked for around the angle before, so that the point continues over whole turns, and stays on its side of the
  * circle when the circle is seen from its edge, where both sides are equally close.
  */
 export function turnTowards(ray: Ray, axis: Vector3, origin: Vector3, grabbed: Vector3, before: number): number {

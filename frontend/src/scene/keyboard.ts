@@ -57,7 +57,7 @@ export class Keyboard {
     return true;
   }
 
-  /** Looks at what is under the pointer; where nothing is, at all of what is selected, or of what there is. */
+  /** Looks at the object under the pointer; where nothing is, at the whole selection, or at all objects. */
   private focus(): void {
     const { place } = this.controls;
     const point = place && this.stage.picker.pointAt(place.x, place.y);

@@ -4,7 +4,7 @@ export const AMBIENT = 0.2;
 /** The source of light: RViz's at the camera, a soft one there, a studio, or the lights of a world. */
 export type Lighting = "Camera" | "Soft" | "Studio" | "World";
 
-/** Whether lamps that stand in the scene shine on surfaces. */
+/** Whether lamps in the scene shine on surfaces. */
 export function standsInScene(lighting: Lighting): boolean {
   return lighting === "Studio" || lighting === "World";
 }

@@ -89,7 +89,7 @@ export class MaterialPool {
   private readonly materials = new Map<string, MeshLambertMaterial | MeshStandardMaterial>();
   private readonly used = new Set<string>();
 
-  /** Whether lights that stand in the scene shine on the surfaces, so that each is to be drawn by itself. */
+  /** Whether lights in the scene shine on the surfaces, so that each is to be drawn by itself. */
   get isLit(): boolean {
     return standsInScene(this.lighting);
   }
@@ -143,7 +143,7 @@ function reflecting(style: MeshStandardMaterialParameters, surface: Surface): Me
   const envMap = surface.metalness > 0 ? room() : null;
   const emissive = new Color(...surface.emissive);
   const material = new MeshStandardMaterial({ ...style, ...surface, emissive, envMap, envMapIntensity: surface.metalness });
-  material.envMapRotation.x = Math.PI / 2; // the picture has y up
+  material.envMapRotation.x = Math.PI / 2; // the image has y up
   return material;
 }
 

@@ -32,7 +32,7 @@ export class Picker {
     return undefined;
   }
 
-  /** The ray from the eye through a place. */
+  /** The ray from the camera through a place. */
   rayAt(x: number, y: number): Raycaster {
     this.viewport.aim(this.session.view);
     const ray = new Raycaster();
@@ -76,7 +76,7 @@ export class Picker {
     this.session.selection.pick(selected ? [{ display: found.display, key: found.hit.key }] : [], mode);
   }
 
-  /** Selects all that is seen in the rectangle between two places. */
+  /** Selects all visible things in the rectangle between two places. */
   selectBox(from: Vector2, to: Vector2, mode: SelectionMode): void {
     this.viewport.aim(this.session.view);
     const [a, b] = [this.onScreen(from.x, from.y), this.onScreen(to.x, to.y)];
@@ -98,7 +98,7 @@ export class Picker {
     return null;
   }
 
-  /** The middle of what is selected, or of all that can be selected when nothing is. */
+  /** The middle of the selection, or of all selectable things when nothing is selected. */
   middleOfSelection(): Vector | null {
     const span = this.boundsOfSelection() ?? this.boundsOfAll();
     return span && scale(add(span.min, span.max), 0.5);

@@ -2,7 +2,7 @@ import type { Object3D, Raycaster, Vector3 } from "three";
 
 /** A thing of a display that a ray met. */
 export interface Hit {
-  /** Names the thing within its display while it is there: a link, a marker's namespace and id, a point's number. */
+  /** Names the thing within its display while it exists: a link, a marker's namespace and id, a point's number. */
   key: string;
   /** From the ray's origin, m. */
   distance: number;
@@ -12,7 +12,7 @@ export interface Hit {
   isGround?: true;
 }
 
-/** A rectangle on the screen, and what is seen in it; what is behind something else is not. */
+/** A rectangle on the screen, and the things visible in it, without things behind others. */
 export interface SelectionBox {
   /** Whether a point of the fixed frame is seen in the rectangle. */
   hasPoint(x: number, y: number, z: number): boolean;
@@ -40,7 +40,7 @@ export interface ScenePointer {
   readonly button: "left" | "middle" | "right" | null;
   readonly shift: boolean;
   readonly ctrl: boolean;
-  /** From the eye through the pointer. */
+  /** From the camera through the pointer. */
   readonly ray: Raycaster;
   /** What of the drawing the ray meets; while something is held, what it met when it was taken. */
   readonly hit: Hit | null;

@@ -10,7 +10,7 @@ export interface LitRobot {
   /** A key of the parts that are seen. */
   readonly seen: string;
   readonly visibleMeshes: readonly Mesh[];
-  /** The height of the ground that it stands on, in the fixed frame, m. */
+  /** The height of the ground under it, in the fixed frame, m. */
   ground(): number;
   roughBounds(): Box3;
 }
@@ -20,7 +20,7 @@ export class RobotLight {
   readonly root = new Group();
   private readonly studio = new StudioLight();
   private readonly shadow = new ContactShadow();
-  /** What stands on the ground, and how high that is, m. */
+  /** The robots on the ground, and the height of the ground, m. */
   private standing = { what: "", height: 0 };
 
   constructor() {
@@ -31,7 +31,7 @@ export class RobotLight {
    * Places light and shadows around robots.
    *
    * @param backdrop the colour behind a studio.
-   * @returns the light that stands in the scene, if any.
+   * @returns the light in the scene, if any.
    */
   shine(lighting: Lighting, robots: readonly LitRobot[], backdrop: string): OwnLight | null {
     this.studio.root.visible = lighting === "Studio";

@@ -10,7 +10,7 @@ export interface ScreenReach {
   readonly bottom: number;
 }
 
-/** The extent of a box on a canvas; without bounds where a part of it is behind the eye. */
+/** The extent of a box on a canvas; without bounds where a part of it is behind the camera. */
 export function reachOf({ min, max }: Span, camera: Camera, { width, height }: ViewSize): ScreenReach {
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => {
     return new Vector3(...([0, 1, 2] as const).map((axis) => ((corner >> axis) & 1 ? max : min)[axis])).applyMatrix4(camera.matrixWorldInverse);

@@ -60,7 +60,7 @@ export class Stage {
   private loading = "";
   /** When the robot was drawn with all meshes, though nothing of it has a place. */
   private placelessSince: number | null = null;
-  /** What nothing lies over. */
+  /** The part of the canvas that nothing covers. */
   readonly room: FreeRoom;
 
   constructor(
@@ -132,13 +132,13 @@ export class Stage {
     return [...this.enabled()].some(([, drawing]) => "pointer" in drawing);
   }
 
-  /** Looks at the middle of what is selected, or of all robots when nothing is. */
+  /** Looks at the middle of the selection, or of all robots when nothing is selected. */
   focusSelected(): void {
     const middle = this.picker.middleOfSelection();
     if (middle) this.session.view.lookAt(middle);
   }
 
-  /** Looks at all of what is selected, or of what is drawn when nothing is, from the side that the camera is at. */
+  /** Looks at the whole selection, or at all drawn objects when nothing is selected, from the side that the camera is at. */
   fit(): void {
     const box = this.picker.boundsOfSelection() ?? this.boundsOfAll();
     if (box) this.session.view.fit(box, this.room.take());
@@ -299,7 +299,7 @@ export class Stage {
     return light === "Studio" || this.viewport.affordsStudio ? "Studio" : "Soft";
   }
 
-  /** Puts the camera that nobody has put anywhere before the robot, as far as that is there, or into a world that is all there. */
+  /** Puts the camera that no user has placed before the robot, as far as the robot is complete, or into a complete world. */
   private lookFirst(settled: boolean): void {
     const { view } = this.session;
     const [robots, [world]] = [this.robots(), this.worlds()];

@@ -26,7 +26,7 @@ const SHADOW_PIXELS = 2048;
 const [SHADOW_EDGE, ROBOT_SHADOW_EDGE] = [3, 8];
 /** How dark a shadow on the ground is. */
 const SHADOW = 0.35;
-/** How wide the ground is that shadows fall on, in sizes of what stands on it. */
+/** The width of the ground that shadows fall on, in sizes of the objects on it. */
 const GROUND_WIDTH = 6;
 
 /** The light that comes from all sides, more from above. */
@@ -79,7 +79,7 @@ export class StudioLight {
     this.root.visible = false;
   }
 
-  /** Shines on what is in a box, in the fixed frame, that stands on a ground at this height, m. */
+  /** Shines on the objects in a box, in the fixed frame, on a ground at this height, m. */
   shineOn(box: Box3, height: number): void {
     this.ground.visible = !box.isEmpty();
     if (box.isEmpty()) return;

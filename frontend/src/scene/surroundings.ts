@@ -16,7 +16,7 @@ export interface OwnLight extends Surroundings {
   readonly shadows: boolean;
 }
 
-/** Whether a world says what is behind it. */
+/** Whether a world specifies its background. */
 export function hasOwnBackground(light: OwnLight | null): boolean {
   return light !== null && (light.background !== null || light.daylight !== null);
 }
@@ -32,14 +32,14 @@ const HORIZON = 0.18;
 const DAY: Sky = [[0.42, 0.44, 0.45], [0.8, 0.86, 0.92], [0.31, 0.52, 0.82]];
 const NIGHT: Sky = [[0.05, 0.05, 0.06], [0.1, 0.11, 0.17], [0.02, 0.03, 0.08]];
 
-/** Gives a scene its surroundings; what stays the same is made once. */
+/** Gives a scene its surroundings; makes the parts that stay the same once. */
 export class SkyAndFog {
   private sky: DataTexture | null = null;
   private made: number | string | null = null;
   private fogged = "";
 
   constructor(private readonly scene: Scene) {
-    // The picture of a sky has y up.
+    // The image of a sky has y up.
     scene.backgroundRotation.x = Math.PI / 2;
   }
 

@@ -1,15 +1,15 @@
 import { Signal } from "../signal";
 
 const FRAME_RATE = 30;
-/** So often a scene that stands still is drawn, or there would be nothing to record: browsers take a canvas when it is painted. */
+/** So often a still scene is drawn, or there would be nothing to record: browsers take a canvas when it is painted. */
 const STILL_PERIOD_MS = 100;
 const BITS_PER_SECOND = 8_000_000;
 /** The first that the browser can record. */
 const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
 
-/** Records what a canvas shows; `redraw` has it painted anew. */
+/** Records what a canvas shows; `redraw` has it painted again. */
 export class VideoRecorder {
-  /** It began, went on for another second, or ended. */
+  /** It began, continued for another second, or ended. */
   readonly changed = new Signal();
   private recorder: MediaRecorder | null = null;
   private beganAt = 0;

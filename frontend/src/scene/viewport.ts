@@ -21,14 +21,14 @@ import { SkyAndFog, type OwnLight } from "./surroundings";
 
 const LARGEST_PIXEL_RATIO = 2;
 const FAR_CLIP = 1000;
-/** From farther away than so many near clip distances, that is moved off: depths are told apart less and less. */
+/** From farther away than so many near clip distances, that is moved off: depths are distinguished less and less. */
 const DEEPEST = 2000;
-/** The share of the camera's light beside lights that stand in the scene. */
+/** The share of the camera's light beside lights in the scene. */
 const FAINT = 0.15;
 const NOTHING = { background: null, daylight: null, fog: null };
 /** What programs call themselves that draw on the processor. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
-/** Longest side of a picture, pixels. */
+/** Longest side of an image, pixels. */
 const LARGEST_PICTURE = 8192;
 
 // RViz writes colours to the screen as they are in the URDF; a surface facing the camera shows exactly its colour.
@@ -94,7 +94,7 @@ export class Viewport {
     return SOFTWARE.test(this.drawnBy) ? (/SwiftShader|llvmpipe|softpipe|Basic Render/i.exec(this.drawnBy)?.[0] ?? this.drawnBy) : null;
   }
 
-  /** Lights the scene: by the camera (null), or by lights that stand in it, which leave the camera a faint one. */
+  /** Lights the scene: by the camera (null), or by lights in it, which leave the camera a faint light. */
   light(own: OwnLight | null): void {
     const { renderer } = this;
     this.headlight.intensity = (own ? FAINT : 1 - AMBIENT) * Math.PI;
@@ -122,7 +122,7 @@ export class Viewport {
     this.headlight.position.set(...seen.back);
   }
 
-  /** The share of the screen's pixels along a side that is drawn; the picture is as large as before. */
+  /** The share of the screen's pixels along a side that is drawn; the image is as large as before. */
   set share(share: number) {
     if (share === this.part) return;
     this.part = share;
@@ -134,7 +134,7 @@ export class Viewport {
     return { width: Math.max(1, this.canvas.clientWidth), height: Math.max(1, this.canvas.clientHeight) };
   }
 
-  /** The camera of the next frame, and the height of the picture in its own pixels. */
+  /** The camera of the next frame, and the height of the image in its own pixels. */
   get drawn(): { camera: PerspectiveCamera | OrthographicCamera; height: number } {
     return { camera: this.inUse, height: this.canvas.height };
   }
@@ -155,7 +155,7 @@ export class Viewport {
     renderer.setPixelRatio(Math.min(scale, largest));
     renderer.setSize(width, height, false);
     this.render(true);
-    // What was drawn is there until the browser goes on.
+    // The drawn frame exists until the browser continues.
     const picture = new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
     this.fit();
     return picture;

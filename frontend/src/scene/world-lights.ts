@@ -16,16 +16,16 @@ import type { PropertyRows } from "../state/properties";
 import { standsInScene, type Lighting } from "./light";
 import { aimSun, castShadows, FULL, shade, STUDIO_DIRECTION, STUDIO_KEY, studioSky } from "./studio-light";
 
-/** Shadows are drawn this far around the middle of what is drawn at most, m. */
+/** Shadows are drawn this far around the middle of the drawn objects at most, m. */
 const LARGEST_RADIUS = 25;
 /** Metres between a lamp and what it lights, as a rule. */
 const SEEN_FROM = 3;
-/** So many lights have shadows; each is another picture of the scene. */
+/** So many lights have shadows; each is another image of the scene. */
 const MOST_SHADOWS = 2;
 /** So many lights of a world are lit: each costs every pixel. */
 const MOST_LIGHTS = 8;
 
-/** The lights of one world, where they stand in the fixed frame. */
+/** The lights of one world, at their places in the fixed frame. */
 export class WorldLights {
   readonly root = new Group();
   private placed: { light: Light; said: LightScene }[] = [];
@@ -146,7 +146,7 @@ export class WorldLights {
     this.placed.push({ light, said });
   }
 
-  /** A sun shines from just outside of what is drawn, so that its shadows are as fine as they can be. */
+  /** A sun shines from just outside of the drawn objects, so that its shadows are as fine as they can be. */
   private aim(light: DirectionalLight, direction: Vector3, drawn: () => Box3): void {
     const box = light.castShadow ? drawn() : new Box3();
     if (box.isEmpty()) {

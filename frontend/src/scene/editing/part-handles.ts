@@ -20,7 +20,7 @@ const LEAST_ROOM = 40;
 const AXIS_COLOR = 0xff9d3c;
 const ONE = new Vector3(1, 1, 1);
 
-/** Handles on the part that is edited, and the robot as it would be: in the page alone, until the files say so. */
+/** Handles on the part that is edited, and the robot as it would be: in the page alone, until the files contain the change. */
 export class PartHandles {
   private readonly gizmo: Gizmo;
   private readonly axis = new Line(new BufferGeometry(), new LineBasicMaterial({ color: AXIS_COLOR, depthTest: false }));
@@ -28,7 +28,7 @@ export class PartHandles {
   /** While a handle is held: where the handles were, and the part. */
   private start: { handles: Matrix4; draft: Draft } | null = null;
   private previewed: string | null = null;
-  /** The part that was looked for: whoever turns the camera away from it then wants to. */
+  /** The part that the camera has looked for: a user who turns the camera away from it afterwards does so on purpose. */
   private sought = "";
 
   constructor(

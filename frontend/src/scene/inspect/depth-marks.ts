@@ -13,7 +13,7 @@ const SHRINKING = 0.88;
 const SMALLEST = 0.3;
 /** With more frames than these only levels are written, not names. */
 const MOST_NAMES = 60;
-/** Hues go on by the golden ratio, so that neighbouring levels differ. */
+/** Hues advance by the golden ratio, so that neighbouring levels differ. */
 const HUE_STEP = 0.618;
 
 /** The frames of links with a ball in the colour of their level in the tree; deeper ones are smaller. */

@@ -30,7 +30,7 @@ const scale = new Vector3();
 /**
  * Writes the frame of a joint at its zero position into `matrix`, in the fixed frame.
  *
- * @returns where the joint stands, rad or m, as the transforms say it; null where they do not.
+ * @returns the position of the joint, rad or m, from the transforms; null where they do not contain it.
  */
 export function jointPose(robot: InspectedRobot, joint: JointDetails, matrix: Matrix4): number | null {
   if (!linkPose(robot, joint.parent, matrix)) return null;
@@ -43,7 +43,7 @@ export function jointPose(robot: InspectedRobot, joint: JointDetails, matrix: Ma
   if (joint.kind === "prismatic") return at.x * ax + at.y * ay + at.z * az;
   const angle = 2 * Math.atan2(turn.x * ax + turn.y * ay + turn.z * az, turn.w);
   const known = robot.positions[joint.name];
-  // Transforms tell angles but for whole turns.
+  // Transforms give angles without whole turns.
   if (known !== undefined) return known;
   return Math.atan2(Math.sin(angle), Math.cos(angle));
 }

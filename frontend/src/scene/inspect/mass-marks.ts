@@ -26,7 +26,7 @@ export interface MassMarkChoice {
   ellipsoids: boolean;
 }
 
-/** Centres of mass as balls in black and white, inertias as boxes and ellipsoids; what is implausible is red. */
+/** Centres of mass as balls in black and white, inertias as boxes and ellipsoids; implausible ones are red. */
 export class MassMarks {
   private readonly balls: CopyBatch;
   private readonly boxes: CopyBatch;

@@ -9,7 +9,7 @@ export interface MarkerPose {
 
 /** The movement of the mouse; everything in the marker's reference frame. */
 export interface DragEvent {
-  /** From the eye through the pointer. */
+  /** From the camera through the pointer. */
   ray: Ray;
   /** Pixels since the last event. */
   dx: number;
@@ -23,7 +23,7 @@ export interface DragEvent {
 }
 
 const PIXELS_PER_TURN = 300;
-/** Metres along the line of sight for each pixel, for each metre between the eye and the marker. */
+/** Metres along the line of sight for each pixel, for each metre between the camera and the marker. */
 const DEPTH_PER_PIXEL = 0.002;
 /** A plane that is seen this close to its edge cannot be pointed at. */
 const SHALLOWEST = 0.05;
@@ -141,7 +141,7 @@ export class Drag {
     return true;
   }
 
-  /** The point of the axis through `origin` that is nearest to what was grabbed. */
+  /** The point of the axis through `origin` that is nearest to the grabbed point. */
   private foot(origin: Vector3): Vector3 {
     const along = this.grabbed.clone().sub(origin).dot(this.axis);
     return origin.clone().addScaledVector(this.axis, along);

@@ -75,7 +75,7 @@ export class MarkerHandle {
     return [...position.toArray(), ...orientation.toArray()];
   }
 
-  /** The server moves it; what is held is the user's. */
+  /** The server moves it; while the user holds it, its pose is the user's. */
   move(data: DisplayData, pose: readonly number[]): void {
     this.data = data;
     if (!this.drag) this.setPose(pose);

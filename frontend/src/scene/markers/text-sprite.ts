@@ -3,7 +3,7 @@ import { CanvasTexture, LinearFilter, NoColorSpace, Sprite, SpriteMaterial } fro
 const FONT_PX = 48;
 const LINE_PX = 58;
 const PADDING_PX = 6;
-/** Around letters, so that they are read on any ground: of the colour that stands off from theirs. */
+/** Around letters, so that they are read on any ground: of the colour that contrasts with theirs. */
 const RIM_PX = 6;
 const RIMS = { dark: "rgba(12, 14, 18, 0.8)", light: "rgba(255, 255, 255, 0.85)" };
 const LIGHT = 0.4;

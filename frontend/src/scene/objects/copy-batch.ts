@@ -43,10 +43,10 @@ export interface CopyHit {
 /**
  * Many copies of one shape in one draw call, each with its own matrix, colour, grey and alpha.
  *
- * Use: `begin(most)`, then `add` for each copy, then `end`; what was there before is gone. The shape must have an index,
+ * Use: `begin(most)`, then `add` for each copy, then `end`; this removes the earlier copies. The shape must have an index,
  * normals and colours (`paint` of geometries.ts), which each copy's colour is multiplied with.
  *
- * The copies' vertices stand in one buffer and each finds its matrix in a texture. GPU instancing would be shorter, but
+ * The copies' vertices are in one buffer and each finds its matrix in a texture. GPU instancing would be shorter, but
  * software renderers take some 50 microseconds for every instance: 500 frames would draw at 6 frames a second. For them, too,
  * copies that a camera does not see are left out: their vertices cost as much as others'.
  */
@@ -59,7 +59,7 @@ export class CopyBatch {
   private seeThrough = false;
   /** What the slots of all copies hold. */
   private all = new Float32Array(0);
-  /** Which copies stand in the slots; null for all, in their order. */
+  /** Which copies are in the slots; null for all, in their order. */
   private arranged: readonly number[] | null = null;
   private isUploaded = false;
 

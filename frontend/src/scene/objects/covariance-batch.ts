@@ -17,7 +17,7 @@ export interface CovarianceStyle {
   } | null;
 }
 
-/** Thickness of what is flat. */
+/** Thickness of flat shapes. */
 const FLAT = 0.001;
 /** Angles as large as this and larger look alike. */
 const MOST_RADIANS = (89 * Math.PI) / 180;
@@ -25,8 +25,8 @@ const SEGMENTS = 24;
 
 /**
  * How uncertain poses are, in three draw calls: an ellipsoid for the position and, for the orientation, a disc on each
- * axis that says how far the axis may tilt. A pose in a plane (no deviation in z, roll and pitch) has an ellipse and a
- * triangle that says how far it may turn. All of it as RViz's CovarianceVisual.
+ * axis that shows the possible tilt of the axis. A pose in a plane (no deviation in z, roll and pitch) has an ellipse and a
+ * triangle that shows its possible turn. All of it as RViz's CovarianceVisual.
  */
 export class CovarianceBatch {
   private readonly balls: CopyBatch;
@@ -133,7 +133,7 @@ const DISCS = [
 
 type Matrix3Rows = Parameters<typeof principalAxes>[0];
 
-/** Standard deviations along their axes; null for what is no covariance, which RViz does not draw either. */
+/** Standard deviations along their axes; null for rows that are not a covariance; RViz does not draw them either. */
 function spread(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 } | null {
   const { values, axes } = principalAxes(rows);
   const most = Math.max(...values.map(Math.abs));

@@ -95,7 +95,7 @@ export class PointBatch {
 
 const area = new Vector4();
 
-/** The shader counts in pixels of what is drawn to: the canvas, or the picture of a camera. */
+/** The shader counts in pixels of the render target: the canvas, or the image of a camera. */
 function setViewport(renderer: WebGLRenderer, material: ShaderMaterial): void {
   renderer.getCurrentViewport(area);
   const uniform = material.uniforms["viewport"];

@@ -6,7 +6,7 @@ export type PointStyle = "Points" | "Squares" | "Flat Squares" | "Spheres" | "Bo
 /** The look of points. */
 export interface PointLook {
   style: PointStyle;
-  /** Sides along x, y and z of the points' frame, m; what faces the camera has the first two. */
+  /** Sides along x, y and z of the points' frame, m; a style that faces the camera has the first two. */
   size: readonly [number, number, number];
   /** Size of the style Points, pixels. */
   pixels: number;

@@ -1,12 +1,12 @@
 import { Mesh, OrthographicCamera, PlaneGeometry, Scene, type ShaderMaterial, type WebGLRenderer } from "three";
 
-/** Vertex shader of materials that cover the whole picture; gives `vUv`. */
+/** Vertex shader of materials that cover the whole image; gives `vUv`. */
 export const SCREEN_VERTEX = /* glsl */ `
   varying vec2 vUv;
   void main() { vUv = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }
 `;
 
-/** Draws a material over the whole picture. */
+/** Draws a material over the whole image. */
 export class ScreenQuad {
   private readonly scene = new Scene();
   private readonly camera = new OrthographicCamera();
@@ -19,7 +19,7 @@ export class ScreenQuad {
     this.scene.add(this.quad);
   }
 
-  /** Over what is there already. */
+  /** Draws over the existing image. */
   render(renderer: WebGLRenderer): void {
     renderer.autoClear = false;
     renderer.render(this.scene, this.camera);

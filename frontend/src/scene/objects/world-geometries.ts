@@ -2,7 +2,7 @@ import { Box3, ExtrudeGeometry, Path, PlaneGeometry, Shape as Outline, ShapeUtil
 import type { Submesh } from "../../protocol";
 import type { MeshPart } from "../meshes/mesh-template";
 
-/** The polygons x y x y ..., raised along z; those that lie in others are holes, and what lies in holes is solid again. */
+/** The polygons x y x y ..., raised along z; polygons in others are holes, and polygons in holes are solid again. */
 export function extrusion(outlines: readonly (readonly number[])[], height: number): BufferGeometry {
   const polygons = outlines.map((numbers) => {
     return Array.from({ length: Math.floor(numbers.length / 2) }, (_, i) => new Vector2(numbers[2 * i], numbers[2 * i + 1]));

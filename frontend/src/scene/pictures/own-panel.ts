@@ -4,7 +4,7 @@ import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import type { DrawingContext } from "../displays/drawing";
 
-/** Displays that show nothing in the scene of what there is. */
+/** Displays that show no data in the scene. */
 const NOTHING_TO_SEE = new Set(["rviz_default_plugins/Grid", "rviz_default_plugins/Image"]);
 
 /** The panel of an Image or Camera display: there as long as the display is enabled, as in RViz. */
@@ -25,7 +25,7 @@ export class OwnPanel {
     this.element = h("div", { class: "picture-panel" }, canvas, this.notice);
   }
 
-  /** Text over the picture, or in its place, and what it comes from, where that is known; empty for none. */
+  /** Text over the image, or in its place, and what it comes from, where that is known; empty for none. */
   say(text: string, cause = ""): void {
     this.notice.replaceChildren(text, ...(cause === "" ? [] : [h("small", {}, cause)]));
     this.notice.hidden = text === "";
@@ -59,7 +59,7 @@ export class OwnPanel {
   }
 }
 
-/** Whether a recording is shown of which nothing but pictures is switched on. */
+/** Whether the page shows a recording with only its images switched on. */
 function showsPicturesAlone({ timeline, displays }: Session): boolean {
   const nothing = (display: DisplayState): boolean => !display.enabled || display.isGroup || NOTHING_TO_SEE.has(display.drawing);
   return timeline.timeline?.live === false && displays.displays.every(nothing);

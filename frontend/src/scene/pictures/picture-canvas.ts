@@ -41,7 +41,7 @@ export class PictureCanvas {
     return this.canvas.width === 0;
   }
 
-  /** Takes an image; `done` is told when it is on the canvas, or with false when it cannot be read. */
+  /** Takes an image; calls `done` when it is on the canvas, or with false when it cannot be read. */
   take(frame: ImageFrame, done: (shown: boolean) => void): void {
     const turn = ++this.taken;
     if (frame.encoding !== "file") {

@@ -1,12 +1,12 @@
 import { Box3, Vector3 } from "three";
 import type { RobotScene } from "../../protocol";
 
-/** What is nearer to the plane than this part of the robot's size stands on it. */
+/** A part nearer to the plane than this share of the robot's size is on it. */
 const STANDS = 0.01;
 
 /**
  * The height of a robot's ground in the fixed frame, m: its lowest point where that is below z = 0, as with wheels below
- * the frame that they turn about. A robot whose base stands on z = 0 stays there whatever reaches below it, as an arm
+ * the frame that they turn about. A robot whose base is on z = 0 stays there whatever reaches below it, as an arm
  * may that is mounted on a table.
  *
  * @param robot its base are the links that no joint moves.

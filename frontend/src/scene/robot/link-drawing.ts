@@ -26,7 +26,7 @@ export interface LinkStyle {
 export interface Displacement {
   /** Changes where a link is in the fixed frame. */
   readonly link?: (name: string, matrix: Matrix4) => void;
-  /** A shape of a link: of those that stand at `from` in it the one after so many others. */
+  /** A shape of a link: of the shapes at `from` in it, the one after so many others. */
   readonly shape?: { readonly link: string; readonly kind: "visual" | "collision"; readonly among: number; readonly from: Matrix4; readonly to: Matrix4 };
 }
 
@@ -86,7 +86,7 @@ export class LinkDrawing {
     return this.posed ? this.root.matrix : null;
   }
 
-  /** The meshes of what can be seen now. */
+  /** The meshes of the parts that are visible now. */
   get visibleMeshes(): Mesh[] {
     return this.shown.flatMap((each) => each.meshes);
   }

@@ -15,10 +15,10 @@ import { TOUCHED } from "../layers";
 import type { StandIn } from "../meshes/stand-in";
 import { litSlotMaterial, slotTexture, writeSlot } from "../objects/slot-material";
 
-/** How large a difference is that nobody sees in a picture that moves, in its pixels. */
+/** The size of a difference that no user sees in a moving image, in its pixels. */
 const UNSEEN = 1;
 
-/** The picture that stand-ins are drawn for. */
+/** The moving image for which stand-ins are drawn. */
 export interface MovingPicture {
   readonly camera: Camera;
   /** Its own pixels, which may be larger than those of the screen. */

@@ -87,7 +87,7 @@ export class RobotDrawing {
     return box;
   }
 
-  /** A box that has all that is seen in it, and maybe more; it takes no look at single points. */
+  /** A box around all visible parts, maybe larger than they are; it does not check single points. */
   roughBounds(): Box3 {
     const box = new Box3();
     this.root.updateWorldMatrix(true, true);
@@ -95,12 +95,12 @@ export class RobotDrawing {
     return box;
   }
 
-  /** The meshes of what is seen. */
+  /** The meshes of the visible parts. */
   get visibleMeshes(): Mesh[] {
     return [...this.links.values()].flatMap((link) => link.visibleMeshes);
   }
 
-  /** The height of the ground that it stands on, in the fixed frame, m. */
+  /** The height of the ground under it, in the fixed frame, m. */
   ground(): number {
     return groundOf(this.scene, this.boundsOfLinks());
   }
@@ -149,7 +149,7 @@ export class RobotDrawing {
     this.solids.look(camera);
   }
 
-  /** Draws meshes for a picture of a robot that moves by fewer triangles, as far as nobody sees it; null: as they are. */
+  /** Draws meshes for an image of a moving robot by fewer triangles, as far as no user sees it; null: as they are. */
   move(picture: MovingPicture | null): void {
     this.moving.end();
     const { standIns } = this.meshes;
@@ -193,7 +193,7 @@ export class RobotDrawing {
     return pose ? new Vector3().setFromMatrixPosition(pose) : null;
   }
 
-  /** What is drawn, for tests: the shapes of each link, and what stands beside them. */
+  /** What is drawn, for tests: the shapes of each link, and the other drawings beside them. */
   tell(): object {
     const links = [...this.links.values()].map((link) => [link.link.name, link.tell()] as const);
     const { size: drawnTogether, smallSpheres } = this.solids;

@@ -55,7 +55,7 @@ export class ShapeDrawing {
   private texture: Texture | null = null;
   private surface: Surface | null = null;
   private library: MeshLibrary | null = null;
-  /** The addresses of what it has of the library's textures. */
+  /** The addresses of the library's textures that it has. */
   private readonly worn: string[] = [];
   /** Its own, which it must free. */
   private made: BufferGeometry | null = null;
@@ -140,9 +140,9 @@ export class ShapeDrawing {
   }
 
   /**
-   * Adds the meshes that stand-ins look like, and the pieces of these.
+   * Adds the meshes whose shapes stand-ins have, and the pieces of these.
    *
-   * @returns whether all stand-ins that there will be are there.
+   * @returns whether all expected stand-ins are complete.
    */
   addPieces(standIns: StandIns, meshes: Mesh[], pieces: ShapePiece[]): boolean {
     let complete = true;

@@ -6,7 +6,7 @@ const GEOMETRIES = { box: unitBox, cylinder: unitCylinder, cone: unitCone, spher
 
 const place = new Vector3();
 
-/** A kind of shape of which all are drawn in one call. */
+/** A kind of shape; one call draws all shapes of a kind. */
 export type SolidKind = keyof typeof GEOMETRIES;
 
 /** The batch for shapes of a kind; null for those that are drawn singly. */
@@ -15,7 +15,7 @@ export function solidKind(kind: string): SolidKind | null {
   return kind in GEOMETRIES ? (kind as SolidKind) : null;
 }
 
-/** A sphere of this share of the height of the picture, or less, looks as round with few corners. */
+/** A sphere of this share of the height of the image, or less, looks as round with few corners. */
 const SMALL = 0.06;
 
 /** A sphere that is drawn: its size is that of a unit sphere under the matrix. */
@@ -107,7 +107,7 @@ export class Solids {
   }
 }
 
-/** The radius of a sphere in a picture, as a share of its height: infinite for one that the camera is beside or within. */
+/** The radius of a sphere in an image, as a share of its height: infinite for one that the camera is beside or within. */
 function shareOf(matrix: Matrix4, camera: Camera): number {
   const radius = matrix.getMaxScaleOnAxis();
   const { elements } = camera.projectionMatrix;

@@ -12,7 +12,7 @@ const [STEP_A, STEP_B] = [0.7548776662, 0.5698402909];
 export interface SurfaceSamples {
   /** x y z of each, m. */
   readonly points: Float32Array;
-  /** The area that each stands for, m^2. */
+  /** The area that each represents, m^2. */
   readonly area: number;
 }
 
@@ -25,7 +25,7 @@ export function samplesOf(geometry: BufferGeometry): SurfaceSamples {
   return samples;
 }
 
-/** Some points of what a mesh shows, which has its place, in the fixed frame. */
+/** Some points on the surface of a mesh that has its place, in the fixed frame. */
 export function pointsOn({ geometry, matrixWorld }: Mesh): Vector[] {
   const { points } = samplesOf(geometry);
   const found: Vector[] = [];

@@ -57,7 +57,7 @@ export class InteractTool implements SceneTool {
     this.refocus(event);
   }
 
-  /** Looks what is under the pointer now; drawings hear when it comes to them and goes. */
+  /** Finds the drawing under the pointer now; notifies drawings when the pointer enters and leaves them. */
   private refocus(event: ToolEvent): void {
     const { stage } = this.context;
     const found = event.type !== "leave" && stage.isInteractive ? stage.picker.at(event.x, event.y) : null;

@@ -10,7 +10,7 @@ const DARK_YELLOW = "#808000";
 /** The height of a line of the label, pixels of the page. */
 const LABEL_PX = 20;
 
-/** RViz's Measure: the distance between two points that are clicked, told at the middle of the line, too; a right click begins anew. */
+/** RViz's Measure: the distance between two points that are clicked, shown at the middle of the line, too; a right click starts again. */
 export class MeasureTool implements SceneTool {
   private readonly line = new ThinLines();
   private readonly label = new LabelBatch();

@@ -30,10 +30,10 @@ export interface ToolEvent {
 export interface ToolContext {
   readonly stage: Stage;
   readonly session: Session;
-  /** Its settings; null of the tool that is there before the server told of any. */
+  /** Its settings; null for the tool that exists before the server has sent any. */
   readonly state: ToolState | null;
   setHint(text: string): void;
-  /** Shows over the scene why it did not do what was asked; an empty text clears that. */
+  /** Shows over the scene why it did not do the requested action; an empty text clears that. */
   tell(text: string): void;
   /** A CSS cursor. */
   setCursor(cursor: string): void;

@@ -53,7 +53,7 @@ export class Toolbox {
     return tool;
   }
 
-  /** Lets go of tools that were removed or told anew. */
+  /** Releases tools that the server has removed or sent again. */
   private tidy(): void {
     const { tools } = this.session.tools;
     for (const [id, { state, tool }] of this.made) {
