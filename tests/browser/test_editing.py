@@ -98,7 +98,7 @@ def test_handles_move_a_link_along_one_axis(start, open_page, file):
     page = open_page(start("view", str(file)))
     edited(page, "left")
     becomes(lambda: number(page, "xyz0").input_value(), "0.6")
-    page.get_by_role("button", name="Keep to a grid").click()
+    page.get_by_role("button", name="Snap to a grid").click()
     canvas = page.locator("canvas").first.bounding_box()
     until(page, "lw.panels.editing.handles !== undefined")
     found = state(page, "panels.editing.handles.z")
