@@ -41,10 +41,10 @@ interface Inspection {
     camera: Camera;
     saved: string[];
   };
-  /** The tool in hand; `state` is what it tells of itself. */
+  /** The tool in hand; `state` is its own report. */
   readonly tool: { class: string | null; hint: string; cursor: string; state: object | null };
   readonly tools: string[];
-  /** All that is selected. */
+  /** All selected things. */
   readonly selection: SelectedItem[];
   /** The recording or the last minutes that are shown: times in s since their start; bytes that are kept. */
   readonly timeline: { name: string; position: number; length: number; playing: boolean; problem: string; live: boolean; kept: number } | null;

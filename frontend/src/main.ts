@@ -86,7 +86,7 @@ function start(app: HTMLElement): void {
   const door = new Door(connection, tokens, app);
   // Before anything is drawn: the answer takes a moment.
   connection.open();
-  // Browsers slow down the clock of pages that nobody sees.
+  // Browsers slow down the clock of pages that no user sees.
   document.addEventListener("visibilitychange", () => {
     if (!document.hidden) connection.hurry();
   });

@@ -7,7 +7,7 @@ export interface Panel {
   readonly id: PanelId;
   readonly icon: IconName;
   readonly element: HTMLElement;
-  /** The user opened it; it may lie behind another. */
+  /** The user opened it; it may be behind another. */
   opened?(): void;
   /** The user closed it. */
   closed?(): void;

@@ -114,7 +114,7 @@ export class ComparisonPanel implements Panel {
     this.marks.box.checked = this.session.comparison.marks;
   }
 
-  /** Marks the group of what is selected. */
+  /** Marks the group of the selection. */
   private showFocus(): void {
     const { current } = this.session.focus;
     const key = current ? keyOf(current) : "";

@@ -164,7 +164,7 @@ export class DiagramPanel implements Panel {
   }
 
   private flash(links: readonly string[], joints: readonly string[]): void {
-    // The new picture comes with the answer to the question that the same change made.
+    // The new image comes with the answer to the question that the same change made.
     setTimeout(() => {
       const names = [...links.map((name) => `link ${name}`), ...joints.map((name) => `joint ${name}`)];
       for (const node of names.flatMap((name) => this.nodes.get(name) ?? [])) {

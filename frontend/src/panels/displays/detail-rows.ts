@@ -9,7 +9,7 @@ import type { DetailName } from "../../strings/en/details";
 import { formatNumber } from "../../tree/numbers";
 import type { TreeItem } from "../../tree/tree-item";
 
-/** What a position or quaternion is told to, m. */
+/** Positions and quaternions are rounded to this, m. */
 const FINEST = 1e-6;
 
 /**

@@ -116,7 +116,7 @@ function isOnlyContent(session: Session, display: DisplayState): boolean {
   return session.displays.displays.every((each) => each === display || SCENERY.includes(shortName(each.cls)));
 }
 
-/** A group shows the worst of what is in it. */
+/** A group shows the worst status of its members. */
 function worstWithin(session: Session, display: DisplayState): ShownLevel {
   const levels = [display, ...session.displays.displays.filter((each) => each.isWithin(display))]
     .filter((each) => each.enabled)

@@ -8,7 +8,7 @@ const LEAST_SCENE = 160;
 /**
  * Keeps the columns beside the scene as wide as they were while panels come and go: what is freed or taken is the scene's.
  *
- * The dock itself shares it out anew, and gives most of it to the last column when a panel across the window goes.
+ * The dock itself distributes the width again, and gives most of it to the last column when a panel across the window goes.
  */
 export class ColumnWidths {
   private known = new Map<string, number>();

@@ -10,7 +10,7 @@ interface Home {
   inactive?: boolean;
 }
 
-/** Right of the scene, above what stands there. */
+/** Right of the scene, above the panels there. */
 const RIGHT: Home["beside"] = [
   ["joints", "above"],
   ["diagnostics", "above"],
@@ -123,7 +123,7 @@ const NARROW = 900;
 const ROOMY = 1280;
 const LEAST_SHARE = 0.7;
 
-/** Of all that share a group there, what comes to the front when it comes: the displays, and what the page was opened for. */
+/** Of the panels that share a group there, those in front when they open: the displays, and the panel that the page was opened for. */
 const IN_FRONT: readonly PanelId[] = ["displays", "world", "comparison"];
 
 /** A phone that is held across, where the status bar is left out, too. */
@@ -170,7 +170,7 @@ function wideHome(api: DockviewApi, id: PanelId): Home {
   return home;
 }
 
-/** The order in which panels that are open come to their usual places. */
+/** The order in which open panels move to their usual places. */
 export const USUAL: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM];
 
 /** Adds panels at their usual places. */

@@ -62,13 +62,13 @@ export class DisplayPanels implements PanelHost {
     for (const panel of this.offered.values()) if (!this.api().getPanel(panel.key)) this.add(panel);
   }
 
-  /** The content of a panel for the dock; null for one that is no display's. */
+  /** The content of a panel for the dock; null for a panel that belongs to no display. */
   content(name: string): IContentRenderer | null {
     if (!name.startsWith(PREFIX)) return null;
     return { element: this.host(name), init: () => undefined };
   }
 
-  /** The tab of a panel; null for one that is no display's. */
+  /** The tab of a panel; null for a panel that belongs to no display. */
   tab(key: string): PanelTab | null {
     if (!key.startsWith(PREFIX)) return null;
     const close = (): void => {
@@ -102,7 +102,7 @@ export class DisplayPanels implements PanelHost {
     const api = this.api();
     const form = formOf(api);
     const narrow = form !== "wide";
-    // Where one group has everything, a picture that comes does not hide what the user works with.
+    // Where one group has everything, a new image does not hide what the user works with.
     const shares = form === "low" || (narrow && api.width < LEAST_SPLIT);
     const most = narrow || api.height < LOW ? 1 : MOST_BESIDE;
     if (last !== undefined && instead && count < MOST_BESIDE) return { beside: last, direction: "right" };

@@ -19,7 +19,7 @@ import { TimeStrip } from "./time-strip";
 export class Dock {
   /** A panel was opened, closed, moved or brought to the front. */
   readonly changed = new Signal();
-  /** Another arrangement is there: panels must be titled, and those that depend on something opened or closed. */
+  /** The arrangement changed: panels must be titled, and those that depend on something opened or closed. */
   readonly rearranged = new Signal();
   /** Which of its panels the file shows, for `reset`; null when it does not say. */
   listed: readonly PanelName[] | null = null;

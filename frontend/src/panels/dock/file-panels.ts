@@ -31,8 +31,8 @@ export interface Arrangement {
  * Keeps the open panels and the file's in step.
  *
  * A page that opens has the arrangement that the browser keeps for the file. Where there is none, and whenever another
- * configuration takes the place of the one before, the file says which of its panels are open. What the user opens and
- * closes from then on is the browser's, and told to the server, which writes it into the file.
+ * configuration takes the place of the one before, the file specifies its open panels. The panels that the user opens and
+ * closes afterwards are kept by the browser and sent to the server, which writes them into the file.
  */
 export class FilePanels {
   private told: Panels | null = null;
@@ -41,7 +41,7 @@ export class FilePanels {
   private shown: number | null = null;
   /** Which of the file's panels were open when last looked at. */
   private open: readonly PanelName[] | null = null;
-  /** Neither a file nor the browser says how this page's panels are arranged. */
+  /** Neither a file nor the browser specifies the arrangement of this page's panels. */
   private unarranged = false;
   private drivable = false;
   /** The browser keeps no arrangement for the file. */
@@ -89,7 +89,7 @@ export class FilePanels {
     this.dock.open("voice");
   }
 
-  /** Follows the configuration as soon as both messages about it are there. */
+  /** Follows the configuration as soon as both messages about it have arrived. */
   private settle(): void {
     const { told, configuration, dock } = this;
     if (!told || told.opened !== configuration?.opened) return;

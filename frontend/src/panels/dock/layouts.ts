@@ -27,7 +27,7 @@ export class Layouts {
   }
 
   keep(layout: Layout): void {
-    // Read anew each time: another tab may have another file.
+    // Read again each time: another tab may have another file.
     const others = this.read().filter(({ file, form }) => file !== layout.file || form !== layout.form);
     this.storage.setItem(KEY, JSON.stringify([layout, ...others].slice(0, MOST)));
   }

@@ -1,4 +1,4 @@
-/** A line of a diff: its sign and what stands before, in and after the part that another line has instead. */
+/** A line of a diff: its sign and the text before, in and after the part that differs from another line. */
 export interface DiffLine {
   /** `-`, `+`, `@` or a blank. */
   readonly sign: string;
@@ -7,7 +7,7 @@ export interface DiffLine {
   readonly after: string;
 }
 
-/** The lines of a unified diff; of lines that take the place of as many others, the part that differs is told. */
+/** The lines of a unified diff; lines that replace as many others have their differing part marked. */
 export function diffLines(lines: readonly string[]): DiffLine[] {
   const told: DiffLine[] = [];
   for (let at = 0; at < lines.length; ) {
@@ -37,7 +37,7 @@ function pair(old: string, now: string): [DiffLine, DiffLine] {
   let [head, tail] = [0, 0];
   while (head < least && old[head] === now[head]) head += 1;
   while (tail < least - head && old.at(-1 - tail) === now.at(-1 - tail)) tail += 1;
-  // Whole numbers and words differ, not digits of them.
+  // Complete numbers and words differ, not digits of them.
   while (isOfWord(old[head - 1])) head -= 1;
   while (isOfWord(old[old.length - tail])) tail -= 1;
   const line = (sign: string, text: string): DiffLine => {

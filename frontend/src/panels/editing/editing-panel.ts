@@ -25,7 +25,7 @@ interface NumberInput {
   isTyped: boolean;
 }
 
-/** Moves and turns what the selected link is made of, and shows what that comes to in the files. */
+/** Moves and turns the parts of the selected link, and shows the resulting change of the files. */
 export class EditingPanel implements Panel {
   readonly id = "editing";
   readonly icon = "handles";

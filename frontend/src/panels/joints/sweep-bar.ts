@@ -5,7 +5,7 @@ import { Sweep, type SweepOrder } from "../../state/sweep";
 import { strings } from "../../strings";
 
 const SPEEDS = [0.25, 0.5, 1, 2, 4] as const;
-/** A page that was away for longer goes on where it was. */
+/** A page that was away for longer continues where it was. */
 const LONGEST_STEP_S = 0.1;
 
 /** Moves the joints through their ranges until it is stopped, or the user moves them elsewhere. */

@@ -7,7 +7,7 @@ import { keyText, type Shortcut } from "../../widgets/shortcuts";
 import { ModelDialog } from "./model-dialog";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 
-/** What can be put into the world, but for models. */
+/** The things that can be put into the world, except models. */
 const PALETTE: readonly (readonly [Exclude<NewKind, "model">, IconName])[] = [
   ["box", "shapeBox"],
   ["cylinder", "shapeCylinder"],

@@ -8,7 +8,7 @@ import type { TreeItem } from "../../tree/tree-item";
 /** Roll, pitch and yaw in a pose. */
 const ANGLES = 3;
 
-/** The rows of what is selected; where several differ, the value is empty, and an edit is for all of them. */
+/** The rows of the selection; where several things differ, the value is empty, and an edit is for all of them. */
 export function thingItems(modelling: Modelling, angles: AngleUnits): TreeItem[] {
   const things = modelling.selectedThings;
   const [first] = things;

@@ -15,12 +15,12 @@ const ICONS: Readonly<Record<Shape, IconName>> = {
   ramp: "shapeRamp",
 };
 
-/** All that stands in the world, by name; several can be selected, as in the scene. */
+/** All things in the world, by name; several can be selected, as in the scene. */
 export class ThingList {
   readonly element: HTMLElement;
   private readonly rows: VirtualRows;
   private things: readonly WorldThing[] = [];
-  /** The row that keys go on from, and where a range begins. */
+  /** The row that keys continue from, and where a range begins. */
   private current = 0;
   private anchor = 0;
 

@@ -3,7 +3,7 @@ import type { ParameterKind, ParameterRow } from "../../protocol";
 import { parameterText, parameterValues } from "../../state/monitor/parameter-text";
 import { strings } from "../../strings";
 
-/** A parameter with the editor that suits its type. A value is sent when it is done, and stands when the node says so. */
+/** A parameter with the editor that suits its type. A value is sent when it is done, and is valid when the node confirms it. */
 export class ParameterLine {
   readonly element: HTMLElement;
   private readonly editor: HTMLInputElement;
@@ -50,7 +50,7 @@ export class ParameterLine {
     return facts(row) === facts(this.row);
   }
 
-  /** The value that the node has; what the user is just writing stays. */
+  /** The value that the node has; text that the user is just writing stays. */
   show(row: ParameterRow): void {
     this.row = row;
     if (row.kind === "bool") this.editor.checked = row.values[0] === "true";

@@ -146,7 +146,7 @@ export class PlotChart {
   }
 }
 
-/** Least and greatest value of a table, with some room; values that are all equal stand in the middle. */
+/** Least and greatest value of a table, with some room; values that are all equal are in the middle. */
 function rangeOf([, ...columns]: ReturnType<typeof plotTable>): [number, number] {
   let [low, high] = [Infinity, -Infinity];
   for (const column of columns) {
@@ -161,7 +161,7 @@ function rangeOf([, ...columns]: ReturnType<typeof plotTable>): [number, number]
   return [low - room, high + room];
 }
 
-/** A time on the axis: the time of day, or seconds where it is no date. */
+/** A time on the axis: the time of day, or seconds where it is not a date. */
 function timeText(time: number): string {
   if (time < CALENDAR_FROM) return `${Number(time.toFixed(3))} s`;
   const whole = new Date(time * 1000);

@@ -48,7 +48,7 @@ export class PlotPanel implements Panel {
     state.changed.on(() => this.show());
     const draw = coalesced(() => this.draw());
     state.moved.on(draw);
-    // The colours of a picture that stands still change with the theme too.
+    // The colours of a still image change with the theme too.
     new MutationObserver(draw).observe(document.documentElement, { attributeFilter: ["data-theme"] });
     this.show();
   }

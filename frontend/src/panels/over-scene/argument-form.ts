@@ -53,7 +53,7 @@ export class ArgumentFormCard {
     return h("label", { class: "argument-row" }, h("span", {}, words.choose), select);
   }
 
-  /** What is left empty is not given: the file has a value of its own, or says what is missing. */
+  /** An argument left empty is not given: the file has a value of its own, or reports the missing argument. */
   private give(): void {
     const given = [...this.fields].map(([name, { value }]) => [name, value.trim()] as const).filter(([, value]) => value !== "");
     this.connection.send({ type: "give_arguments", values: Object.fromEntries(given) });

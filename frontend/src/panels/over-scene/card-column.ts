@@ -8,7 +8,7 @@ export interface Below {
   readonly robotsReach: number;
   /** Moves the focal point to the middle of the uncovered part. */
   makeRoom(): void;
-  /** Moves what is seen below something of this height, pixels, that lies over the upper edge. */
+  /** Moves the visible content below an element of this height, pixels, that covers the upper edge. */
   makeRoomAbove(height: number): void;
 }
 
@@ -22,7 +22,7 @@ export class CardColumn {
     below.covered = () => this.covered;
   }
 
-  /** Whether a card that opens would lie over a robot. */
+  /** Whether a card that opens would cover a robot. */
   get isOverRobots(): boolean {
     return this.below !== null && this.below.robotsReach > this.left;
   }

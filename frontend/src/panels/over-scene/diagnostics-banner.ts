@@ -7,7 +7,7 @@ import { placeText, shortPath } from "../place";
 
 /** Codes of findings about files of the viewer: the robot is shown in spite of them. */
 const NOT_OF_DESCRIPTIONS = /^(RVIZ|VIEW)/;
-/** Codes of warnings without which nobody understands the scene: the robot has fallen out of the world, or none of its meshes is there. */
+/** Codes of warnings without which no user understands the scene: the robot has fallen out of the world, or all its meshes are missing. */
 const TELLING = new Set(["SIM143", "VIEW207"]);
 
 /**

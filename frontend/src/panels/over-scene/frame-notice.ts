@@ -14,7 +14,7 @@ const PATIENCE_MS = 3000;
 export class FrameNotice {
   readonly element = h("div", { class: "line-notice failed", role: "alert", data: { notice: "frame" } });
   private timer: ReturnType<typeof setTimeout> | undefined;
-  /** The frame of which it is, or was, told. */
+  /** The frame that the notice names or named. */
   private told: string | null = null;
   private robot: TopicChoice | null = null;
 

@@ -4,12 +4,12 @@ import type { Reduced } from "../../state/slow-line";
 import type { SlowCause } from "../../state/slowness";
 import { strings } from "../../strings";
 
-/** How long it is told that the page is slow. */
+/** How long the notice that the page is slow is shown. */
 const TOLD_MS = 15_000;
 
 /**
- * Over the scene while not all can be shown: what comes thinned and how often, what is slow, and what helps. That the
- * page is, is told by itself once.
+ * Over the scene while not all can be shown: the thinned data and its rate, the slow part, and the remedy. That the
+ * page is slow is shown once, by itself.
  */
 export class LineNotice {
   readonly element = h("div", { class: "line-notice", role: "status" });

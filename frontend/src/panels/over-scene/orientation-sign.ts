@@ -7,7 +7,7 @@ const ARM = 22;
 const SVG = "http://www.w3.org/2000/svg";
 const AXES = ["x", "y", "z"] as const;
 
-/** A small cross of axes that shows how the camera stands in the fixed frame. */
+/** A small cross of axes that shows the orientation of the camera in the fixed frame. */
 export class OrientationSign {
   readonly element = h("div", { class: "orientation", aria: { hidden: "true" } });
   private readonly svg = document.createElementNS(SVG, "svg");

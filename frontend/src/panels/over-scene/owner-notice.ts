@@ -3,7 +3,7 @@ import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 
-/** How long it is told, ms. */
+/** How long the notice is shown, ms. */
 const TOLD_MS = 15_000;
 
 /** Over the scene for a while when the description of one node takes the place of another's: what the display's status says. */

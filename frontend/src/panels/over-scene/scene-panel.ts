@@ -22,14 +22,14 @@ import { SimulationBar } from "./simulation-bar";
 import { ToolNotice } from "./tool-notice";
 import { Toolbar } from "./toolbar";
 
-/** The 3-D view and what lies over it. */
+/** The 3-D view and its overlays. */
 export class ScenePanel implements Panel {
   readonly id = "scene";
   readonly icon = "cube";
   readonly element: HTMLElement;
   /** Where the canvas goes. */
   readonly container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
-  /** The scene and what lies over it: what full screen shows. */
+  /** The scene and its overlays: the content of full screen. */
   readonly box: HTMLElement;
   private readonly column = new CardColumn();
   private readonly notices = h("div", { class: "notices" });

@@ -13,7 +13,7 @@ export class SelectionCard {
   private folded = false;
 
   /**
-   * @param column it is for; where it would lie over a robot, only its head is shown until the user unfolds it.
+   * @param column it is for; where it would cover a robot, only its head is shown until the user unfolds it.
    * @param edit what edits the link; null where nothing does.
    */
   constructor(

@@ -68,7 +68,7 @@ export class SimulationBar {
   }
 
   private tell(text: string): void {
-    if (this.asking !== null) return; // it says so
+    if (this.asking !== null) return; // the dialog shows the answer
     clearTimeout(this.timer);
     this.notice.textContent = text;
     this.timer = window.setTimeout(() => (this.notice.textContent = ""), NOTICE_MS);

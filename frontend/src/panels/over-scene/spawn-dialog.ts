@@ -6,7 +6,7 @@ import type { SimulationState } from "../../state/simulation";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
 
-/** Puts a model into the world: one of those on the search path, or a file; it stays open until the model is there. */
+/** Puts a model into the world: one of those on the search path, or a file; it stays open until the model exists. */
 export class SpawnDialog {
   private readonly dialog: Dialog;
   private readonly address = h("input", { class: "field", aria: { label: strings.simulation.address } });
@@ -54,7 +54,7 @@ export class SpawnDialog {
     modelling.askModels();
   }
 
-  /** What was said of another address goes. */
+  /** Removes the message about another address. */
   private edited(): void {
     this.fill();
     this.dialog.ready = this.address.value.trim() !== "";

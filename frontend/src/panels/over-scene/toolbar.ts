@@ -5,7 +5,7 @@ import type { ToolState, ToolsState } from "../../state/tools";
 import { strings } from "../../strings";
 import { openMenu } from "../../widgets/menu";
 
-/** Shows all of the robot, or of what is selected. */
+/** Shows all of the robot, or of the selection. */
 export const FIT_KEY = "Shift F";
 
 /** The name of a tool in the user's language. */
@@ -23,7 +23,7 @@ export class Toolbar {
     private readonly tools: ToolsState,
     private readonly fit: () => void,
     private readonly showKeys: () => void,
-    /** What stands right of the tools. */
+    /** The elements right of the tools. */
     private readonly talk: HTMLElement,
   ) {
     tools.listChanged.on(() => this.build());

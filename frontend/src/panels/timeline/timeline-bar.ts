@@ -121,7 +121,7 @@ export class TimelineBar {
     this.move();
   }
 
-  /** The topics that can be stepped by: those of a recording; of what comes now only what is shown is kept. */
+  /** The topics that can be stepped by: those of a recording; of live data only the displayed topics are kept. */
   private offerSteps(): void {
     const topics = (this.timeline.timeline?.topics ?? []).filter(({ count }) => count > 0).map(({ name }) => name);
     this.steps.hidden = topics.length < 2;
@@ -142,7 +142,7 @@ export class TimelineBar {
     const { start, end } = timeline;
     const part = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
     this.head.style.left = `${(part * 100).toFixed(3)}%`;
-    // How long ago it was goes on while time stands still: that is no name for what is shown.
+    // The age keeps growing while time is paused: it is not a name for the displayed moment.
     const passed = kept ? (live ? keptText(kept) : momentText(position)) : passedText(position - start, end - start);
     this.time.textContent = passed;
     this.time.title = kept ? `${clockText(position)}${live ? "" : ` ${agoText(end - position)}`}\n${keptTip(kept)}` : clockText(position);

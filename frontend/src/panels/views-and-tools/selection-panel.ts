@@ -8,10 +8,10 @@ import { TreeView } from "../../tree/tree-view";
 import { whenSeen } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
 
-/** How often values of what is selected are read again while they move. */
+/** How often values of the selection are read again while they move. */
 const REFRESH_MS = 250;
 
-/** RViz's Selection panel: what is selected, and what its display tells of it. */
+/** RViz's Selection panel: the selection, and the properties that its display reports. */
 export class SelectionPanel implements Panel {
   readonly id = "selection";
   readonly icon = "select";

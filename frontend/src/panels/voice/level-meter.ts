@@ -2,7 +2,7 @@ import { h } from "../../dom";
 import { meterPart } from "../../state/voice/level";
 import { strings } from "../../strings";
 
-/** A peak from which on sound is cut off. */
+/** Sound is cut off at this peak and above. */
 const LOUD = 0.97;
 
 /** A meter of the microphone's level. */

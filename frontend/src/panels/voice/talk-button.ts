@@ -29,7 +29,7 @@ export function talkButton(voice: VoiceState, className: string, ...words: reado
   element.addEventListener("keyup", (event) => {
     if (event.key === " " || event.key === "Enter") voice.release();
   });
-  // A finger that rests on it wants no menu.
+  // A finger that rests on it does not request a menu.
   element.addEventListener("contextmenu", (event) => event.preventDefault());
   const show = (): void => {
     const talking = voice.held || voice.open;

@@ -7,7 +7,7 @@ import { activity, obstacle } from "./voice-words";
 
 const SHOWN_MS = 7000;
 
-/** Over the scene: that the page listens, what it hears, what came of it, or why it cannot. */
+/** Over the scene: that the page listens, the words that it hears, the result, or why it cannot. */
 export class VoiceNotice {
   readonly element = h("div", { class: "voice-notice", role: "status" });
   private readonly text = h("span");

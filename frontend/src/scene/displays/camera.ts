@@ -103,7 +103,7 @@ export class CameraDrawing implements Drawing {
     this.scene.dispose();
   }
 
-  /** Drawing the scene twice takes its time: at most half of it, and what was left out is drawn later. */
+  /** Drawing the scene twice takes its time: at most half of it, and an omitted image is drawn later. */
   private isTurn(): boolean {
     const wait = this.nextAt - performance.now();
     if (wait <= 0) return true;

@@ -89,7 +89,7 @@ export class CloudDrawing implements Drawing {
   pick(ray: Raycaster): Hit | null {
     const [origin, direction] = [new Vector3(), new Vector3()];
     const inverse = new Matrix4();
-    // Half the height of what is seen, m: a metre away, or anywhere where the view is parallel.
+    // Half the height of the visible area, m: a metre away, or anywhere where the view is parallel.
     const { elements } = this.context.camera().projectionMatrix;
     const pointer = POINTER / elements[5];
     const parallel = elements[15] === 1;

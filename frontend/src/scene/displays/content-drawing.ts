@@ -66,7 +66,7 @@ export abstract class ContentDrawing<K extends Kind> implements Drawing {
   protected abstract arrange(): void;
   protected abstract expandBox(box: Box3): void;
 
-  /** What else `inspect` tells. */
+  /** Further results of `inspect`. */
   protected told(): object {
     return {};
   }

@@ -7,7 +7,7 @@ export interface DisplayPanel {
   readonly title: string;
   readonly icon: IconName;
   readonly element: HTMLElement;
-  /** Whether it is in place of the scene, in which nothing is to be seen: of a recording with pictures and nothing else. */
+  /** Whether it is in place of the scene, in which nothing is to be seen: of a recording with images and nothing else. */
   readonly instead: boolean;
   /** The user closes it. */
   closed(): void;

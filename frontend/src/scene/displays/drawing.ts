@@ -18,7 +18,7 @@ export interface DrawingContext {
   readonly invalidate: () => void;
   /** Has something shown beside the scene together with the next frame, see `FrameLoop.beside`. */
   readonly beside: (show: () => void) => void;
-  /** The camera of the 3-D view, as it stands now. */
+  /** The camera of the 3-D view, as it is now. */
   readonly camera: () => Camera;
   /** Whether a light with shadows does not make the page slow. */
   readonly affordsStudio: () => boolean;
@@ -39,13 +39,13 @@ export interface Drawing {
   readonly root: Object3D;
   /** It has no place in the scene, so that its content asks for no frame. */
   readonly isElsewhere?: boolean;
-  /** A value or the rows of the display changed; read anew what matters from `display.rows`. */
+  /** A value or the rows of the display changed; read the relevant values from `display.rows` again. */
   propertiesChanged(): void;
   /** Called before every frame drawn while the display is enabled: put everything where it is now. */
   update(): void;
-  /** Called before a frame of a moving scene that is drawn coarsely: draw less where nobody sees it; null after it: all again. */
+  /** Called before a frame of a moving scene that is drawn coarsely: draw less where no user sees it; null after it: all again. */
   move?(picture: MovingPicture | null): void;
-  /** New content; what was there before comes to a drawing made later, too. */
+  /** New content; a drawing made later receives the earlier content, too. */
   dataChanged?(data: DisplayData): void;
   /** The content under a key, or all of it (null), is to be drawn no more. */
   dataForgotten?(key: string | null): void;
@@ -63,7 +63,7 @@ export interface Drawing {
   objectsOf?(key: string): readonly Object3D[];
   /** Where a thing is, in the fixed frame, for those that no object draws. */
   placeOf?(key: string): Vector3 | null;
-  /** The things selected now, for those that are no objects of their own and show it themselves. */
+  /** The things selected now, for things that are not objects of their own and show it themselves. */
   highlight?(keys: ReadonlySet<string>): void;
   /** The Interact tool's events while the pointer is over what `pick` gives; true takes it: the camera stays still. */
   pointer?(event: ScenePointer): boolean;

@@ -8,7 +8,7 @@ export interface Fade {
 
 const FRESH: Fade = { grey: 0, alpha: 1 };
 
-/** RViz's ageing: a third of the timeout as ever, a third turning grey, a third fading away. Seconds. */
+/** RViz's ageing: a third of the timeout unchanged, a third turning grey, a third fading away. Seconds. */
 export function fadeForAge(age: number, timeout: number): Fade {
   const third = timeout / 3;
   if (!(age > third)) return FRESH;

@@ -3,7 +3,7 @@ import { Box3, Vector3, type Matrix4 } from "three";
 /** Half the side of the room that is looked for, and how far places are from one another, m. */
 const HALF = 0.5;
 const STEP = 1;
-/** What is no higher than this is a floor, m. */
+/** A thing of at most this height is a floor, m. */
 const FLOOR = 0.05;
 /** So many steps from the origin, nothing more is tried. */
 const MOST = 20;
@@ -11,9 +11,9 @@ const SIDES = [[1, 0], [0, 1], [-1, 0], [0, -1]] as const;
 
 /**
  * Where on the ground of a world there is room for a thing of a metre: at a place, or else the nearest whole metre from
- * it, along an axis, that is free; beside all that is there, where none is.
+ * it, along an axis, that is free; beside all existing things if no place is free.
  *
- * @param boxes around what is there, in the fixed frame, m
+ * @param boxes around the existing things, in the fixed frame, m
  * @param world where the world is in the fixed frame
  * @param near the middle of the robots, in the fixed frame, m; null for the origin of the world
  */

@@ -81,7 +81,7 @@ function colorsOf({ colors }: GridSurface): Uint8Array {
   return result;
 }
 
-/** Two triangles between four cells that are there, one between three of them. */
+/** Two triangles between four cells that exist, one between three of them. */
 function trianglesOf(content: GridSurface): number[] {
   const { rows, columns } = content;
   const result: number[] = [];

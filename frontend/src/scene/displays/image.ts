@@ -88,7 +88,7 @@ export class ImageDrawing implements Drawing {
     this.panel.close();
   }
 
-  /** Shows the reason why there is no picture, as a rule from the display's status. */
+  /** Shows the reason why there is no image, as a rule from the display's status. */
   private explain(): void {
     const { none, unreadable } = strings.pictures;
     const cause = this.context.display.troubles[0]?.text;

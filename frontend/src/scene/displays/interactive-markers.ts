@@ -23,7 +23,7 @@ export class InteractiveMarkersDrawing implements Drawing {
   constructor(private readonly context: DrawingContext) {}
 
   propertiesChanged(): void {
-    // Read anew in update().
+    // Read again in update().
   }
 
   dataChanged(data: DisplayData): void {

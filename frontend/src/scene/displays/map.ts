@@ -77,7 +77,7 @@ export class MapDrawing implements Drawing {
     return this.map ? `${this.map.width} x ${this.map.height}` : "";
   }
 
-  /** The box around it in the fixed frame, m; empty where none is shown. */
+  /** The box around it in the fixed frame, m; empty if no map is shown. */
   bounds(): Box3 {
     this.update();
     return this.plane.root.visible ? new Box3().setFromPoints(this.corners()) : new Box3();

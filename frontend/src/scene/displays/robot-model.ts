@@ -9,7 +9,7 @@ import { shade } from "../studio-light";
 import type { Described, Hit, SelectionBox } from "../picking";
 import type { Drawing, DrawingContext } from "./drawing";
 
-/** A new robot takes the place of the old one when its meshes are there, or after this long without them. */
+/** A new robot replaces the old one when its meshes are loaded, or after this long without them. */
 const SWAP_WITHIN_MS = 300;
 /** Links that are nearer to each other than this are in one place: m, and parts of quaternions. */
 const ONE_PLACE = 1e-4;
@@ -42,7 +42,7 @@ export class RobotModelDrawing implements Drawing {
     return this.root.visible ? (this.shown?.visualsDrawn ?? 0) : 0;
   }
 
-  /** Whether something of it has a place: a link with visuals, or any where none is to be seen. */
+  /** Whether something of it has a place: a link with visuals, or any link if no link has visuals. */
   get isInPlace(): boolean {
     return this.shown?.isInPlace ?? false;
   }
@@ -64,7 +64,7 @@ export class RobotModelDrawing implements Drawing {
     return this.shown?.bounds() ?? new Box3();
   }
 
-  /** The height of the ground that it stands on, in the fixed frame, m. */
+  /** The height of the ground under it, in the fixed frame, m. */
   ground(): number {
     return this.shown?.ground() ?? 0;
   }
@@ -73,7 +73,7 @@ export class RobotModelDrawing implements Drawing {
     return this.shown?.roughBounds() ?? new Box3();
   }
 
-  /** The meshes of what is seen. */
+  /** The visible meshes. */
   get visibleMeshes(): Mesh[] {
     return this.root.visible ? (this.shown?.visibleMeshes ?? []) : [];
   }

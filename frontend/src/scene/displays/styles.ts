@@ -45,7 +45,7 @@ const position = new Vector3();
 const orientation = new Quaternion();
 const ONE = new Vector3(1, 1, 1);
 
-/** Pose number `i` of many (x y z qx qy qz qw each), in the frame they are given in. A quaternion of zeros is no turn. */
+/** Pose number `i` of many (x y z qx qy qz qw each), in the frame they are given in. A quaternion of zeros does not rotate. */
 export function poseAt(poses: Float32Array, i: number, matrix: Matrix4): Matrix4 {
   position.fromArray(poses, i * 7);
   orientation.fromArray(poses, i * 7 + 3).normalize();

@@ -11,7 +11,7 @@ export function modelOf(link: string): string {
 export class Displacement {
   private models: ReadonlyMap<string, Matrix4> = new Map();
 
-  /** By what the poses of each model are premultiplied, in the world. */
+  /** The matrix that premultiplies the poses of each model, in the world. */
   set(models: ReadonlyMap<string, Matrix4>): void {
     this.models = models;
   }

@@ -9,13 +9,13 @@ type Color = readonly [number, number, number, number];
 const BEGIN: Color = [0.25, 0.6, 1, 0.12];
 const HIT: Color = [0.25, 0.6, 1, 0.6];
 const MISS: Color = [0.25, 0.6, 1, 0.1];
-/** The edges of what a camera sees, those between the planes near the camera, and far away. */
+/** The edges of a camera's field of view, those between the planes near the camera, and far away. */
 const FRUSTUM: Color = [1, 0.75, 0.3, 0.9];
 const FAR_OFF: Color = [1, 0.75, 0.3, 0.35];
 /** m. */
 const NEAR_BY = 1;
 
-/** What stands in the frame of a sensor, where its link is. */
+/** The objects in the frame of a sensor, where its link is. */
 interface Mark {
   readonly said: LidarScene | CameraScene;
   readonly local: Matrix4;
@@ -120,7 +120,7 @@ function raysOf({ horizontal, vertical, nearest, farthest }: LidarScene, ranges:
   return [segments, colors];
 }
 
-/** Segments and colours of what a camera sees: the near and the far plane, and the edges from its eye. */
+/** Segments and colours of a camera's field of view: the near and the far plane, and the edges from its optical centre. */
 function frustumOf({ left, right, up, down, near, far }: CameraScene): [Float32Array, Float32Array] {
   const segments: number[] = [];
   const colors: number[] = [];

@@ -31,7 +31,7 @@ export class WorldDrawing implements Drawing {
   private readonly displacement = new Displacement();
   private styleIsOld = true;
   private poseIsOld = true;
-  /** The box around all that is seen as it was, and that around the origins of links as well. */
+  /** The last computed box around all visible things, and that around the origins of links as well. */
   private seen = new Box3();
   private reached = new Box3();
   private readonly lights: WorldLights;
@@ -98,7 +98,7 @@ export class WorldDrawing implements Drawing {
     return this.lights.lighting;
   }
 
-  /** The light that stands in it; null while it is drawn in that of the camera. */
+  /** The light in it; null while it is drawn in that of the camera. */
   get ownLight(): OwnLight | null {
     if (!this.scene || !this.lights.isLit) return null;
     const own = this.lights.isOfWorld;
@@ -192,7 +192,7 @@ export class WorldDrawing implements Drawing {
     return this.shown?.poseOf(link) ?? null;
   }
 
-  /** The links of a model that stands in the world itself. */
+  /** The links of a model that is in the world itself. */
   linksOf(model: string): string[] {
     return [...this.rowOf.keys()].filter((link) => modelOf(link) === model);
   }
@@ -204,7 +204,7 @@ export class WorldDrawing implements Drawing {
     return visuals.every(({ kind }) => kind === "plane");
   }
 
-  /** Shows models moved in the world until they really are elsewhere: by what their poses are premultiplied. */
+  /** Shows models moved in the world until they really are elsewhere; `models` has the matrices that premultiply their poses. */
   displace(models: ReadonlyMap<string, Matrix4>): void {
     this.displacement.set(models);
     this.poseIsOld = true;

@@ -31,7 +31,7 @@ function checkedXml(written: string): string {
   if (broken) {
     text = mended(written);
     xml = parsed(text);
-    // Browsers say it in words of their own; all of them have the line as their first number behind "line".
+    // Browsers report the error in words of their own; all of them have the line as their first number behind "line".
     const line = /line\D*(\d+)/i.exec(broken.textContent)?.[1] ?? "";
     if (fault(xml)) throw new MeshError(strings.meshes.dae.notXml(line));
   }

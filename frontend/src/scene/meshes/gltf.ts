@@ -18,7 +18,7 @@ interface Head {
 /**
  * glTF, text or binary: y up by its specification, turned to z up as RViz does.
  *
- * @param isBinary whether its name says so; its first bytes decide.
+ * @param isBinary whether its name specifies binary; its first bytes decide.
  * @throws MeshError when it is none, or needs what is not read.
  */
 export async function readGltf(data: ArrayBuffer, url: string, files: MeshFiles, isBinary: boolean): Promise<MeshTemplate> {

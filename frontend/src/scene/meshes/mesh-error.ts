@@ -1,5 +1,5 @@
 /**
- * An error that says in the user's language why a mesh cannot be drawn. What readers and browsers throw else is not for
+ * An error that says in the user's language why a mesh cannot be drawn. Other errors of readers and browsers are not for
  * users.
  */
 export class MeshError extends Error {}

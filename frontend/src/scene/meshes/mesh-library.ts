@@ -30,7 +30,7 @@ export class MeshLibrary {
   ) {}
 
   /**
-   * The mesh at `url`. Asks the server every time whether the file is still the same: a robot is loaded anew when its
+   * The mesh at `url`. Asks the server every time whether the file is still the same: a robot is loaded again when its
    * files were edited.
    *
    * @throws MeshError with a part of a sentence for the user when the mesh cannot be drawn.
@@ -70,7 +70,7 @@ export class MeshLibrary {
   }
 }
 
-/** What comes over the line, or words for that it broke. */
+/** The data received over the line, or a text that the line broke. */
 async function reached<T>(answer: Promise<T>): Promise<T> {
   return answer.catch(() => {
     throw new MeshError(strings.meshes.lost);

@@ -46,7 +46,7 @@ export function collapseUnreal(geometry: BufferGeometry): Unreal {
 }
 
 /**
- * The text about vertices that are no numbers, or null.
+ * The text about vertices that are not numbers, or null.
  *
  * @throws MeshError when no triangle is left.
  */

@@ -19,7 +19,7 @@ export interface OwnMaterial {
   opacity: number;
   map: Texture | null;
   vertexColors: boolean;
-  /** How it reflects light, where the file says so. */
+  /** How it reflects light, where the file specifies it. */
   surface?: Surface | null;
 }
 

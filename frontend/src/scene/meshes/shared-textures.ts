@@ -12,7 +12,7 @@ export class SharedTextures {
 
   constructor(private readonly load: (url: string) => Promise<Texture> = loadTexture) {}
 
-  /** The texture at `url`; whoever takes it gives it back, also when it cannot be loaded. */
+  /** The texture at `url`; the caller that takes it gives it back, also when it cannot be loaded. */
   take(url: string): Promise<Texture> {
     let known = this.shared.get(url);
     if (!known) this.shared.set(url, (known = { texture: this.load(url), users: 0 }));

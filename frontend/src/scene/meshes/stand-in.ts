@@ -32,7 +32,7 @@ const STEPS = [0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
 const WORTH = 0.2;
 /** How much a wrong normal counts, as a share of the mesh's size. */
 const NORMAL_WEIGHT = 0.2;
-/** Corners in one place whose normals are no further apart than this share one vertex: the cosine of 30 degrees. */
+/** Corners in one place whose normals are at most this far apart share one vertex: the cosine of 30 degrees. */
 const SMOOTH = 0.866;
 const COMPONENTS = 3;
 

@@ -12,7 +12,7 @@ export interface StandInWorker {
   postMessage(request: StandInRequest, transfer: Transferable[]): void;
 }
 
-/** Has stand-ins made for meshes, once somebody asks. The worker is not even loaded before. */
+/** Has stand-ins made for meshes, once a caller asks. The worker is not even loaded before. */
 export class StandIns {
   private worker: StandInWorker | null = null;
   private readonly made = new WeakMap<BufferGeometry, readonly StandIn[] | "waits" | "none">();

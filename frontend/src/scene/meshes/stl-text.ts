@@ -7,7 +7,7 @@ const UNREAL = /^[+-]?(nan|inf|\d\.#(ind|qnan|snan|inf))/i;
 /**
  * Reads an ASCII STL: `solid`, then `facet normal`, `outer loop`, three times `vertex`, `endloop`, `endfacet`.
  *
- * @returns x y z of three vertices for each triangle; NaN for what is no finite number.
+ * @returns x y z of three vertices for each triangle; NaN for a text that is not a finite number.
  * @throws MeshError with the line where it is broken.
  */
 export function readAsciiStl(text: string): Float32Array {

@@ -31,7 +31,7 @@ export class TextureWait {
     this.manager = manager;
   }
 
-  /** Waits for what was started so far; a sentence about what is missing, or null. */
+  /** Waits for the textures started so far; a sentence about the missing ones, or null. */
   async settle(): Promise<string | null> {
     if (this.pending > 0) await new Promise<void>((resolve) => (this.wake = resolve));
     if (this.missing.length === 0) return null;

@@ -10,7 +10,7 @@ const [SIZE, LARGE] = [0.9, 1.3];
 /** How far handles reach on the canvas, as three.js has them. */
 const REACH = 0.19;
 
-/** Handles that move, turn and scale a frame; told of the pointer by the stage's own events. */
+/** Handles that move, turn and scale a frame; the stage's own events report the pointer to them. */
 export class Gizmo {
   private readonly frame = new Object3D();
   private readonly controls: TransformControls;

@@ -8,10 +8,10 @@ import { Gizmo } from "./gizmo";
 import { thingMatrix, thingPose } from "./thing-pose";
 import { worldFrame } from "./world-frame";
 
-/** m or rad: what is less is no change. */
+/** m or rad: a smaller difference is not a change. */
 const NOTHING = 1e-8;
 
-/** Shows things moved in the world, by what their poses are premultiplied. */
+/** Shows things moved in the world, by the matrices that premultiply their poses. */
 export type Displace = (moved: ReadonlyMap<string, Matrix4>) => void;
 
 /** The gizmo on what is selected: moved here at once, in the world when it is let go. */

@@ -41,7 +41,7 @@ export class Modeller {
         if (modelling.active) this.update();
       });
     }
-    // A model that has just been added is drawn later than it is told of.
+    // A model that has just been added is drawn later than it is announced.
     data.received.on(({ content }) => {
       if (modelling.active && content.kind === "world_scene") this.select();
     });
@@ -62,7 +62,7 @@ export class Modeller {
     return { ...event, click: false };
   }
 
-  /** Esc: lets go of what is held or in hand, else of what is selected. */
+  /** Esc: releases the thing that is held or in hand, else clears the selection. */
   escape(): void {
     const { modelling } = this.session;
     if (this.manipulation.cancel()) return;
@@ -77,7 +77,7 @@ export class Modeller {
     else if (!shift && !ctrl) modelling.select([]);
   }
 
-  /** The thing of the world's file that is seen at a place; the ground is in nobody's way. */
+  /** The thing of the world's file that is seen at a place; the ground does not block any thing. */
   private thingAt(x: number, y: number): string | null {
     const { picker } = this.stage;
     const ray = picker.rayAt(x, y);
