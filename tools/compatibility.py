@@ -45,8 +45,8 @@ ENGLISH = Words(
 
 The modules that programs and launch files import where ROS 2 is not installed, and the names in them. The measure is
 ROS 2 Humble: a name that is not listed here cannot be imported, because a program that takes it would fail on the
-robot. Names that came with a later distribution are marked. [Your own nodes](nodes.md#what-differs) describes the overall differences in
-behavior.
+robot. Names that came with a later distribution are marked. [Your own nodes](nodes.md#what-differs) describes
+the overall differences in behavior.
 
 An editor or mypy finds all their types in one folder, which you set in its configuration:
 `python -c "import linkwright.standins as s; print(s.__path__[0] + '/stubs')"`.
