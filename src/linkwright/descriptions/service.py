@@ -7,7 +7,7 @@ from pathlib import Path
 
 from linkwright.descriptions.description import TRUE_OF_PARTS, Description
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, has_errors, phrase
-from linkwright.diagnostics.source import TEXT_NAME
+from linkwright.diagnostics.source import TEXT_NAME, is_text
 from linkwright.lean_typing import TYPE_CHECKING, Union
 from linkwright.urdf import Reading, Robot, read
 from linkwright.urdf.plaintext import parse_as_urdfdom
@@ -76,9 +76,9 @@ def examine(
     Raises:
         LinkwrightError: it is not XML, or it cannot be expanded.
     """
-    is_text = isinstance(path_or_text, str) and "<" in path_or_text
-    name = TEXT_NAME if is_text else str(path_or_text)
-    text = str(path_or_text) if is_text else overlay.text(name) if overlay is not None else None
+    given_text = is_text(path_or_text)
+    name = TEXT_NAME if given_text else str(path_or_text)
+    text = str(path_or_text) if given_text else overlay.text(name) if overlay is not None else None
     if not xacro:
         document, forbidden = parse_as_urdfdom(read_bytes(name) if text is None else text, name)
         if document.root.tag == "sdf" and document.source is not None:
@@ -87,7 +87,7 @@ def examine(
             return Description(name, document, robot_of_text(document.source.text, name), overlay=overlay)
         if xacro is False or not (arguments or is_xacro(name, document.root)):
             return _as_it_stands(name, document, forbidden, overlay)
-        text = document.source.text if is_text and document.source else text
+        text = document.source.text if given_text and document.source else text
     from linkwright.xacro import expand
 
     try:

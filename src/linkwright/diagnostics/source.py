@@ -14,6 +14,11 @@ TEXT_NAME = "<robot_description>"
 """The name, in messages, of a description that is given as a text."""
 
 
+def is_text(path_or_text: object) -> bool:
+    """Return whether a description is given as a text, which is known by its ``<``, and not as a path."""
+    return isinstance(path_or_text, str) and "<" in path_or_text
+
+
 class Span(NamedTuple):
     """A place in a file: lines and columns count from 1, columns count characters, the end is exclusive."""
 

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from linkwright.descriptions import DescriptionLibrary, examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics.source import is_text
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Robot, save
 from linkwright.viewer.features.export.html import html_of
@@ -64,8 +65,7 @@ def show(
     """
     library = DescriptionLibrary()
     source = save(robot) if isinstance(robot, Robot) else robot
-    is_text = isinstance(source, str) and "<" in source
-    folders = [Path.cwd()] if is_text else [Path(source).absolute().parent, Path.cwd()]
+    folders = [Path.cwd()] if is_text(source) else [Path(source).absolute().parent, Path.cwd()]
     finder = PackageFinder(start=folders)
     description = examine(source, arguments=arguments, packages=finder)
     shown = description.robot

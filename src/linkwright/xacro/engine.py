@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from linkwright.diagnostics.source import TEXT_NAME
+from linkwright.diagnostics.source import TEXT_NAME, is_text
 from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.xacro.expander import Expander
 from linkwright.xacro.expansion import Expansion
@@ -47,8 +47,8 @@ def expand(
             a hint.
     """
     name = str(path_or_text)
-    if text is None and isinstance(path_or_text, str) and "<" in path_or_text:
-        name, text = TEXT_NAME, path_or_text
+    if text is None and is_text(path_or_text):
+        name, text = TEXT_NAME, name
     inputs = Inputs(name, arguments or {}, packages, text, limits or Limits(), str(root_dir or ""), overlay)
     session = inputs.session()
     document = main_document(session, text)

@@ -221,7 +221,7 @@ async def test_numbers_reach_the_hardware_whatever_their_sum_is(made, said):
     started(it, "low")
     it.switch(["low"], [], STRICT)
     loaded = it.controllers["low"]
-    loaded.controller.commands *= 2  # the sum of both is no number
+    loaded.controller.commands *= 2  # the sum of both is not a number
     loaded.controller.value = 1.5e308
     it.cycle(1, 0.01)
     assert value(it, "hip/velocity") == 1.5e308
