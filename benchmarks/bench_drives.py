@@ -20,7 +20,7 @@ from linkwright.control.controllers.node import ControllerNode
 from linkwright.control.controllers.registry import controller_class
 from linkwright.control.hardware.interfaces import CommandInterface, Interfaces, StateInterface
 from linkwright.graph import Graph
-from linkwright.simulation.exchange import Exchange
+from linkwright.graph.stepped.exchange import Exchange
 
 _TURNS = 9
 _ROBOTS, _RATE = 100, 100.0

@@ -1,7 +1,7 @@
 """Mapping our house with odometry of several qualities: how far off pose and walls are, and what a scan costs.
 
 Run it with ``python -m benchmarks mapping``. mbot drives through all rooms in lock-step with the mapper, the tour of
-``tests/nodes/navigation/house.py``. Odometry is made worse by a scale, a turn that comes with the way, and noise. Where
+``tests/navigation/nodes/house.py``. Odometry is made worse by a scale, a turn that comes with the way, and noise. Where
 it says that the robot is at the end is the peer "odometry". Costs are times of the processor, of this thread.
 """
 
@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from tests.nodes.navigation import house
+from tests.navigation.nodes import house
 
 from benchmarks.measure import Row
 from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.navigation.nodes.slam_toolbox.nodes import AsyncSlamToolbox
 from linkwright.navigation.slam.poses import between, compose
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.navigation.slam_toolbox.nodes import AsyncSlamToolbox
 
 QUALITIES = {
     "exact": (1.0, 0.0, 0.0),

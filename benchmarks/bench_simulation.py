@@ -27,8 +27,8 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import Graph, Node
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions
-from linkwright.nodes.simulator import Simulator
 from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.nodes.simulator import Simulator
 from linkwright.simulation.server.entities import entity_from
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.simulation.server.worlds import load_world

@@ -27,12 +27,12 @@ from benchmarks.measure import LINKWRIGHT, Row
 from linkwright.graph import Graph
 from linkwright.images import RangeFinder, Unpacker, picture_of
 from linkwright.messages import get_message
-from linkwright.nodes.vision.detection_messages import image_message, vision_message
 from linkwright.vision.detector import Limits
 from linkwright.vision.detectors.drawing import drawn
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.registry import make_detector
+from linkwright.vision.nodes.detection_messages import image_message, vision_message
 from linkwright.wire.dds import join
 
 MODELS = ("colours", "things")

@@ -36,7 +36,7 @@ _IMPORTED = (
     "linkwright.messages",
     "linkwright.nodes.joint_state_publisher_gui",
     "linkwright.nodes.robot_state_publisher",
-    "linkwright.nodes.simulator",
+    "linkwright.simulation.nodes.simulator",
     "linkwright.packages",
     "linkwright.viewer",
     "aiohttp.web",

@@ -7,9 +7,9 @@ import asyncio
 import pytest
 
 from linkwright.cli import calls, control, main
+from linkwright.control.nodes.ros2_control_node import Ros2ControlNode
 from linkwright.graph import Graph
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.control.ros2_control_node import Ros2ControlNode
 from tests.control.robots import joint, robot
 
 POSITIONS = {"joints": ["hip"], "interface_name": "position"}

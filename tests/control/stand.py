@@ -8,7 +8,7 @@ from linkwright.control.controllers.controller import Controller, ControllerPlac
 from linkwright.control.controllers.node import ControllerNode
 from linkwright.control.hardware.interfaces import CommandInterface, Interface, Interfaces, StateInterface
 from linkwright.graph import Graph, LogRecord
-from linkwright.simulation.exchange import Exchange
+from linkwright.graph.stepped.exchange import Exchange
 
 
 class Stand:

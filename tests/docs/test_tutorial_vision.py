@@ -1,4 +1,4 @@
-"""The chapter about vision; the nodes it tells of are tested in tests/nodes/vision."""
+"""The chapter about vision; the nodes it tells of are tested in tests/vision/nodes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.cli import main
 from linkwright.nodes import EXECUTABLES
 from tests.docs.pages import DOCS, blocks, commands
 from tests.docs.reader import Known
-from tests.nodes.vision.seeking_robot import SeekingRobot
+from tests.vision.nodes.seeking_robot import SeekingRobot
 
 LANGUAGES = {"en": DOCS / "tutorial-vision.md", "zh": DOCS / "zh" / "tutorial-vision.md"}
 

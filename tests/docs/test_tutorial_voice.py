@@ -14,8 +14,8 @@ from linkwright.cli import main
 from linkwright.diagnostics import SourceText
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.voice.voice_commander import VoiceCommander
 from linkwright.speech.commands.command_file import parse_commands, read_command_file
+from linkwright.speech.nodes.voice_commander import VoiceCommander
 from linkwright.testing import AsyncSteppedSimulation
 from tests.docs.pages import DOCS, blocks, commands
 from tests.docs.reader import Known

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from linkwright.control.odometry import yaw_of
 from linkwright.descriptions import DescriptionLibrary, examine
 from linkwright.graph import Graph
 from linkwright.hosting.launch_log import LaunchLog
@@ -18,7 +19,6 @@ from linkwright.inertia import MeshLibrary
 from linkwright.inference import infer
 from linkwright.messages import get_message
 from linkwright.packages import PackageFinder
-from linkwright.simulation.plugins.odometry import yaw_of
 from linkwright.simulation.server.entities import entity_from
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.simulation.server.worlds import load_world

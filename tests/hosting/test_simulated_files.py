@@ -17,8 +17,8 @@ from linkwright.descriptions import examine
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import HostOptions
 from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
-from linkwright.nodes.simulator import Simulator
 from linkwright.packages import PackageFinder
+from linkwright.simulation.nodes.simulator import Simulator
 from linkwright.simulation.server.loading import WorldLoader
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.simulation import Simulation

@@ -8,7 +8,7 @@ from linkwright.nodes import EXECUTABLES, NodeOptions
 from linkwright.nodes.options import create_node
 from linkwright.nodes.registry import default_name
 from tests.nodes.stage import joint, robot
-from tests.nodes.voice import fake_sounddevice
+from tests.speech.nodes import fake_sounddevice
 
 ARGUMENTS = {
     "static_transform_publisher": ["--frame-id", "a", "--child-frame-id", "b"],

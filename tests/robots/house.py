@@ -12,12 +12,12 @@ from linkwright.graph import ActionClient
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.messages import get_action
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.navigation.amcl import Amcl
-from linkwright.nodes.navigation.behavior_server import BehaviorServer
-from linkwright.nodes.navigation.bt_navigator import BtNavigator
-from linkwright.nodes.navigation.controller_server import ControllerServer
-from linkwright.nodes.navigation.map_server import MapServer
-from linkwright.nodes.navigation.planner_server import PlannerServer
+from linkwright.navigation.nodes.amcl import Amcl
+from linkwright.navigation.nodes.behavior_server import BehaviorServer
+from linkwright.navigation.nodes.bt_navigator import BtNavigator
+from linkwright.navigation.nodes.controller_server import ControllerServer
+from linkwright.navigation.nodes.map_server import MapServer
+from linkwright.navigation.nodes.planner_server import PlannerServer
 from linkwright.testing import SteppedSimulation
 from tests.places import GAZEBO_PACKAGE, NAVIGATION_PACKAGE
 

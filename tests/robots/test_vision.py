@@ -15,7 +15,7 @@ import pytest
 from linkwright import standins
 from linkwright.cli.command import main
 from linkwright.nodes import EXECUTABLES
-from tests.nodes.vision.seeking_robot import SeekingRobot
+from tests.vision.nodes.seeking_robot import SeekingRobot
 from tests.places import CONTROL_PACKAGE, VISION_PACKAGE
 from tests.robots.workspaces import colcon_build
 

@@ -12,7 +12,7 @@ import pytest
 from linkwright.cli import main
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.voice.voice_commander import VoiceCommander
+from linkwright.speech.nodes.voice_commander import VoiceCommander
 from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
 from linkwright.testing import AsyncSteppedSimulation
 from tests.places import GAZEBO_PACKAGE, VOICE_PACKAGE

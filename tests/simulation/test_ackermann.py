@@ -6,7 +6,7 @@ from math import tan
 
 import pytest
 
-from linkwright.simulation.plugins.odometry import yaw_of
+from linkwright.control.odometry import yaw_of
 from linkwright.testing import Recording
 from tests.simulation.test_movers import drive
 from tests.simulation.test_plugins import SECOND, served

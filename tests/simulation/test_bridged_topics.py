@@ -6,7 +6,7 @@ import pytest
 
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.gazebo.bridge import ParameterBridge
+from linkwright.simulation.nodes.bridge import ParameterBridge
 from tests.simulation.test_diff_drive import gz
 from tests.simulation.test_lost_commanders import advance, speed, warnings
 from tests.simulation.test_plugins import robot, served

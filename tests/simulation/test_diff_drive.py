@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.control.odometry import yaw_of
 from linkwright.messages import get_message
-from linkwright.simulation.plugins.odometry import yaw_of
 from linkwright.testing import Recording
 from tests.simulation.test_plugins import SECOND, robot, served
 from tests.simulation.worlds import GROUND

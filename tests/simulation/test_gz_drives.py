@@ -6,9 +6,9 @@ from math import atan, pi
 
 import pytest
 
+from linkwright.control.odometry import yaw_of
 from linkwright.messages import get_message
 from linkwright.simulation.plugins.limits import SpeedLimits
-from linkwright.simulation.plugins.odometry import yaw_of
 from linkwright.testing import Recording
 from tests.simulation.test_ackermann import BASE, RADIUS, TRACK, car
 from tests.simulation.test_movers import drive

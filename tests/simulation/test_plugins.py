@@ -10,12 +10,12 @@ import pytest
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
 from linkwright.extensions import extensions
 from linkwright.graph import Graph, LogLevel, LogRecord
+from linkwright.graph.stepped.calls import logged_calls
+from linkwright.graph.stepped.exchange import Exchange
+from linkwright.graph.stepped.node import Output
 from linkwright.messages import get_message
 from linkwright.sdf.plugins import library_name
 from linkwright.sdf.text import parse_as_gazebo
-from linkwright.simulation.exchange import Exchange
-from linkwright.simulation.plugins.calls import logged_calls
-from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parameters import parameter, parameters_from
 from linkwright.simulation.plugins.registry import (
     _BUILT_IN,

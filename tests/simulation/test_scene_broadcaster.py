@@ -6,8 +6,8 @@ import pytest
 
 from linkwright.graph import Graph
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.gazebo.bridge import ParameterBridge
-from linkwright.nodes.simulator import GzServer, Simulator
+from linkwright.simulation.nodes.bridge import ParameterBridge
+from linkwright.simulation.nodes.simulator import GzServer, Simulator
 from linkwright.simulation.plugins.registry import SYSTEMS_OF_GZ
 from linkwright.simulation.server.server import ServerOptions
 from linkwright.testing import Recording

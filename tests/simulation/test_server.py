@@ -10,10 +10,10 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import CLOCK_QOS, DurabilityPolicy, Graph, LogLevel, QoSProfile
 from linkwright.messages import get_message, get_service
 from linkwright.nodes.options import NodeOptions
-from linkwright.nodes.simulator import Simulator
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.writer import save_model_of_world as saved
 from linkwright.sdf.writer import save_world
+from linkwright.simulation.nodes.simulator import Simulator
 from linkwright.simulation.server import reports
 from tests.simulation.test_plugins import joint_states, robot
 from tests.simulation.worlds import box

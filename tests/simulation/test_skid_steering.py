@@ -6,7 +6,7 @@ from math import pi
 
 import pytest
 
-from linkwright.simulation.plugins.odometry import yaw_of
+from linkwright.control.odometry import yaw_of
 from tests.simulation.test_movers import drive
 from tests.simulation.test_plugins import served
 from tests.simulation.worlds import GROUND, box

@@ -43,8 +43,8 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         LinkwrightError: CLI332, there is no simulation; CLI333, it rejects the model.
     """
-    from linkwright.nodes.gazebo.spawner import SPAWN_SERVICE, Entity, spawn_request
     from linkwright.packages import PackageFinder
+    from linkwright.simulation.nodes.spawner import SPAWN_SERVICE, Entity, spawn_request
 
     path = Path(arguments.file).absolute()
     model = load_model(path, parse_assignments(arguments.values), PackageFinder(start=[path.parent, Path.cwd()]))

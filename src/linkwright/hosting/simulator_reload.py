@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from linkwright.graph import Node
     from linkwright.hosting.xacro_calls import WorldCall, XacroCall
     from linkwright.nodes import RunningNode
-    from linkwright.nodes.simulator import Simulator
+    from linkwright.simulation.nodes.simulator import Simulator
 
 _LOAD_WORLD = "simulation_interfaces/srv/LoadWorld"
 
@@ -31,7 +31,7 @@ def follow_files(running: RunningNode, session: Supervisor, launcher: Callable[[
         session: what it runs in.
         launcher: gives the node that calls services.
     """
-    from linkwright.nodes.simulator import Simulator
+    from linkwright.simulation.nodes.simulator import Simulator
 
     if not isinstance(running, Simulator):
         return

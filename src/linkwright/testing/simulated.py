@@ -13,6 +13,7 @@ from linkwright.descriptions import DescriptionLibrary, examine
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.single import Transform, quaternion_from_rpy
 from linkwright.graph import CLOCK_QOS
+from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import Time, get_message
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
@@ -21,7 +22,6 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.variation import with_friction, with_mass, with_noise
 from linkwright.sdf.worlds import World
-from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.simulation.server.services import Services
 from linkwright.simulation.simulation import NANOSECONDS, Simulation
@@ -105,7 +105,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self._clock_topic = node.create_publisher(get_message(_CLOCK), "/clock", CLOCK_QOS)
         self._server = SimulationServer(simulation, node, self._options)
         self._server.on_failure.append(self.errors.append)
-        own = PluginNode(node, self._server.exchange, owned=False, qos={}, usual=None)
+        own = SteppedNode(node, self._server.exchange, owned=False)
         self._progress = _Progress(simulation)
         Services(self._server, self._progress, own, self._loaded, DescriptionLibrary())
         self._server.start()

@@ -8,9 +8,9 @@ import pytest
 
 from linkwright import extensions
 from linkwright.control.hardware.component import Hardware, HardwareError
+from linkwright.control.nodes.ros2_control_node import Ros2ControlNode
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.messages import get_message
-from linkwright.nodes.control.ros2_control_node import Ros2ControlNode
 from linkwright.nodes.options import NodeOptions
 from tests.control.manager.test_ros2_control_node import ask, go_on
 from tests.control.robots import joint, robot

@@ -2,11 +2,11 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.control.nodes.ros2_control_node import Ros2ControlNode
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
 from linkwright.messages import String, get_service
-from linkwright.nodes.control.ros2_control_node import Ros2ControlNode
 from linkwright.nodes.options import NodeOptions
 from tests.control.robots import joint, robot
 

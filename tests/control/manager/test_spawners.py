@@ -2,9 +2,9 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.control.nodes.hardware_spawner import HardwareSpawner
+from linkwright.control.nodes.spawner import Spawner, Unspawner
 from linkwright.diagnostics import LinkwrightError
-from linkwright.nodes.control.hardware_spawner import HardwareSpawner
-from linkwright.nodes.control.spawner import Spawner, Unspawner
 from linkwright.nodes.options import NodeOptions
 from tests.control.manager.test_ros2_control_node import CONTROL, start
 

@@ -16,8 +16,8 @@ from launch import LaunchDescription
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.launch.engine.session import LaunchSession
 from linkwright.launch.engine.supervisor import SessionOptions
-from linkwright.nodes.simulator import Simulator
 from linkwright.packages import PackageFinder, use_finder
+from linkwright.simulation.nodes.simulator import Simulator
 from linkwright.simulation.simulation import Simulation
 from tests.simulation.worlds import GROUND, box
 from tests.waiting import SECONDS, eventually

@@ -7,9 +7,9 @@ from typing import Any
 from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.node import ControllerNode
 from linkwright.control.motion.odometer import Odometer
+from linkwright.control.odometry import OdometryTopics, Variances, transforms_topic
 from linkwright.diagnostics import phrase
 from linkwright.messages import Time
-from linkwright.simulation.plugins.odometry import OdometryTopics, Variances, transforms_topic
 
 _NANOSECONDS = 1_000_000_000
 _AXES = 6

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from linkwright.graph import Node
-from linkwright.simulation.exchange import Exchange
-from linkwright.simulation.plugins.node import PluginNode
+from linkwright.graph.stepped.exchange import Exchange
+from linkwright.graph.stepped.node import SteppedNode
 
 
-class ControllerNode(PluginNode):
-    """Publishers, subscriptions and services of a controller (`PluginNode`), and calls between its two threads.
+class ControllerNode(SteppedNode):
+    """Publishers, subscriptions and services of a controller (`SteppedNode`), and calls between its two threads.
 
     Callbacks run in the thread of the updates, between two updates; messages are sent after the update.
 
@@ -20,7 +20,7 @@ class ControllerNode(PluginNode):
     """
 
     def __init__(self, node: Node, exchange: Exchange) -> None:
-        super().__init__(node, exchange, owned=True, qos={}, usual=None)
+        super().__init__(node, exchange, owned=True)
 
     def call_on_loop(self, call: Callable[[], object]) -> None:
         """Queue a function for the event loop, to be called after the messages published before it."""

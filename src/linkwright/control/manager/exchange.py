@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.simulation.exchange import Command, Exchange, Outlet
+from linkwright.graph.stepped.exchange import Command, Exchange, Outlet
 
 
 class DirectExchange(Exchange):

@@ -24,8 +24,8 @@ from linkwright.control.manager.switching import BEST_EFFORT, Switch, SwitchPlan
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph import Node, Parameter
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
+from linkwright.graph.stepped.exchange import Exchange
 from linkwright.messages.distribution import is_before_iron
-from linkwright.simulation.exchange import Exchange
 
 _NANOSECONDS = 1_000_000_000
 

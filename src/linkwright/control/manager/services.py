@@ -15,8 +15,8 @@ from linkwright.control.manager.manager import ControllerManager
 from linkwright.control.manager.statistics import StatisticsTopics
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import get_message, is_before_iron
-from linkwright.simulation.plugins.node import PluginNode
 
 _PACKAGE = "controller_manager_msgs"
 _PLAIN, _CHAINABLE = "controller_interface::ControllerInterface", "controller_interface::ChainableControllerInterface"
@@ -32,7 +32,7 @@ class ManagerServices:
         node: its node as plugins have them: callbacks come in the thread of the updates.
     """
 
-    def __init__(self, manager: ControllerManager, node: PluginNode) -> None:
+    def __init__(self, manager: ControllerManager, node: SteppedNode) -> None:
         self._manager = manager
         self._activity = node.publisher(f"{_PACKAGE}/msg/ControllerManagerActivity", "~/activity", _LATCHED)
         self._diagnostics = node.publisher("diagnostic_msgs/msg/DiagnosticArray", "/diagnostics")

@@ -13,8 +13,8 @@ from typing import Any
 from linkwright.control.hardware.timing import Timing
 from linkwright.control.manager.manager import ControllerManager
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
+from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import get_message
-from linkwright.simulation.plugins.node import PluginNode
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _PACKAGE = "pal_statistics_msgs/msg"
@@ -28,7 +28,7 @@ class StatisticsTopics:
         node: its node.
     """
 
-    def __init__(self, manager: ControllerManager, node: PluginNode) -> None:
+    def __init__(self, manager: ControllerManager, node: SteppedNode) -> None:
         self._manager = manager
         self._full = node.publisher(f"{_PACKAGE}/Statistics", "~/statistics/full")
         self._names = node.publisher(f"{_PACKAGE}/StatisticsNames", "~/statistics/names", _LATCHED)

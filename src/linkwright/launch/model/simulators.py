@@ -8,7 +8,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from linkwright.nodes.gazebo.command_line import SimulatorCommand
+    from linkwright.simulation.nodes.command_line import SimulatorCommand
 
 PROGRAMS = frozenset({"gazebo", "gzserver", "gzclient", "gz", "ign"})
 """The programs of Gazebo, for a quick check that excludes most commands."""
@@ -27,6 +27,6 @@ def simulator_of(words: Sequence[str], environment: Mapping[str, str]) -> Simula
         words = words[1:]
     if not words or PurePath(words[0]).name not in PROGRAMS or shutil.which(words[0], path=environment.get("PATH")):
         return None
-    from linkwright.nodes.gazebo.command_line import simulator_command
+    from linkwright.simulation.nodes.command_line import simulator_command
 
     return simulator_command(words)

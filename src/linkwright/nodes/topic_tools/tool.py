@@ -17,7 +17,7 @@ from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.qos.compatibility import fit
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import log_unknown, options_from_words, words_of
-from linkwright.nodes.teleop.standstill import VELOCITIES, send_stop
+from linkwright.nodes.standstill import VELOCITIES, send_stop
 
 
 class TopicTool(SingleNode, ABC):

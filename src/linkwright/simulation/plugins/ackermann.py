@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from math import copysign, dist, hypot, tan
 from typing import Any
 
+from linkwright.control.odometry import OdometryTopics, planar_variances, planar_velocity, transforms_topic
 from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import steered_apart
 from linkwright.messages import get_message
-from linkwright.simulation.plugins.odometry import OdometryTopics, planar_variances, planar_velocity, transforms_topic
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.simulation import NANOSECONDS
 

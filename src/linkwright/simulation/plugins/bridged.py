@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from linkwright.graph import EndpointKind, Node
-from linkwright.simulation.exchange import Exchange
+from linkwright.graph.stepped.exchange import Exchange
 
 _HIDDEN = "/_gz"
 

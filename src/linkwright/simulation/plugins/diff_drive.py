@@ -11,8 +11,16 @@ from functools import partial
 from math import inf
 from typing import Any, ClassVar, Generic, TypeVar
 
+from linkwright.control.odometry import (
+    OdometryTopics,
+    planar_variances,
+    planar_velocity,
+    transform_message,
+    transforms_topic,
+)
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import compose, invert
+from linkwright.graph.stepped.node import Output
 from linkwright.kinematics.drives import DifferentialDrive
 from linkwright.kinematics.planar import PlanarPose
 from linkwright.messages import Header
@@ -25,14 +33,6 @@ from linkwright.simulation.plugins.gz_drive import (
     DriveCommands,
     GzDriveParameters,
     connected,
-)
-from linkwright.simulation.plugins.node import Output
-from linkwright.simulation.plugins.odometry import (
-    OdometryTopics,
-    planar_variances,
-    planar_velocity,
-    transform_message,
-    transforms_topic,
 )
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin

@@ -5,9 +5,8 @@ Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_state``) and its messages.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection
 from functools import partial
-from math import isfinite
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
@@ -183,14 +182,3 @@ def transform_in(message: Any) -> Transform:
 def numbers(vector: Any) -> tuple[float, float, float]:
     """The x, y and z of a message."""
     return vector.x, vector.y, vector.z
-
-
-def has_numbers(message: Any) -> bool:
-    """Return whether all floating-point numbers of a message are finite."""
-    if isinstance(message, float):
-        return isfinite(message)
-    if hasattr(message, "get_fields_and_field_types"):
-        return all(has_numbers(getattr(message, name)) for name in message.get_fields_and_field_types())
-    if isinstance(message, (str, bytes, int)):
-        return True
-    return all(map(has_numbers, message)) if isinstance(message, Iterable) else True

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwright.control.odometry import TRANSFORMS, TRANSFORMS_DEPTH, planar_velocity, transform_message
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import (
     Transform,
@@ -23,7 +24,6 @@ from linkwright.geometry.single import (
 from linkwright.geometry.vectors import Vector3
 from linkwright.messages import Header, Quaternion, get_message
 from linkwright.messages import Vector3 as VectorMessage
-from linkwright.simulation.plugins.odometry import planar_velocity, transform_message, transforms_topic
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
@@ -119,7 +119,9 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         uncertain = parameters.odom_covariance_topic or f"/model/{model}/odometry_with_covariance"
         self._odometry = node.publisher("nav_msgs/msg/Odometry", topic, usual="/odom")
         self._uncertain = node.publisher("nav_msgs/msg/Odometry", uncertain)
-        self._transforms = transforms_topic(node, parameters.tf_topic or f"/model/{model}/pose", "/tf")
+        self._transforms = node.publisher(
+            TRANSFORMS, parameters.tf_topic or f"/model/{model}/pose", TRANSFORMS_DEPTH, usual="/tf"
+        )
         self.every(parameters.odom_publish_frequency, self._publish)
 
     def reset(self) -> None:

@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from linkwright.control.odometry import TRANSFORMS, TRANSFORMS_DEPTH, OdometryTopics
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.limits import SpeedLimits
-from linkwright.simulation.plugins.odometry import OdometryTopics, transforms_topic
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 GZ_RATE = 100.0
@@ -89,7 +89,7 @@ def connected(plugin: SimulatedPlugin[Any], parameters: GzDriveParameters, comma
     odometry = node.publisher(
         "nav_msgs/msg/Odometry", parameters.odom_topic or f"/model/{model}/odometry", usual="/odom"
     )
-    transforms = transforms_topic(node, parameters.tf_topic or f"/model/{model}/tf", "/tf")
+    transforms = node.publisher(TRANSFORMS, parameters.tf_topic or f"/model/{model}/tf", TRANSFORMS_DEPTH, usual="/tf")
     topic = parameters.topic or f"/model/{model}/cmd_vel"
     commander = node.commander(commands.rest)
     node.subscribe(

@@ -1,4 +1,4 @@
-"""The node of a plugin, for use in the simulation's thread."""
+"""The node of a plugin."""
 
 from __future__ import annotations
 
@@ -7,116 +7,23 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from linkwright.diagnostics import phrase
-from linkwright.graph import Logger, Node
+from linkwright.graph import Node
 from linkwright.graph.endpoints.base import Endpoint
-from linkwright.graph.endpoints.commander import Commander, who_was_lost
-from linkwright.graph.endpoints.drivers import DriverWatch
-from linkwright.graph.endpoints.info import EndpointInfo
-from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.endpoints.subscription import Subscription
-from linkwright.graph.faults import InvalidHandleError
+from linkwright.graph.endpoints.commander import Commander
 from linkwright.graph.qos.profile import QoSProfile
-from linkwright.messages import get_service
-from linkwright.simulation.exchange import Exchange
+from linkwright.graph.stepped.calls import Calls
+from linkwright.graph.stepped.exchange import Exchange
+from linkwright.graph.stepped.node import Output, SteppedNode
 from linkwright.simulation.plugins.bridged import BridgedTopics, gz_side
-from linkwright.simulation.plugins.calls import Calls, logged_calls
-from linkwright.simulation.plugins.entities import has_numbers
 from linkwright.simulation.plugins.ros_element import overridden
 from linkwright.xmltree import Element
 
 _NO_TOPIC = re.compile(r"[^A-Za-z0-9_/~]")
-_WARN_SECONDS = 1.0
 _FIRST_DIGIT = re.compile(r"(?<=/)(?=[0-9])")
 
 
-class _Outlet:
-    """The publishers of a topic, to which the exchange hands messages; an error ends only their plugin.
-
-    Args:
-        output: the topic.
-        make: makes a message of the values that are sent; None where messages themselves are.
-    """
-
-    __slots__ = ("_make", "_output")
-
-    def __init__(self, output: Output, make: Callable[..., Any] | None = None) -> None:
-        self._output = output
-        self._make = make
-
-    def publish(self, message: Any) -> None:
-        """Publish a message, or the one that is made of values."""
-        output, make = self._output, self._make
-        try:
-            made = message if make is None else make(*message)
-            for publisher in output.publishers:
-                publisher.publish(made)
-        except InvalidHandleError:
-            raise  # its model is gone
-        except Exception as error:  # noqa: BLE001 - of a message that a plugin made
-            output.exchange.post(partial(output.calls.fail, error))
-
-
-class Output:
-    """A topic that a plugin publishes, under one name or two.
-
-    Args:
-        exchange: that of the simulation.
-        publishers: one for each name.
-        calls: those of the plugin.
-    """
-
-    def __init__(self, exchange: Exchange, publishers: list[Publisher[Any]], calls: Calls) -> None:
-        self.exchange = exchange
-        self.publishers = publishers
-        self.calls = calls
-        self._outlet = _Outlet(self)
-        self._asked, self._is_wanted = 0, False
-
-    @property
-    def is_wanted(self) -> bool:
-        """Whether a subscriber exists; otherwise a costly message need not be made.
-
-        Subscriptions change at any time, on another thread; within one call of a plugin the answer stays the same.
-        """
-        number = self.calls.number
-        if not number:
-            return self._has_readers()
-        if number != self._asked:
-            self._asked, self._is_wanted = number, self._has_readers()
-        return self._is_wanted
-
-    def _has_readers(self) -> bool:
-        for publisher in self.publishers:  # noqa: SIM110 - `any` takes twice as long, and this is asked all the time
-            if publisher.get_subscription_count():
-                return True
-        return False
-
-    def publish(self, message: Any) -> None:
-        """Publish a message, which must not change afterwards."""
-        self.exchange.send(self._outlet, message)
-
-    def making(self, make: Callable[..., Any]) -> Callable[..., None]:
-        """Return a function that publishes the message which `make` makes of its arguments.
-
-        The message is made where it is published: a simulation with a thread of its own computes on meanwhile.
-
-        Args:
-            make: makes a message of values that do not change afterwards.
-        """
-        outlet = _Outlet(self, make)
-
-        def send(*values: Any) -> None:
-            self.exchange.send(outlet, values)
-
-        return send
-
-
-class PluginNode:
-    """Publishers, subscriptions, services and parameters of a plugin, called in the simulation's thread.
-
-    A plugin of Gazebo classic is a node; those of gz share that of the simulation. Callbacks run in the simulation's
-    thread, between two chunks of simulated time.
+class PluginNode(SteppedNode):
+    """The node of a plugin: its own for those of Gazebo classic, that of the simulation for those of gz.
 
     Args:
         node: the node.
@@ -127,9 +34,6 @@ class PluginNode:
         bridged: for plugins of gz, the topics that a bridge has under another type.
         now_ns: returns the time of the simulated motion, in nanoseconds; by default that of the node's clock.
         calls: calls its callbacks; by default an error of one is logged.
-
-    Attributes:
-        calls: calls its callbacks.
     """
 
     def __init__(
@@ -144,37 +48,12 @@ class PluginNode:
         now_ns: Callable[[], int] | None = None,
         calls: Calls | None = None,
     ) -> None:
-        self._node = node
-        self.calls = calls or logged_calls(node.get_logger(), node.get_fully_qualified_name())
-        self._now_ns = now_ns or node.get_clock().now_ns
-        self._exchange = exchange
-        self._owned = owned
-        self._qos = {(node.handle.resolve_topic_name(topic), side): each for (topic, side), each in qos.items()}
+        super().__init__(node, exchange, owned=owned, now_ns=now_ns, calls=calls)
+        self._qos = {(node.handle.resolve_topic_name(topic), side): policy for (topic, side), policy in qos.items()}
         self._usual = usual
         self._bridged = bridged
         self._forgetting: list[Callable[[], None]] = []
-        self._endpoints: list[Endpoint] = []
         self._names: list[str] = []
-
-    @property
-    def logger(self) -> Logger:
-        """The node's logger."""
-        return self._node.get_logger()
-
-    @property
-    def graph_node(self) -> Node:
-        """The node itself, for features such as actions: its callbacks run on the event loop."""
-        return self._node
-
-    @property
-    def exchange(self) -> Exchange:
-        """The queues between the thread of the simulation and the event loop."""
-        return self._exchange
-
-    @property
-    def name(self) -> str:
-        """The full name of the node."""
-        return self._node.get_fully_qualified_name()
 
     def publisher(self, msg_type: Any, topic: str, qos: QoSProfile | int = 10, *, usual: str = "") -> Output:
         """A topic to publish.
@@ -186,12 +65,7 @@ class PluginNode:
             usual: for topics of gz, the name that they have on robots: it is published under that one too, where the
                 simulation is asked for it and no other plugin has it.
         """
-        publishers = []
-        for name in self._both(topic, usual):
-            profile = self._profile(name, "publisher", qos)
-            publishers.append(self._node.create_publisher(msg_type, name, profile))
-        self._endpoints += publishers
-        return Output(self._exchange, publishers, self.calls)
+        return self._publish_as(msg_type, self._both(topic, usual), qos)
 
     def subscribe(
         self,
@@ -200,75 +74,19 @@ class PluginNode:
         callback: Callable[[Any], object],
         qos: QoSProfile | int = 10,
         *,
-        usual: str = "",
         commander: Commander | None = None,
         rest: Callable[[], object] | None = None,
+        usual: str = "",
     ) -> None:
-        """Subscribe to a topic.
-
-        The arguments are those of `publisher`; for commands that hold until the next one, ``commander`` is one that
-        the method of this name gave. ``rest`` is called in place of the function where a number of the message is none
-        (NaN or infinite), which is logged: the world would be unstable with it.
-        """
-        if rest is not None:
-            callback = partial(self._sound, callback, rest, topic)
-        received: Callable[..., object] = partial(self._received, callback)
-        if commander is not None:
-            received = commander.taking(received)
-        for name in self._both(topic, usual):
-            profile = self._profile(name, "subscriber", qos)
-
-            def listen(name: str, profile: QoSProfile = profile) -> Endpoint:
-                subscription: Subscription[Any] = self._node.create_subscription(msg_type, name, received, profile)
-                self._endpoints.append(subscription)
-                if commander is not None:
-                    commander.watch(subscription)
-                return subscription
-
-            self._listen(self._node.handle.resolve_topic_name(name), listen)
-
-    def commander(self, rest: Callable[[], bool]) -> Commander:
-        """A watcher of topics whose commands hold until the next one: a lost publisher's command is withdrawn.
-
-        It also warns where several nodes command at the same time.
-
-        Args:
-            rest: stops the motion of the last command; returns whether there was one, which is logged.
-        """
-
-        def lost(publisher: EndpointInfo) -> None:
-            self.post(partial(self._rest, rest, publisher))
-
-        return Commander(lost, DriverWatch(self.logger, self._node.graph, self._now_ns))
-
-    def service(self, srv_type: str, name: str, callback: Callable[[Any, Any], Any]) -> None:
-        """Offer a service, whose callback gets the request and an empty response, and returns the response."""
-        response = get_service(srv_type).Response
-
-        def asked(request: Any, reply: Callable[[Any], None]) -> None:
-            self.post(lambda: reply(callback(request, response())))
-
-        self._endpoints.append(self._node.create_service(srv_type, name, asked, replying=True))
-
-    def post(self, command: Callable[[], object]) -> None:
-        """Queue a function for the simulation's thread, to be called between two chunks of time; from any thread."""
-        self._exchange.post(partial(self.calls.make, command))
-
-    def parameter(self, name: str, default: Any) -> Any:
-        """The value of a parameter of the node, which is declared with a default."""
-        if not self._node.has_parameter(name):
-            self._node.declare_parameter(name, default)
-        return self._node.get_parameter(name).value
+        """Subscribe to a topic; the arguments are those of `publisher` and of `SteppedNode.subscribe`."""
+        received = self._received_by(topic, callback, rest, commander)
+        self._subscribe_to(msg_type, self._both(topic, usual), received, qos, commander)
 
     def close(self) -> None:
         """Remove everything that was made from the graph."""
         for forget in self._forgetting:
             forget()
-        if self._owned:
-            self._node.destroy_node()
-        else:
-            for endpoint in self._endpoints:
-                endpoint.destroy()
+        super().close()
         if self._usual is not None:
             self._usual.difference_update(self._names)
 
@@ -301,19 +119,3 @@ class PluginNode:
         profile = QoSProfile.of(qos)
         override = self._qos.get((self._node.handle.resolve_topic_name(topic), side))
         return profile if override is None else overridden(profile, override)
-
-    def _rest(self, rest: Callable[[], bool], publisher: EndpointInfo) -> None:
-        if rest():
-            self.logger.warning(phrase("{who}: the motion stops", who=who_was_lost(publisher)))
-
-    def _sound(self, callback: Callable[[Any], object], rest: Callable[[], object], topic: str, message: Any) -> None:
-        """Pass a command on if its numbers are finite; stop otherwise."""
-        if has_numbers(message):
-            callback(message)
-            return
-        rest()
-        warning = phrase("'{topic}': a command with NaN or an infinite number stops the motion", topic=topic)
-        self.logger.warning(warning, throttle_duration_sec=_WARN_SECONDS)
-
-    def _received(self, callback: Callable[[Any], object], message: Any) -> None:
-        self.post(partial(callback, message))

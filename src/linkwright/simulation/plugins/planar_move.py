@@ -10,14 +10,14 @@ from dataclasses import dataclass
 from math import cos, sin
 from typing import Any, Generic, TypeVar
 
-from linkwright.diagnostics import phrase
-from linkwright.simulation.plugins.odometry import (
+from linkwright.control.odometry import (
     OdometryTopics,
     planar_variances,
     planar_velocity,
     transforms_topic,
     yaw_of,
 )
+from linkwright.diagnostics import phrase
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 

@@ -10,11 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from linkwright.control.odometry import transform_stamped
+from linkwright.graph.stepped.node import Output
 from linkwright.messages import Header, get_message
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.simulation.plugins.node import Output
-from linkwright.simulation.plugins.odometry import transform_stamped
 from linkwright.simulation.plugins.parts import Part, PartKind, parts_of
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 

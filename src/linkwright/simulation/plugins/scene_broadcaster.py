@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwright.geometry.single import Transform
+from linkwright.graph.stepped.node import Output
 from linkwright.messages.tf_message import TFMessage, TransformBatch
 from linkwright.sdf.frames import Frames
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parts import PartKind, Pose, parts_of
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 

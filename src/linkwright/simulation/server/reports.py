@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from linkwright.descriptions.conversion import with_addresses
 from linkwright.geometry.single import Transform
 from linkwright.graph import CLOCK_QOS, DurabilityPolicy, QoSProfile
+from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import Header, String, Time, get_message
 from linkwright.messages.tf_message import TFMessage, TransformBatch
 from linkwright.sdf.frames import pose_of
@@ -21,7 +22,6 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.poses import WORLD, RawPose
 from linkwright.sdf.resources import Missing, ResourceFinder
 from linkwright.sdf.writer import WrittenModel, save_model_of_world, save_world
-from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.simulation import NANOSECONDS
 
@@ -44,7 +44,7 @@ class Reports:
         clock_rate: how often a simulated second the time is published.
     """
 
-    def __init__(self, server: SimulationServer, topics: PluginNode, clock_rate: float) -> None:
+    def __init__(self, server: SimulationServer, topics: SteppedNode, clock_rate: float) -> None:
         self._server = server
         self._clock = topics.publisher(_CLOCK, "/clock", CLOCK_QOS)
         self._state = topics.publisher(_STATE, "/simulation_state", _LATCHED)

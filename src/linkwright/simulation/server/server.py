@@ -14,16 +14,17 @@ import numpy as np
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, joined, phrase
 from linkwright.geometry.single import IDENTITY, Transform
 from linkwright.graph import Node
+from linkwright.graph.stepped.calls import Calls
+from linkwright.graph.stepped.exchange import Exchange
 from linkwright.sdf.comparison import alike
 from linkwright.sdf.models import Model
 from linkwright.sdf.plugins import Plugin, library_name, original_library
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import as_saved
 from linkwright.sdf.worlds import World
-from linkwright.simulation.exchange import Exchange
 from linkwright.simulation.plugins.alternatives import alternative_to
 from linkwright.simulation.plugins.bridged import BridgedTopics
-from linkwright.simulation.plugins.calls import Calls, findings_of
+from linkwright.simulation.plugins.findings import findings_of
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import parameters_from
 from linkwright.simulation.plugins.places import of_model, of_world

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.single import Transform, compose, rotate
+from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import Header, Time
 from linkwright.sdf.frames import transform_of
 from linkwright.sdf.poses import WORLD
@@ -23,7 +24,6 @@ from linkwright.simulation.plugins.entities import (
     told,
     transform_in,
 )
-from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.server.entities import Entity, entity_from
 from linkwright.simulation.server.loading import WorldLoader
 from linkwright.simulation.server.server import SimulationServer
@@ -75,7 +75,7 @@ class Services:
         self,
         server: SimulationServer,
         runner: Progress,
-        node: PluginNode,
+        node: SteppedNode,
         world: LoadedWorld,
         library: DescriptionLibrary,
     ) -> None:

@@ -8,9 +8,9 @@ from typing import Any, Generic, TypeVar
 
 from linkwright.geometry.arrays import Array
 from linkwright.graph.qos.profile import QoSProfile
+from linkwright.graph.stepped.node import Output
 from linkwright.messages import Header, Vector3, get_message
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.sensors.mount import Mount

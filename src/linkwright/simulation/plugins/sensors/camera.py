@@ -15,10 +15,10 @@ import numpy as np
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.single import Transform, compose
+from linkwright.graph.stepped.node import Output
 from linkwright.messages import get_message
 from linkwright.sdf.cameras import Camera
 from linkwright.sdf.frames import transform_of
-from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, SensorPlugin
 from linkwright.simulation.plugins.sensors.clouds import fill_camera_cloud

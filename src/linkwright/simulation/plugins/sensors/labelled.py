@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from linkwright.graph.stepped.node import Output
 from linkwright.messages import get_message
 from linkwright.sdf.models import Model
 from linkwright.sdf.plugins import Plugin, library_name
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.sensors.camera import IMAGE, INFO, CameraPlugin, MountedCamera
 from linkwright.simulation.plugins.sensors.pictures import Pixels, fill_camera_info, fill_image

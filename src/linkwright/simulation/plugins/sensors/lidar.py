@@ -16,9 +16,9 @@ import numpy as np
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.graph.qos.profile import SENSOR_DATA_QOS
+from linkwright.graph.stepped.node import Output
 from linkwright.messages import get_message
 from linkwright.sdf.sensors import Lidar
-from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic, SensorPlugin
 from linkwright.simulation.plugins.sensors.clouds import GZ, VELODYNE, fill_lidar_cloud

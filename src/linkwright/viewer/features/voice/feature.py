@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwright.graph import Publisher, PublisherEventCallbacks, Subscription
 from linkwright.graph.endpoints.event_types import QoSPublisherMatchedInfo
-from linkwright.nodes.voice.audio_topics import NAMESPACE, AudioTopics
+from linkwright.speech.nodes.audio_topics import NAMESPACE, AudioTopics
 from linkwright.speech.sound.samples import RATE
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.features.voice.floor import Floor, SoundBudget

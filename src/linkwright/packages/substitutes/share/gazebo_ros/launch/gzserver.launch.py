@@ -10,7 +10,7 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 from launch import LaunchDescription
-from linkwright.nodes.gazebo.command_line import classic_server
+from linkwright.simulation.nodes.command_line import classic_server
 
 IGNORED = {
     "factory": "true",

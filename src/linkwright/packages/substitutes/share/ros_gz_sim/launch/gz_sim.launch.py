@@ -9,7 +9,7 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 from launch import LaunchDescription
-from linkwright.nodes.gazebo.command_line import gz_server
+from linkwright.simulation.nodes.command_line import gz_server
 
 ARGUMENTS = {
     "gz_args": ("", "The command line of gz sim"),

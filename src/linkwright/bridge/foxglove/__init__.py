@@ -1,0 +1,5 @@
+"""foxglove_bridge: the graph over a WebSocket, by the protocol of Foxglove and Lichtblick."""
+
+from linkwright.bridge.foxglove.bridge import FoxgloveBridge
+
+__all__ = ["FoxgloveBridge"]

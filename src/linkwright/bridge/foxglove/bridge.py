@@ -1,0 +1,251 @@
+"""foxglove_bridge: serves the graph to Foxglove and Lichtblick over a WebSocket."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, cast
+
+from linkwright.bridge.foxglove.assets import Assets
+from linkwright.bridge.foxglove.clients import Client
+from linkwright.bridge.foxglove.names import NameFilter
+from linkwright.bridge.foxglove.origins import is_welcome
+from linkwright.bridge.foxglove.parameters import Parameters, parameter_entry
+from linkwright.bridge.foxglove.protocol import ENCODING, SUBPROTOCOLS, time_frame
+from linkwright.bridge.foxglove.services import Services
+from linkwright.bridge.foxglove.session import Offer, Session
+from linkwright.bridge.foxglove.topics import Channels
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.graph import DESCRIPTION_QOS, Graph
+from linkwright.messages import String
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+
+if TYPE_CHECKING:
+    from aiohttp import web
+
+_CAPABILITIES = ("clientPublish", "parameters", "parametersSubscribe", "services", "connectionGraph", "assets")
+_EVERYTHING = [".*"]
+_MOST_CLIENTS = 32
+_LARGEST_MESSAGE = 16 << 20
+_LOOK_AFTER = 0.1
+"""Seconds for which changes of the graph are gathered."""
+
+
+class FoxgloveBridge(SingleNode):
+    """The node, with the parameters of ROS's foxglove_bridge where it has the same.
+
+    It binds the loopback address unless `address` names another, because every client that connects may publish, call
+    services and set parameters.
+    """
+
+    DEFAULT_NAME = "foxglove_bridge"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        with starting(self._node):
+            declare = self._node.declare_parameter
+            port, address = int(declare("port", 8765).value), str(declare("address", "127.0.0.1").value)
+            filters = {
+                name: NameFilter(name, list(declare(name, _EVERYTHING).value))
+                for name in ("topic_whitelist", "service_whitelist", "param_whitelist", "client_topic_whitelist")
+            }
+            self._origins: Sequence[str] = list(declare("allowed_origins", [""]).value)
+            self._most_bytes = int(declare("send_buffer_limit", 10_000_000).value)
+            self._listener = _listen(address, port)
+        self._offer = Offer(
+            node=self._node,
+            channels=Channels(self._node, filters["topic_whitelist"]),
+            services=Services(self._node, filters["service_whitelist"]),
+            parameters=Parameters(self._node, filters["param_whitelist"]),
+            assets=Assets(),
+            publishable=filters["client_topic_whitelist"],
+        )
+        self._capabilities = list(_CAPABILITIES)
+        self._sessions: dict[Session, None] = {}
+        self._loop = asyncio.get_running_loop()
+        self._runner: web.AppRunner | None = None
+        self._server: asyncio.Server | None = None
+        self._look_due: asyncio.TimerHandle | None = None
+        self._identity = str(time.time_ns())
+        self._listen_to_the_graph(graph)
+        self._serving = self._loop.create_task(self._serve())
+
+    @property
+    def address(self) -> str:
+        """The address for clients."""
+        host, port = self._listener.getsockname()[:2]
+        return f"ws://[{host}]:{port}" if ":" in host else f"ws://{host}:{port}"
+
+    def close(self) -> None:
+        """Close the connections and the server."""
+        self._graph.unwatch(self._graph_changed)
+        if self._look_due is not None:
+            self._look_due.cancel()
+        for session in list(self._sessions):
+            session.close()
+        self._offer.parameters.close()
+        self._serving.cancel()
+        (self._server or self._listener).close()  # now: the loop may end before it runs scheduled callbacks
+        if self._runner is not None:
+            self._goodbye = self._loop.create_task(self._runner.cleanup())
+        super().close()
+
+    # --- the graph ---------------------------------------------------------------------------------------------
+
+    def _listen_to_the_graph(self, graph: Graph) -> None:
+        self._graph = graph
+        node = self._node
+        graph.watch(self._graph_changed)
+        node.create_subscription(
+            String, "/robot_description", lambda message: self._offer.assets.described(message.data), DESCRIPTION_QOS
+        )
+        node.create_subscription(
+            "rcl_interfaces/msg/ParameterEvent", "/parameter_events", self._parameters_changed, 100
+        )
+        if node.get_parameter("use_sim_time").value:
+            self._capabilities.append("time")
+            node.create_subscription("rosgraph_msgs/msg/Clock", "/clock", self._ticked, 10)
+        self._offer.channels.look()
+        self._offer.services.look()
+
+    def _graph_changed(self) -> None:
+        with suppress(RuntimeError):  # the loop is closed
+            self._loop.call_soon_threadsafe(self._look_soon)
+
+    def _look_soon(self) -> None:
+        if self._look_due is None and not self._node.handle.is_destroyed:
+            self._look_due = self._loop.call_later(_LOOK_AFTER, self._look)
+
+    def _look(self) -> None:
+        self._look_due = None
+        channels, gone = self._offer.channels.look()
+        services, ended = self._offer.services.look()
+        messages: list[dict[str, Any]] = []
+        if gone:
+            messages.append({"op": "unadvertise", "channelIds": gone})
+        if channels:
+            messages.append({"op": "advertise", "channels": [channel.advertisement() for channel in channels]})
+        if ended:
+            messages.append({"op": "unadvertiseServices", "serviceIds": ended})
+        if services:
+            messages.append({"op": "advertiseServices", "services": [service.advertisement() for service in services]})
+        for session in self._sessions:
+            for message in messages:
+                session.client.send(message)
+            session.graph_changed(gone)
+
+    def _parameters_changed(self, event: Any) -> None:
+        from linkwright.graph.parameters.files import plain_value
+
+        watching = [session for session in self._sessions if session.parameters is not None]
+        if not watching:
+            return
+        changed = [
+            parameter_entry(f"{event.node}.{new_parameter.name}", plain_value(new_parameter.value))
+            for new_parameter in (*event.new_parameters, *event.changed_parameters)
+        ]
+        for session in watching:
+            wanted = [
+                parameter for parameter in changed if not session.parameters or parameter["name"] in session.parameters
+            ]
+            if wanted:
+                session.client.send({"op": "parameterValues", "parameters": wanted})
+
+    def _ticked(self, message: Any) -> None:
+        frame = time_frame(message.clock.sec * 1_000_000_000 + message.clock.nanosec)
+        for session in self._sessions:
+            session.client.send_data(frame)
+
+    # --- the network -------------------------------------------------------------------------------------------
+
+    async def _serve(self) -> None:
+        from linkwright.http_server import SERVER_LOGGER, web
+
+        application = web.Application()
+        application.router.add_get("/", self._connected)
+        self._runner = web.AppRunner(
+            application, handle_signals=False, access_log=None, logger=SERVER_LOGGER, shutdown_timeout=0.5
+        )
+        await self._runner.setup()
+        serve = cast("web.Server", self._runner.server)
+        self._server = await self._loop.create_server(serve, sock=self._listener, start_serving=False)
+        await self._server.start_serving()
+        self._node.get_logger().info(f"Foxglove and Lichtblick connect to {self.address}")
+
+    async def _connected(self, request: web.Request) -> web.StreamResponse:
+        from linkwright.http_server import web
+
+        if not is_welcome(request.headers.get("Origin"), self._origins):
+            return web.Response(status=403, text="Pages of other sites may not connect.\n")
+        if len(self._sessions) >= _MOST_CLIENTS:
+            return web.Response(status=503, text="Too many clients are connected.\n")
+        socket_ = web.WebSocketResponse(
+            protocols=SUBPROTOCOLS, heartbeat=15.0, timeout=0.5, compress=False, max_msg_size=_LARGEST_MESSAGE
+        )
+        if not socket_.can_prepare(request).ok:
+            return web.Response(status=426, text="Open this address in Foxglove or Lichtblick.\n")
+        await socket_.prepare(request)
+        if socket_.ws_protocol is None:
+            await socket_.close(code=1002, message=b"the client speaks none of the protocols")
+            return socket_
+        client = Client(socket_, self._most_bytes)
+        session = Session(self._offer, client)
+        self._greet(client)
+        self._sessions[session] = None
+        writer = asyncio.get_running_loop().create_task(client.write())
+        try:
+            async for message in socket_:
+                if message.type in (web.WSMsgType.TEXT, web.WSMsgType.BINARY):
+                    session.receive(message.data)
+        finally:
+            self._sessions.pop(session, None)
+            session.close()
+            writer.cancel()
+            await asyncio.gather(writer, return_exceptions=True)
+        return socket_
+
+    def _greet(self, client: Client) -> None:
+        client.send(
+            {
+                "op": "serverInfo",
+                "name": "linkwright",
+                "capabilities": self._capabilities,
+                "supportedEncodings": [ENCODING],
+                "metadata": {"ROS_DISTRO": "jazzy"},
+                "sessionId": self._identity,
+            }
+        )
+        client.send(
+            {"op": "advertise", "channels": [channel.advertisement() for channel in self._offer.channels.all()]}
+        )
+        client.send(
+            {
+                "op": "advertiseServices",
+                "services": [offered_service.advertisement() for offered_service in self._offer.services.all()],
+            }
+        )
+
+
+def _listen(address: str, port: int) -> socket.socket:
+    """Open a listening socket.
+
+    Raises:
+        LinkwrightError: NODE702, it cannot listen there.
+    """
+    try:
+        listener = socket.create_server((address, port), family=socket.AF_INET6 if ":" in address else socket.AF_INET)
+    except (OSError, OverflowError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        message = phrase(
+            "foxglove_bridge cannot listen on port {port} of '{address}': {reason}",
+            port=port,
+            address=address,
+            reason=foreign(reason),
+        )
+        hint = phrase("choose another port with the parameter 'port', or with '--foxglove'")
+        raise LinkwrightError(Diagnostic("NODE702", message, hint=hint)) from None
+    listener.setblocking(False)
+    return listener

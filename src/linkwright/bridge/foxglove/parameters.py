@@ -1,0 +1,127 @@
+"""Parameters of all nodes for clients, by names such as ``/node.parameter``."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from linkwright.bridge.foxglove.names import NameFilter
+from linkwright.graph import EndpointKind, Node, Parameter
+from linkwright.graph.parameters.client import AsyncParameterClient
+from linkwright.graph.parameters.files import plain_value
+
+_PATIENCE = 2.0
+_SERVICE = "/get_parameters"
+
+
+class Parameters:
+    """Reads and sets the parameters of other nodes.
+
+    Args:
+        node: the node that asks.
+        wanted: the filter of parameter names.
+    """
+
+    def __init__(self, node: Node, wanted: NameFilter) -> None:
+        self._node = node
+        self._filter = wanted
+        self._clients: dict[str, AsyncParameterClient] = {}
+
+    async def get(self, names: Sequence[str]) -> list[dict[str, Any]]:
+        """The parameters of these names, or all, in the form for clients."""
+        by_node: dict[str, list[str] | None] = {}
+        if names:
+            for name in names:
+                node, _, parameter = name.partition(".")
+                by_node[node] = [*(by_node.get(node) or ()), parameter]
+        else:
+            by_node = dict.fromkeys(self._nodes())
+        self._forget_the_gone()
+        found = await asyncio.gather(*(self._of(node, wanted) for node, wanted in by_node.items()))
+        return [
+            parameter for parameters in found for parameter in parameters if self._filter.accepts(parameter["name"])
+        ]
+
+    async def set(self, parameters: Sequence[Mapping[str, Any]]) -> None:
+        """Set parameters; those that nodes refuse keep their values."""
+        for mapping in parameters:
+            name = str(mapping.get("name", ""))
+            node, _, parameter = name.partition(".")
+            if parameter and node in self._nodes() and self._filter.accepts(name):
+                value = _value(mapping)
+                await self._answer(self._client(node).set_parameters([Parameter(parameter, value=value)]))
+
+    def close(self) -> None:
+        """Close the clients of the parameter services."""
+        for client in self._clients.values():
+            client.destroy()
+        self._clients.clear()
+
+    def _nodes(self) -> list[str]:
+        own = self._node.get_fully_qualified_name()
+        services = {
+            endpoint.name.removesuffix(_SERVICE)
+            for endpoint in self._node.graph.endpoints()
+            if endpoint.kind is EndpointKind.SERVICE and endpoint.name.endswith(_SERVICE)
+        }
+        return sorted(services - {own})
+
+    def _forget_the_gone(self) -> None:
+        for node in self._clients.keys() - set(self._nodes()):
+            self._clients.pop(node).destroy()
+
+    async def _of(self, node: str, wanted: Sequence[str] | None) -> list[dict[str, Any]]:
+        if node not in self._nodes():
+            return []
+        client = self._client(node)
+        if wanted is None:
+            listed = await self._answer(client.list_parameters())
+            wanted = list(listed.result.names) if listed is not None else []
+        if not wanted:
+            return []
+        answer = await self._answer(client.get_parameters(list(wanted)))
+        if answer is None:
+            return []
+        pairs = zip(wanted, map(plain_value, answer.values), strict=False)
+        return [parameter_entry(f"{node}.{name}", value) for name, value in pairs if value is not None]
+
+    def _client(self, node: str) -> AsyncParameterClient:
+        if node not in self._clients:
+            self._clients[node] = AsyncParameterClient(self._node, node)
+        return self._clients[node]
+
+    async def _answer(self, future: Any) -> Any:
+        """The result of a future of the graph; None if it takes too long."""
+        loop = asyncio.get_running_loop()
+        done = asyncio.Event()
+        future.add_done_callback(lambda _: loop.call_soon_threadsafe(done.set))
+        try:
+            await asyncio.wait_for(done.wait(), _PATIENCE)
+            return future.result()
+        except asyncio.TimeoutError:
+            return None
+
+
+def parameter_entry(name: str, value: Any) -> dict[str, Any]:
+    """A parameter in the form for clients."""
+    parameter: dict[str, Any] = {"name": name, "value": value}
+    if isinstance(value, (bytes, bytearray)):
+        parameter.update(value=base64.b64encode(value).decode(), type="byte_array")
+    elif isinstance(value, float):
+        parameter["type"] = "float64"
+    elif isinstance(value, list) and value and all(isinstance(number, float) for number in value):
+        parameter["type"] = "float64_array"
+    return parameter
+
+
+def _value(parameter: Mapping[str, Any]) -> Any:
+    value, kind = parameter.get("value"), parameter.get("type")
+    if kind == "byte_array":
+        return [bytes([byte]) for byte in base64.b64decode(str(value))]
+    if kind == "float64" and isinstance(value, (int, float)):
+        return float(value)
+    if kind == "float64_array" and isinstance(value, list):
+        return [float(number) for number in value]
+    return value

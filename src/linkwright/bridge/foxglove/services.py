@@ -1,0 +1,128 @@
+"""Services of the graph for clients."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.bridge.foxglove.names import NameFilter
+from linkwright.bridge.foxglove.protocol import ENCODING, SCHEMA_ENCODING, ServiceRequest
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Client as ServiceClient
+from linkwright.graph import EndpointKind, Node
+from linkwright.messages import deserialize, get_service, serialize
+from linkwright.messages.schema_text import schema_of
+
+_PATIENCE = 10.0
+"""Seconds for an answer."""
+
+
+class CallFailedError(Exception):
+    """A service call failed; the text gives the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class OfferedService:
+    """A service with its type and number."""
+
+    number: int
+    name: str
+    type_name: str
+
+    def advertisement(self) -> dict[str, Any]:
+        """The service in the form for clients, with the keys of older versions too."""
+        schemas = {part: schema_of(f"{self.type_name}_{part}") for part in ("Request", "Response")}
+        advertisement: dict[str, Any] = {"id": self.number, "name": self.name, "type": self.type_name}
+        for part, schema in schemas.items():
+            advertisement[part.lower()] = {
+                "encoding": ENCODING,
+                "schemaName": f"{self.type_name}_{part}",
+                "schemaEncoding": SCHEMA_ENCODING,
+                "schema": schema,
+            }
+            advertisement[f"{part.lower()}Schema"] = schema
+        return advertisement
+
+
+class Services:
+    """The services that clients can call.
+
+    Args:
+        node: calls.
+        wanted: the filter of service names.
+    """
+
+    def __init__(self, node: Node, wanted: NameFilter) -> None:
+        self._node = node
+        self._filter = wanted
+        self._offered: dict[tuple[str, str], OfferedService] = {}
+        self._clients: dict[int, ServiceClient[Any, Any]] = {}
+        self._last = 0
+
+    def all(self) -> list[OfferedService]:
+        """All services now."""
+        return list(self._offered.values())
+
+    def look(self) -> tuple[list[OfferedService], list[int]]:
+        """Return the services added since the last call, and the numbers of the removed ones."""
+        there = {
+            (endpoint.name, endpoint.type_name)
+            for endpoint in self._node.graph.endpoints()
+            if endpoint.kind is EndpointKind.SERVICE and self._filter.accepts(endpoint.name)
+        }
+        gone = [self._offered.pop(key).number for key in list(self._offered) if key not in there]
+        for number in gone:
+            if number in self._clients:
+                self._node.destroy_client(self._clients.pop(number))
+        come = []
+        for name, type_name in sorted(there - self._offered.keys()):
+            try:
+                get_service(type_name)
+            except LinkwrightError:
+                continue  # its definition is not here
+            self._last += 1
+            self._offered[name, type_name] = OfferedService(self._last, name, type_name)
+            come.append(self._offered[name, type_name])
+        return come, gone
+
+    async def call(self, request: ServiceRequest) -> bytes:
+        """Call a service; its response as CDR.
+
+        Raises:
+            CallFailedError: there is none.
+        """
+        service = next(
+            (
+                offered_service
+                for offered_service in self._offered.values()
+                if offered_service.number == request.service
+            ),
+            None,
+        )
+        if service is None:
+            raise CallFailedError("there is no such service any more")
+        if request.encoding != ENCODING:
+            raise CallFailedError(f"the encoding '{request.encoding[:40]}' is not understood; send {ENCODING}")
+        kind: Any = get_service(service.type_name)
+        client = self._clients.get(service.number)
+        if client is None:
+            client = self._clients[service.number] = self._node.create_client(kind, service.name)
+        try:
+            wanted = deserialize(request.data, kind.Request)
+        except LinkwrightError as error:
+            raise CallFailedError(error.diagnostics[0].message) from None
+        future = client.call_async(wanted)
+        loop = asyncio.get_running_loop()
+        answered = asyncio.Event()
+        future.add_done_callback(lambda _: loop.call_soon_threadsafe(answered.set))
+        try:
+            await asyncio.wait_for(answered.wait(), _PATIENCE)
+        except asyncio.TimeoutError:
+            client.remove_pending_request(future)
+            raise CallFailedError(f"'{service.name}' did not answer within {_PATIENCE:g} s") from None
+        try:
+            answer: Any = future.result()
+            return bytes(serialize(answer))
+        except Exception as error:  # noqa: BLE001 - an exception of the service's code
+            raise CallFailedError(str(error)) from None

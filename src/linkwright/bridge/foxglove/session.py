@@ -1,0 +1,218 @@
+"""The session of one client: its requests, subscriptions and publications."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Coroutine
+from dataclasses import dataclass, field
+from typing import Any
+
+from linkwright.bridge.foxglove.assets import AssetRefusedError, Assets
+from linkwright.bridge.foxglove.clients import Client
+from linkwright.bridge.foxglove.connections import Connections, connections, update
+from linkwright.bridge.foxglove.names import NameFilter
+from linkwright.bridge.foxglove.parameters import Parameters
+from linkwright.bridge.foxglove.protocol import (
+    BadFrameError,
+    ClientMessage,
+    ServiceRequest,
+    StatusLevel,
+    asset,
+    asset_error,
+    read_frame,
+    service_response,
+    status,
+)
+from linkwright.bridge.foxglove.services import CallFailedError, Services
+from linkwright.bridge.foxglove.topics import Channels, Forwarding, Publication
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Node
+
+_MOST_TASKS = 64
+"""Questions of one client that may be open at once."""
+
+_MOST_CHANNELS = 1000
+
+
+@dataclass(slots=True)
+class Offer:
+    """The channels, services, parameters and assets that sessions share."""
+
+    node: Node
+    channels: Channels
+    services: Services
+    parameters: Parameters
+    assets: Assets
+    publishable: NameFilter
+
+
+@dataclass(slots=True, eq=False)
+class Session:
+    """Handles the requests of one client.
+
+    Attributes:
+        watches_connections: whether the client is notified of connections.
+        parameters: names of the parameters whose changes are sent to the client; empty for all, None for none.
+    """
+
+    offer: Offer
+    client: Client
+    watches_connections: bool = False
+    parameters: set[str] | None = None
+    _known: Connections | None = None
+    _forwardings: dict[int, Forwarding] = field(default_factory=dict)
+    _publications: dict[int, Publication] = field(default_factory=dict)
+    _tasks: set[asyncio.Task[None]] = field(default_factory=set)
+
+    def receive(self, message: str | bytes) -> None:
+        """Handle a message of the client; errors are sent back to it."""
+        try:
+            if isinstance(message, bytes):
+                self._frame(read_frame(message))
+            else:
+                self._operation(json.loads(message))
+        except LinkwrightError as error:
+            self._complain(error.diagnostics[0].message)
+        except BadFrameError as error:
+            self._complain(str(error))
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+            self._complain(f"the message is not of the protocol: {type(error).__name__}: {str(error)[:200]}")
+
+    def graph_changed(self, gone: list[int]) -> None:
+        """Drop subscriptions of channels that went, and update the connection graph."""
+        for number, forwarding in list(self._forwardings.items()):
+            if forwarding.channel.number in gone:
+                self._forwardings.pop(number).close()
+        self.send_connections()
+
+    def send_connections(self) -> None:
+        """Send the changes of the connection graph, if the client subscribed to it."""
+        if self.watches_connections:
+            now = connections(self.offer.node)
+            if now != self._known:
+                self.client.send(update(self._known, now))
+                self._known = now
+
+    def close(self) -> None:
+        """Close all that the client opened."""
+        for task in self._tasks:
+            task.cancel()
+        for forwarding in self._forwardings.values():
+            forwarding.close()
+        for publication in self._publications.values():
+            publication.close()
+        self._forwardings.clear()
+        self._publications.clear()
+
+    # --- messages ----------------------------------------------------------------------------------------------
+
+    def _frame(self, frame: ClientMessage | ServiceRequest) -> None:
+        if isinstance(frame, ServiceRequest):
+            self._run(self._call(frame))
+        elif frame.channel in self._publications:
+            self._publications[frame.channel].publish(frame.data)
+        else:
+            self._complain(f"channel {frame.channel} was not advertised")
+
+    def _operation(self, request: dict[str, Any]) -> None:
+        match request["op"]:
+            case "subscribe":
+                for subscription in request["subscriptions"]:
+                    self._subscribe(int(subscription["id"]), int(subscription["channelId"]))
+            case "unsubscribe":
+                for number in request["subscriptionIds"]:
+                    if number in self._forwardings:
+                        self._forwardings.pop(number).close()
+            case "advertise":
+                for channel in request["channels"]:
+                    self._advertise(int(channel["id"]), channel)
+            case "unadvertise":
+                for number in request["channelIds"]:
+                    if number in self._publications:
+                        self._publications.pop(number).close()
+            case "getParameters":
+                self._run(self._send_parameters([str(name) for name in request["parameterNames"]], request.get("id")))
+            case "setParameters":
+                self._run(self._set_parameters(list(request["parameters"]), request.get("id")))
+            case "subscribeParameterUpdates":
+                names = {str(name) for name in request["parameterNames"]}
+                self.parameters = (self.parameters or set()) | names if names else set()
+            case "unsubscribeParameterUpdates":
+                left = (self.parameters or set()) - {str(name) for name in request["parameterNames"]}
+                self.parameters = left if request["parameterNames"] and left else None
+            case "subscribeConnectionGraph":
+                self.watches_connections, self._known = True, None
+                self.send_connections()
+            case "unsubscribeConnectionGraph":
+                self.watches_connections = False
+            case "fetchAsset":
+                self._run(self._fetch(str(request["uri"]), int(request["requestId"])))
+            case operation:
+                self._complain(f"no message has the op '{str(operation)[:40]}'")
+
+    def _subscribe(self, number: int, channel_number: int) -> None:
+        channel = self.offer.channels.get(channel_number)
+        if channel is None:
+            self._complain(f"there is no channel {channel_number}")
+        elif number in self._forwardings:
+            self._complain(f"subscription {number} is there already")
+        elif any(forwarding.channel is channel for forwarding in self._forwardings.values()):
+            self._complain(f"'{channel.topic}' is subscribed to already", StatusLevel.WARNING)
+        else:
+            self._forwardings[number] = Forwarding(self.offer.node, channel, self.client, number)
+
+    def _advertise(self, number: int, channel: dict[str, Any]) -> None:
+        topic = str(channel["topic"])
+        if number in self._publications or len(self._publications) >= _MOST_CHANNELS:
+            self._complain(f"channel {number} cannot be advertised: it is, or there are too many")
+        elif not self.offer.publishable.accepts(self.offer.node.resolve_topic_name(topic)):
+            self._complain(f"clients may not publish on '{topic}'")
+        else:
+            self._publications[number] = Publication(self.offer.node, channel)
+
+    # --- questions ---------------------------------------------------------------------------------------------
+
+    def _run(self, work: Coroutine[Any, Any, None]) -> None:
+        if len(self._tasks) >= _MOST_TASKS:
+            work.close()
+            self._complain("too many questions at once")
+            return
+        task = asyncio.get_running_loop().create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _call(self, request: ServiceRequest) -> None:
+        try:
+            answer = await self.offer.services.call(request)
+        except CallFailedError as error:
+            failure = {"serviceId": request.service, "callId": request.call, "message": str(error)}
+            self.client.send({"op": "serviceCallFailure", **failure})
+            return
+        self.client.send(service_response(request.service, request.call, answer))
+
+    async def _send_parameters(self, names: list[str], identity: str | None) -> None:
+        values = await self.offer.parameters.get(names)
+        message: dict[str, Any] = {"op": "parameterValues", "parameters": values}
+        if identity is not None:
+            message["id"] = identity
+        self.client.send(message)
+
+    async def _set_parameters(self, parameters: list[dict[str, Any]], identity: str | None) -> None:
+        try:
+            await self.offer.parameters.set(parameters)
+        except (ValueError, TypeError, AttributeError, LinkwrightError) as error:
+            self._complain(f"a parameter was not set: {str(error)[:200]}")
+        if identity is not None:
+            await self._send_parameters([str(parameter.get("name", "")) for parameter in parameters], identity)
+
+    async def _fetch(self, uri: str, request: int) -> None:
+        try:
+            data = await asyncio.to_thread(self.offer.assets.read, uri)
+        except AssetRefusedError as error:
+            self.client.send(asset_error(request, str(error)))
+            return
+        self.client.send(asset(request, data))
+
+    def _complain(self, text: str, level: StatusLevel = StatusLevel.ERROR) -> None:
+        self.client.send(status(level, text))

@@ -1,0 +1,163 @@
+"""Topics as channels, and the subscriptions and publications of clients."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.bridge.foxglove.clients import Client
+from linkwright.bridge.foxglove.names import NameFilter
+from linkwright.bridge.foxglove.protocol import ENCODING, SCHEMA_ENCODING, message_data
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import EndpointKind, MessageInfo, Node, Publisher, QoSProfile, Subscription
+from linkwright.graph.qos.compatibility import fit
+from linkwright.graph.qos.profile import QoSPresetProfiles
+from linkwright.messages import deserialize, get_message
+from linkwright.messages.schema_text import schema_of
+
+_DEPTH = 100
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """A topic with its type and number."""
+
+    number: int
+    topic: str
+    type_name: str
+    schema: str
+
+    def advertisement(self) -> dict[str, Any]:
+        """The channel in the form for clients."""
+        return {
+            "id": self.number,
+            "topic": self.topic,
+            "encoding": ENCODING,
+            "schemaName": self.type_name,
+            "schema": self.schema,
+            "schemaEncoding": SCHEMA_ENCODING,
+        }
+
+
+class Channels:
+    """The channels to which clients can subscribe.
+
+    Args:
+        node: whose graph it is.
+        wanted: the filter of topic names.
+    """
+
+    def __init__(self, node: Node, wanted: NameFilter) -> None:
+        self._node = node
+        self._filter = wanted
+        self._channels: dict[tuple[str, str], Channel] = {}
+        self._unknown: set[str] = set()
+        self._last = 0
+
+    def all(self) -> list[Channel]:
+        """All channels now."""
+        return list(self._channels.values())
+
+    def get(self, number: int) -> Channel | None:
+        """The channel with a number."""
+        return next((channel for channel in self._channels.values() if channel.number == number), None)
+
+    def look(self) -> tuple[list[Channel], list[int]]:
+        """Return the channels added since the last call, and the numbers of the removed ones."""
+        there = {
+            (endpoint.name, endpoint.type_name)
+            for endpoint in self._node.graph.endpoints()
+            if endpoint.kind is EndpointKind.PUBLISHER and self._filter.accepts(endpoint.name)
+        }
+        gone = [self._channels.pop(key).number for key in list(self._channels) if key not in there]
+        come = [made for key in sorted(there - self._channels.keys()) if (made := self._make(*key)) is not None]
+        return come, gone
+
+    def _make(self, topic: str, type_name: str) -> Channel | None:
+        try:
+            schema = schema_of(type_name)
+        except LinkwrightError as error:
+            if type_name not in self._unknown:
+                self._unknown.add(type_name)
+                self._node.get_logger().warning(f"'{topic}' is not offered: {error.diagnostics[0].message}")
+            return None
+        self._last += 1
+        channel = self._channels[topic, type_name] = Channel(self._last, topic, type_name, schema)
+        return channel
+
+
+class Forwarding:
+    """Forwards the messages of a channel to a client.
+
+    Args:
+        node: the node that subscribes.
+        channel: the channel to forward.
+        client: the receiver.
+        number: the client's id of the subscription.
+    """
+
+    def __init__(self, node: Node, channel: Channel, client: Client, number: int) -> None:
+        self.channel = channel
+        self._node = node
+        self._client = client
+        self._number = number
+        self._subscription: Subscription[Any] = Subscription(
+            node.handle, get_message(channel.type_name), channel.topic, self._qos(), self._forward, raw=True
+        )
+        node.handle.add(self._subscription)
+
+    def close(self) -> None:
+        """Stop forwarding."""
+        self._node.destroy_subscription(self._subscription)
+
+    def _qos(self) -> QoSProfile:
+        offers = [
+            endpoint.qos
+            for endpoint in self._node.graph.endpoints()
+            if endpoint.name == self.channel.topic and endpoint.kind is EndpointKind.PUBLISHER
+        ]
+        profile = fit(QoSPresetProfiles.get_from_short_key("sensor_data"), offers).profile
+        profile.depth = _DEPTH
+        return profile
+
+    def _forward(self, data: bytes, info: MessageInfo) -> None:
+        stamp = info.source_timestamp or self._node.get_clock().now().nanoseconds
+        self._client.send_data(message_data(self._number, stamp, bytes(data)))
+
+
+class Publication:
+    """Publishes the messages of a client's channel.
+
+    Args:
+        node: publishes.
+        channel: the client's advertisement of the channel.
+
+    Raises:
+        LinkwrightError: the type is unknown, or the topic's name is invalid.
+        ValueError: the encoding is not CDR.
+    """
+
+    def __init__(self, node: Node, channel: Mapping[str, Any]) -> None:
+        if channel.get("encoding") != ENCODING:
+            raise ValueError(f"the encoding '{str(channel.get('encoding'))[:40]}' is not understood; send {ENCODING}")
+        self._node = node
+        self._class: Any = get_message(_full_type(str(channel["schemaName"])))
+        self._publisher: Publisher[Any] = node.create_publisher(self._class, str(channel["topic"]), 10)
+
+    def publish(self, data: bytes) -> None:
+        """Publish a message.
+
+        Raises:
+            LinkwrightError: the bytes are not a message of the type.
+        """
+        self._publisher.publish(deserialize(data, self._class))
+
+    def close(self) -> None:
+        """Stop publishing."""
+        self._node.destroy_publisher(self._publisher)
+
+
+def _full_type(name: str) -> str:
+    """The full name of a type: ``std_msgs/String`` is allowed for messages too."""
+    return name.replace("/", "/msg/", 1) if name.count("/") == 1 else name

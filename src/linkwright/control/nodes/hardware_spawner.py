@@ -1,0 +1,58 @@
+"""hardware_spawner of controller_manager: configure or activate hardware.
+
+Source: controller_manager of ros2_control (options, texts).
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from linkwright.control.nodes.manager_client import ManagerClient, ManagerProgram, parsed
+from linkwright.graph import Graph
+from linkwright.graph.command_line.ros_arguments import remove_ros_arguments
+from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE
+from linkwright.messages import get_message
+from linkwright.nodes.options import NodeOptions, create_node
+
+
+class HardwareSpawner(ManagerProgram):
+    """The running node: it ends after the hardware was asked.
+
+    Raises:
+        LinkwrightError: NODE831, the command line cannot be understood.
+    """
+
+    DEFAULT_NAME = "hardware_spawner"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        parser = argparse.ArgumentParser(prog=self.DEFAULT_NAME, add_help=False, exit_on_error=False)
+        parser.add_argument("hardware_component_names", nargs="+")
+        parser.add_argument("-c", "--controller-manager", default="controller_manager")
+        parser.add_argument("--controller-manager-timeout", type=float, default=0.0)
+        target = parser.add_mutually_exclusive_group(required=True)
+        target.add_argument("--activate", action="store_true")
+        target.add_argument("--configure", action="store_true")
+        self._arguments = parsed(parser, remove_ros_arguments(options.arguments))
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        self._client = ManagerClient(
+            self._node, self._arguments.controller_manager, self._arguments.controller_manager_timeout
+        )
+        self._begin(self._lead)
+
+    async def _lead(self) -> int:
+        logger, status = self._node.get_logger(), 0
+        target, action = (ACTIVE, "activated") if self._arguments.activate else (INACTIVE, "configured")
+        listed = [component.name for component in (await self._client.ask("list_hardware_components")).component]
+        for name in self._arguments.hardware_component_names:
+            if name not in listed:
+                logger.warning("Hardware Component is not loaded - state can not be changed.")
+                status = 1
+                continue
+            wanted = get_message("lifecycle_msgs/msg/State")(target.state_id, target.label)
+            answer = await self._client.ask("set_hardware_component_state", name=name, target_state=wanted)
+            if answer.ok:
+                logger.info(f"{action} component '{name}'. Hardware now in state: {answer.state.label}.")
+            else:
+                logger.warning(f"Could not {action} component '{name}'. Hardware is in state: {answer.state.label}.")
+                status = 1
+        return status

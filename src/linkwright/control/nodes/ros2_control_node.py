@@ -1,0 +1,172 @@
+"""ros2_control_node of controller_manager: runs controllers in real time.
+
+It reads, updates and writes at ``update_rate`` on the event loop, so that topics and services need not be handed over.
+Late updates are skipped or made up for, according to ``overruns.manage``. The description comes by the topic
+``robot_description`` (Jazzy), by ``~/robot_description``, or as a parameter (Humble).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.control.hardware.component import Hardware
+from linkwright.control.hardware.description import HardwareDescription
+from linkwright.control.hardware.resources import Resources, hardware_by_entry_points
+from linkwright.control.manager.exchange import DirectExchange
+from linkwright.control.manager.manager import ControllerManager
+from linkwright.control.manager.nodes import ProcessArguments
+from linkwright.control.manager.services import ManagerServices
+from linkwright.control.manager.starting import load_hardware
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.graph import DESCRIPTION_QOS, Graph
+from linkwright.graph.command_line.ros_arguments import parse
+from linkwright.graph.log.logger import Logger
+from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.stepped.node import SteppedNode
+from linkwright.messages import String
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+
+_NANOSECONDS = 1_000_000_000
+_DEFAULT_RATE = 100
+_SIMULATED = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem")
+"""Hardware of gazebo_ros2_control, gz_ros2_control and their forks, which only runs in a simulator."""
+
+
+def _hardware(description: HardwareDescription, logger: Logger) -> Hardware | None:
+    """Make the hardware of a description, or None where nothing here drives it.
+
+    Raises:
+        LinkwrightError: NODE833, it runs only in a simulator.
+    """
+    if description.plugin.rpartition("/")[2] in _SIMULATED:
+        message = phrase(
+            "hardware '{name}': '{plugin}' runs inside a simulator, whose plugin is the controller manager: leave "
+            "ros2_control_node out of the launch file",
+            name=description.name,
+            plugin=description.plugin,
+        )
+        raise LinkwrightError(Diagnostic("NODE833", message))
+    return hardware_by_entry_points(description, logger)
+
+
+class Ros2ControlNode(SingleNode):
+    """The running node.
+
+    Raises:
+        LinkwrightError: NODE830, its update rate is invalid; a name, a remapping or a ROS argument is not valid.
+    """
+
+    DEFAULT_NAME = "controller_manager"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME, any_parameters=True)
+        self._library = options.library
+        with starting(self._node):
+            self._start(options)
+
+    def _start(self, options: NodeOptions) -> None:
+        ros = parse(options.arguments)
+        rules = ParameterRules()
+        rules.add(options.for_others)
+        rules.add(ros.parameters)
+        remappings = [*ros.remappings_for(self.DEFAULT_NAME), *options.remappings]
+        logger = self._node.get_logger()
+        rate = self._rate()
+        logger.info(f"update rate is {rate} Hz")
+        self._manages_overruns = self._is_on("overruns.manage")
+        self._tells_of_overruns = self._manages_overruns and self._is_on("overruns.print_warnings")
+        logger.info(f"Overruns handling is : {'enabled' if self._manages_overruns else 'disabled'}")
+        self._manager = ControllerManager(
+            self._node,
+            DirectExchange(),
+            Resources(logger),
+            ProcessArguments(rules, remappings),
+            update_rate=rate,
+        )
+        self._loaded = False
+        text = self._node.get_parameter_or("robot_description").value
+        if text:
+            logger.warning(
+                "[Deprecated] Passing the robot description parameter directly to the control_manager node is "
+                "deprecated. Use the 'robot_description' topic from 'robot_state_publisher' instead."
+            )
+            self._load(text)
+            return
+        topics = dict.fromkeys(
+            self._node.handle.resolve_topic_name(name) for name in ("robot_description", "~/robot_description")
+        )
+        for topic in topics:
+            self._node.create_subscription(String, topic, self._on_description, DESCRIPTION_QOS)
+            logger.info(f"Subscribing to '{topic}' topic for robot description.")
+
+    def close(self) -> None:
+        """Deactivate the controllers, and close."""
+        self._manager.close()
+        super().close()
+
+    def _rate(self) -> int:
+        value: Any = self._node.get_parameter_or("update_rate").value
+        if value is None:
+            self._node.get_logger().warning("'update_rate' parameter not set, using default value.")
+            return _DEFAULT_RATE
+        if not isinstance(value, int) or isinstance(value, bool) or not 0 < value <= 100_000:
+            message = phrase("the update_rate {value} is not a positive integer (Hz)", value=value)
+            raise LinkwrightError(Diagnostic("NODE830", message, hint=phrase("write 'update_rate: 100'")))
+        return value
+
+    def _is_on(self, parameter: str) -> bool:
+        return self._node.get_parameter_or(parameter).value is not False
+
+    def _on_description(self, message: String) -> None:
+        logger = self._node.get_logger()
+        logger.info("Received robot description from topic.")
+        if self._loaded:
+            logger.warning("ResourceManager has already loaded a urdf. Ignoring attempt to reload a robot description.")
+            return
+        self._load(message.data)
+
+    def _load(self, text: str) -> None:
+        manager = self._manager
+        self._loaded = load_hardware(manager, text, self._library, _hardware) and bool(manager.resources.components)
+        if not self._loaded:  # no services either, as upstream: they would hide those of another manager
+            return
+        node = SteppedNode(self._node, DirectExchange(), owned=False)
+        services = ManagerServices(manager, node)
+        self._node.create_timer(1.0, services.publish_diagnostics)
+        self._clock = self._node.get_clock()
+        self._period_ns = round(_NANOSECONDS / manager.update_rate)
+        self._was_simulated = self._clock.ros_time_is_active
+        self._took_ns = 0
+        self._last_ns = self._clock.timer_ns()
+        self._next_ns = self._last_ns + self._period_ns
+        self._timer = self._node.create_timer(1.0 / manager.update_rate, self._update)
+
+    def _update(self) -> None:
+        before_ns, self._next_ns = self._next_ns, self._timer.next_call_ns()
+        missed = round((self._next_ns - before_ns) / self._period_ns) - 1
+        if missed > 0 and self._clock.ros_time_is_active is self._was_simulated is False:
+            self._missed(missed)
+        self._cycle()
+
+    def _cycle(self) -> None:
+        clock = self._clock
+        timer_ns, simulated = clock.timer_ns(), clock.ros_time_is_active
+        period_ns = timer_ns - self._last_ns
+        if simulated is not self._was_simulated or period_ns < 0:  # the time is another one
+            self._was_simulated, period_ns = simulated, self._period_ns
+        self._last_ns = timer_ns
+        self._manager.cycle(clock.now_ns(), period_ns / _NANOSECONDS)
+        self._took_ns = clock.timer_ns() - timer_ns
+
+    def _missed(self, count: int) -> None:
+        """Handle missed updates: skip them, or make them up. Updates that took too long are logged."""
+        rate, took_ns = self._manager.update_rate, self._took_ns
+        if self._tells_of_overruns and took_ns > self._period_ns:
+            self._node.get_logger().warning(
+                f"Overrun detected! The controller manager missed its desired rate of {rate:.0f} Hz. The loop took "
+                f"{took_ns / 1e6:f} ms (missed cycles : {count}).",
+                throttle_duration_sec=1.0,
+            )
+        if not self._manages_overruns:
+            for _ in range(min(count, int(rate))):  # those of the last second
+                self._cycle()

@@ -1,0 +1,251 @@
+"""joy_node of joy and joy_linux_node of joy_linux: a joystick as sensor_msgs/msg/Joy on ``joy``.
+
+Parameters, the order of axes and buttons, and their signs (forwards and left are positive) are those of the ROS nodes;
+cross pads are two axes after the others. Deliberate differences: an unplugged joystick sends a last message in which
+nothing is pressed, so that subscribers stop the robot; and rumble is not supported.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from linkwright.control.nodes.teleop.joystick_device import FULL, JoystickDevice, JoystickEvent, find_device
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.graph import Clock, ClockType, Graph, Node, ParameterType
+from linkwright.messages import get_message
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+
+_DEPTH = 10
+_RETRY_SECONDS = 1.0
+_FASTEST = 1000.0
+
+
+@dataclass(frozen=True, slots=True)
+class _Settings:
+    """The settings of both nodes.
+
+    Attributes:
+        number: of the device.
+        name: part of the device's name; empty to use the number or path.
+        path: the device; None to use the number or name.
+        deadzone: the part of an axis around its centre that is 0.
+        repeat_rate: messages a second while nothing changes, 0 for none.
+        coalesce: s for which changes of axes are collected.
+        sticky: whether pressing a button again releases it.
+    """
+
+    number: int
+    name: str
+    path: Path | None
+    deadzone: float
+    repeat_rate: float
+    coalesce: float
+    sticky: bool
+
+    def device(self) -> Path | None:
+        """The device, if it exists."""
+        if self.path is not None and not self.name:
+            return self.path if self.path.exists() else None
+        return find_device(self.number, self.name)
+
+    def wanted(self) -> str:
+        """The device that is looked for, in the user's words."""
+        return f"'{self.name}'" if self.name else str(self.path or f"/dev/input/js{self.number}")
+
+
+class JoyNode(SingleNode):
+    """The running joy_node.
+
+    Parameters: ``device_id``, ``device_name``, ``deadzone``, ``autorepeat_rate``, ``sticky_buttons``,
+    ``coalesce_interval_ms``, or ``coalesce_interval`` in s.
+
+    Raises:
+        LinkwrightError: NODE903 a parameter is out of its range.
+    """
+
+    DEFAULT_NAME = "joy_node"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        self._device: JoystickDevice | None = None
+        self._axes: list[float] = []
+        self._buttons: list[int] = []
+        self._missing: str | None = None
+        with starting(self._node):
+            self._settings = self._read_settings(self._node)
+            self._start()
+
+    def close(self) -> None:
+        """Close the joystick."""
+        if self._device is not None:
+            self._device.close()
+        super().close()
+
+    def _read_settings(self, node: Node) -> _Settings:
+        number: int = node.declare_parameter("device_id", 0).value
+        name: str = node.declare_parameter("device_name", "").value
+        node.declare_parameter("autocenter", 0)
+        milliseconds = _within(node, "coalesce_interval_ms", 1, 0, None)
+        seconds: float | None = node.declare_parameter("coalesce_interval", ParameterType.DOUBLE).value
+        return _settings(node, number, name, None, milliseconds / 1000.0 if seconds is None else seconds)
+
+    def _start(self) -> None:
+        settings, node = self._settings, self._node
+        self._type = get_message("sensor_msgs/msg/Joy")
+        self._publisher = node.create_publisher(self._type, "joy", _DEPTH)
+        clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
+        self._soon = node.create_timer(settings.coalesce, self._publish, clock=clock, autostart=False)
+        repeated = settings.repeat_rate > 0.0
+        self._repeat = node.create_timer(
+            1.0 / settings.repeat_rate if repeated else 1.0, self._publish, clock=clock, autostart=False
+        )
+        self._retry = node.create_timer(_RETRY_SECONDS, self._open, clock=clock)
+        self._open()
+
+    def _open(self) -> None:
+        path = self._settings.device()
+        if path is None:
+            wanted = self._settings.wanted()
+            self._wait(localized(phrase("there is no joystick {wanted}; waiting for it", wanted=wanted)))
+            return
+        try:
+            self._device = JoystickDevice(path, self._changed, self._gone)
+        except OSError as error:
+            reason = foreign(error.strerror or error)
+            self._wait(
+                localized(
+                    phrase(
+                        "joystick {path} cannot be read: {reason}; trying again (its group is often 'input')",
+                        path=str(path),
+                        reason=reason,
+                    )
+                )
+            )
+            return
+        self._missing = None
+        self._retry.cancel()
+        self._axes, self._buttons = [], []
+        self._node.get_logger().info(
+            f"Opened joystick: {self._device.name or path}.  deadzone: {self._settings.deadzone:f}"
+        )
+        if self._settings.repeat_rate > 0.0:
+            self._repeat.reset()
+
+    def _wait(self, text: str) -> None:
+        """Log once why there is no joystick."""
+        if text != self._missing:
+            self._missing = text
+            self._node.get_logger().warning(text)
+
+    def _gone(self) -> None:
+        self._device = None
+        self._soon.cancel()
+        self._repeat.cancel()
+        self._axes, self._buttons = [0.0] * len(self._axes), [0] * len(self._buttons)
+        self._send()
+        self._node.get_logger().warning(localized(phrase("the joystick is gone; waiting for it")))
+        self._missing = None
+        self._retry.reset()
+
+    def _changed(self, events: list[JoystickEvent]) -> None:
+        now, soon = False, False
+        for event in events:
+            if event.is_axis:
+                soon |= self._turned(event)
+            elif self._pressed(event):
+                # At first the device reports all axes and buttons: they share one message.
+                now, soon = now or not event.initial, soon or event.initial
+        if now or (soon and self._settings.coalesce == 0.0):
+            self._publish()
+        elif soon and self._soon.is_canceled():
+            self._soon.reset()
+
+    def _turned(self, event: JoystickEvent) -> bool:
+        axes = self._axes
+        axes += [0.0] * (event.number + 1 - len(axes))
+        before, axes[event.number] = axes[event.number], deflection(event.value, self._settings.deadzone)
+        return event.initial or before != axes[event.number]
+
+    def _pressed(self, event: JoystickEvent) -> bool:
+        buttons = self._buttons
+        buttons += [0] * (event.number + 1 - len(buttons))
+        before = buttons[event.number]
+        if not self._settings.sticky:
+            buttons[event.number] = int(event.value != 0)
+        elif event.value:
+            buttons[event.number] = 1 - before
+        return event.initial or before != buttons[event.number]
+
+    def _publish(self) -> None:
+        self._soon.cancel()
+        if self._device is None:
+            return
+        if self._settings.repeat_rate > 0.0:
+            self._repeat.reset()
+        self._send()
+
+    def _send(self) -> None:
+        message = self._type()
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        message.header.frame_id = "joy"
+        message.axes, message.buttons = list(self._axes), list(self._buttons)
+        self._publisher.publish(message)
+
+
+class JoyLinuxNode(JoyNode):
+    """The running joy_linux_node: as `JoyNode`, with the parameters ``dev``, ``dev_name`` and ``coalesce_interval``."""
+
+    def _read_settings(self, node: Node) -> _Settings:
+        path = Path(node.declare_parameter("dev", "/dev/input/js0").value)
+        name: str = node.declare_parameter("dev_name", "").value
+        node.declare_parameter("dev_ff", "/dev/input/event0")
+        node.declare_parameter("default_trig_val", False)
+        return _settings(node, 0, name, path, _within(node, "coalesce_interval", 0.001, 0.0, None))
+
+
+def deflection(value: int, deadzone: float) -> float:
+    """Return the deflection of an axis, -1 to 1, forwards and to the left positive.
+
+    Args:
+        value: the device's value, -32767 to 32767, backwards and to the right positive.
+        deadzone: the part around the centre that counts as 0; values beyond it start at 0.
+    """
+    part = max(-1.0, min(1.0, -value / FULL))
+    beyond = abs(part) - deadzone
+    if beyond <= 0.0:
+        return 0.0
+    return beyond / (1.0 - deadzone) * (1.0 if part > 0.0 else -1.0)
+
+
+def _settings(node: Node, number: int, name: str, path: Path | None, coalesce: float) -> _Settings:
+    deadzone = _within(node, "deadzone", 0.05, 0.0, 1.0)
+    repeat_rate = _within(node, "autorepeat_rate", 20.0, 0.0, _FASTEST)
+    sticky: bool = node.declare_parameter("sticky_buttons", False).value
+    return _Settings(number, name, path, deadzone, repeat_rate, coalesce, sticky)
+
+
+def _within(node: Node, name: str, default: float, least: float, most: float | None) -> float:
+    """Check that a parameter is within limits.
+
+    Raises:
+        LinkwrightError: NODE903 it is out of its range.
+    """
+    value: Any = node.declare_parameter(name, default).value
+    if isfinite(value) and value >= least and (most is None or value <= most):
+        return float(value)
+    message = (
+        phrase("parameter '{name}' must be at least {least}, and it is {value}", name=name, least=least, value=value)
+        if most is None
+        else phrase(
+            "parameter '{name}' must be between {least} and {most}, and it is {value}",
+            name=name,
+            least=least,
+            most=most,
+            value=value,
+        )
+    )
+    raise LinkwrightError(Diagnostic("NODE903", message))

@@ -1,0 +1,169 @@
+"""twist_mux: forwards the topic of velocities with the highest priority to ``cmd_vel_out``.
+
+Parameters, rules and diagnostics are those of the ROS node. A topic counts until its ``timeout`` has passed since its
+last message; a lock that is on, or not heard of for its ``timeout``, shuts out all topics of lower priority. Different
+on purpose: a topic without a time-out shuts out others only once it was heard, and a stop goes out when who sent the
+last velocity is lost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from math import isfinite
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.graph import Graph, MessageInfo, Node, Publisher, Subscription
+from linkwright.graph.endpoints.commander import Commander
+from linkwright.graph.endpoints.drivers import DriverWatch
+from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.standstill import send_stop
+from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED
+
+_DEPTH = 10
+_MOST = 255
+_NANOSECONDS = 1e9
+
+
+class _Source:
+    """An input: a topic of velocities, or of a lock."""
+
+    def __init__(self, name: str, topic: str, timeout: float, priority: int) -> None:
+        self.name, self.topic, self.timeout = name, topic, timeout
+        self.priority = max(0, min(_MOST, priority))
+        self.locked = False
+        self._heard_ns: int | None = None
+
+    def hear(self, now_ns: int) -> None:
+        """Take a message."""
+        self._heard_ns = now_ns
+
+    def expired(self, now_ns: int) -> bool:
+        """Whether its last message is too old, or missing; never without a time-out."""
+        if self.timeout == 0.0:
+            return False
+        return self._heard_ns is None or (now_ns - self._heard_ns) / _NANOSECONDS > self.timeout
+
+    @property
+    def silent(self) -> bool:
+        """Whether no message has arrived yet."""
+        return self._heard_ns is None
+
+    def described(self, state: str) -> str:
+        """Its line in the diagnostics."""
+        return f" {state} (listening to {self.topic} @ {self.timeout:f}s with priority #{self.priority})"
+
+
+class TwistMux(SingleNode):
+    """The running node.
+
+    Parameters: ``topics.NAME`` and ``locks.NAME`` with ``topic``, ``timeout`` (s, 0 for never) and ``priority`` (0 to
+    255), and ``use_stamped`` for TwistStamped in and out.
+
+    Raises:
+        LinkwrightError: NODE904 the parameters of a topic or a lock are incomplete or invalid.
+    """
+
+    DEFAULT_NAME = "twist_mux"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        with starting(self._node):
+            self._start()
+
+    def _start(self) -> None:
+        node = self._node
+        node.declare_parameters_from_overrides()
+        if not node.has_parameter("use_stamped"):
+            node.declare_parameter("use_stamped", False)
+        kind = TWIST_STAMPED if node.get_parameter("use_stamped").value else TWIST
+        self._topics, self._locks = _sources(node, "topics"), _sources(node, "locks")
+        if not self._topics:
+            node.get_logger().warning(localized(phrase("no topics.NAME.topic is given, so nothing is forwarded")))
+        self._publisher: Publisher[Any] = node.create_publisher(kind, "cmd_vel_out", _DEPTH)
+        self._commander = Commander(partial(send_stop, node, self._publisher))
+        for source in self._topics:
+            velocities: Subscription[Any] = node.create_subscription(
+                kind, source.topic, partial(self._velocity, source, DriverWatch.of(node)), _DEPTH
+            )
+            self._commander.watch(velocities)
+        for source in self._locks:
+            node.create_subscription("std_msgs/msg/Bool", source.topic, partial(self._lock, source), _DEPTH)
+        for source in (*self._topics, *self._locks):
+            timeout = f"{source.timeout:f}s" if source.timeout > 0.0 else "None"
+            node.get_logger().info(
+                f"Topic handler '{source.name}' subscribed to topic '{source.topic}': "
+                f"timeout = {timeout} , priority = {source.priority}."
+            )
+        DiagnosticUpdater(node, "Twist mux status", self._health)
+
+    def _now_ns(self) -> int:
+        return self._node.get_clock().now().nanoseconds
+
+    def _velocity(self, source: _Source, drivers: DriverWatch, message: Any, info: MessageInfo) -> None:
+        drivers.hear(message, info)
+        now = self._now_ns()
+        source.hear(now)
+        lock = self._lock_priority(now)
+        open_ones = [topic for topic in self._topics if topic.priority and not self._masked(topic, lock, now)]
+        if open_ones and max(open_ones, key=lambda open_one: open_one.priority) is source:
+            self._commander.obey(info)
+            self._publisher.publish(message)
+
+    def _lock(self, source: _Source, message: Any) -> None:
+        source.hear(self._now_ns())
+        source.locked = message.data
+
+    def _lock_priority(self, now_ns: int) -> int:
+        return max((lock.priority for lock in self._locks if lock.locked or lock.expired(now_ns)), default=0)
+
+    def _masked(self, source: _Source, lock: int, now_ns: int) -> bool:
+        return source.silent or source.expired(now_ns) or source.priority < lock
+
+    def _health(self) -> Health:
+        now = self._now_ns()
+        lock = self._lock_priority(now)
+        values = {
+            f"velocity {topic.name}": topic.described("masked" if self._masked(topic, lock, now) else "unmasked")
+            for topic in self._topics
+        }
+        values |= {
+            f"lock {lock.name}": lock.described("locked" if lock.locked or lock.expired(now) else "free")
+            for lock in self._locks
+        }
+        values["current priority"] = str(lock)
+        return Health(Level.OK, "ok", values)
+
+
+def _sources(node: Node, group: str) -> list[_Source]:
+    """The inputs of the parameters ``GROUP.NAME.*``, by name.
+
+    Raises:
+        LinkwrightError: NODE904.
+    """
+    values: dict[str, dict[str, Any]] = {}
+    for key, parameter in node.get_parameters_by_prefix(group).items():
+        name, _, entry = key.rpartition(".")
+        values.setdefault(name, {})[entry] = parameter.value
+    return [_source(f"{group}.{name}", name, given) for name, given in sorted(values.items()) if name]
+
+
+def _source(path: str, name: str, given: Mapping[str, Any]) -> _Source:
+    topic, timeout, priority = (given.get(key) for key in ("topic", "timeout", "priority"))
+    if not isinstance(topic, str) or not topic:
+        raise _wrong(path, phrase("parameter '{name}' must be the name of a topic", name=f"{path}.topic"))
+    if isinstance(timeout, bool) or not isinstance(timeout, (int, float)) or not isfinite(timeout) or timeout < 0.0:
+        raise _wrong(
+            path, phrase("parameter '{name}' must be seconds, 0 for no time-out, such as 0.5", name=f"{path}.timeout")
+        )
+    if isinstance(priority, bool) or not isinstance(priority, int):
+        raise _wrong(path, phrase("parameter '{name}' must be an integer, 0 to 255", name=f"{path}.priority"))
+    return _Source(name, topic, float(timeout), priority)
+
+
+def _wrong(path: str, message: Phrase) -> LinkwrightError:
+    hint = phrase("'{path}' has three entries: topic, timeout and priority", path=path)
+    return LinkwrightError(Diagnostic("NODE904", message, hint=hint))

@@ -1,0 +1,146 @@
+"""Odometry of drives, and the transform that goes with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cache
+from math import atan2, cos, sin
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import Transform
+from linkwright.graph.stepped.node import Output, SteppedNode
+from linkwright.messages import Header, Quaternion, Time, TransformStamped, Vector3, get_message
+from linkwright.messages import Transform as TransformMessage
+
+Variances = tuple[float, ...]
+"""Variances of x, y, z, roll, pitch and yaw."""
+
+TRANSFORMS, TRANSFORMS_DEPTH = "tf2_msgs/msg/TFMessage", 100
+"""The type of a topic of transforms, and the number of messages that its publisher keeps."""
+
+_NONE = (0.0,) * 6
+_UNKNOWN = 1e12
+"""The variance of values that a robot on wheels does not measure: z, roll and pitch."""
+
+
+def planar_variances(x: float, y: float, yaw: float) -> Variances:
+    """Variances for motion in a plane: large ones for values that are not measured, unless all are 0."""
+    return (x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw) if x or y or yaw else _NONE
+
+
+def yaw_of(pose: Transform) -> float:
+    """The yaw of a pose, in rad."""
+    _, _, _, x, y, z, w = pose
+    return atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+def planar_velocity(pose: Transform, linear: Array, angular: Array) -> tuple[float, float, float]:
+    """Velocities forward and to the left in m/s and around z in rad/s, from those in the axes of the world."""
+    yaw = yaw_of(pose)
+    forward = float(linear[0] * cos(yaw) + linear[1] * sin(yaw))
+    sideways = float(linear[1] * cos(yaw) - linear[0] * sin(yaw))
+    return forward, sideways, float(angular[2])
+
+
+class _Classes(NamedTuple):
+    """The message classes that odometry and transforms are made of."""
+
+    point: Any
+    pose: Any
+    twist: Any
+    pose_covariance: Any
+    twist_covariance: Any
+    odometry: Any
+    transforms: Any
+
+
+@cache
+def _classes() -> _Classes:
+    return _Classes(
+        get_message("geometry_msgs/msg/Point"),
+        get_message("geometry_msgs/msg/Pose"),
+        get_message("geometry_msgs/msg/Twist"),
+        get_message("geometry_msgs/msg/PoseWithCovariance"),
+        get_message("geometry_msgs/msg/TwistWithCovariance"),
+        get_message("nav_msgs/msg/Odometry"),
+        get_message(TRANSFORMS),
+    )
+
+
+@dataclass(slots=True)
+class OdometryTopics:
+    """Odometry on its topics.
+
+    Attributes:
+        frame: the frame that the robot moves in.
+        child: the robot's frame.
+        odometry: the topic of odometry; None for none.
+        transforms: that of transforms; None for none.
+        variances: of the pose.
+        velocity_variances: of the velocities; None for the same.
+    """
+
+    frame: str
+    child: str
+    odometry: Output | None
+    transforms: Output | None
+    variances: Variances = _NONE
+    velocity_variances: Variances | None = None
+    _covariances: tuple[Array, Array] = field(init=False)
+    _outputs: tuple[tuple[Output, Callable[..., None]], ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        velocity = self.variances if self.velocity_variances is None else self.velocity_variances
+        self._covariances = (_diagonal(self.variances), _diagonal(velocity))
+        made = ((self.odometry, self._odometry_message), (self.transforms, self._transform_message))
+        self._outputs = tuple((output, output.making(make)) for output, make in made if output is not None)
+
+    @property
+    def is_wanted(self) -> bool:
+        """Whether a subscriber exists."""
+        for output, _ in self._outputs:  # noqa: SIM110 - see Output.is_wanted
+            if output.is_wanted:
+                return True
+        return False
+
+    def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, angular: float) -> None:
+        """Publish the pose, and the velocities in the robot's own axes in m/s and rad/s."""
+        for output, send in self._outputs:
+            if output.is_wanted:
+                send(stamp, pose, forward, sideways, angular)
+
+    def _odometry_message(self, stamp: Time, pose: Transform, forward: float, sideways: float, angular: float) -> Any:
+        make = _classes()
+        x, y, z, qx, qy, qz, qw = pose
+        place = make.pose(make.point(x, y, z), Quaternion(qx, qy, qz, qw))
+        speed = make.twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, angular))
+        of_pose, of_velocity = self._covariances
+        places, speeds = make.pose_covariance(place, of_pose), make.twist_covariance(speed, of_velocity)
+        return make.odometry(Header(stamp, self.frame), self.child, places, speeds)
+
+    def _transform_message(self, stamp: Time, pose: Transform, *_velocity: float) -> Any:
+        return transform_message(Header(stamp, self.frame), self.child, pose)
+
+
+def _diagonal(variances: Variances) -> Array:
+    return np.diag(np.asarray(variances, np.float64)).ravel()
+
+
+def transform_message(header: Header, child: str, pose: Transform) -> Any:
+    """A message with one transform, for topics of transforms."""
+    return _classes().transforms([transform_stamped(header, child, pose)])
+
+
+def transform_stamped(header: Header, child: str, pose: Transform) -> TransformStamped:
+    """The transform of a frame in that of the header."""
+    x, y, z, qx, qy, qz, qw = pose
+    return TransformStamped(header, child, TransformMessage(Vector3(x, y, z), Quaternion(qx, qy, qz, qw)))
+
+
+def transforms_topic(node: SteppedNode, name: str = "/tf") -> Output:
+    """A topic of transforms."""
+    return node.publisher(TRANSFORMS, name, TRANSFORMS_DEPTH)

@@ -1,0 +1,105 @@
+"""Measurements of several sensors, in whatever order they arrive, through one filter."""
+
+from __future__ import annotations
+
+import heapq
+from collections import deque
+from dataclasses import dataclass
+
+from linkwright.navigation.estimation.kalman import KalmanFilter, Measurement, Snapshot
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """When an estimator predicts without measurements, and how far it rewinds for late ones.
+
+    Attributes:
+        sensor_timeout_ns: after which time without measurements the state is predicted.
+        predict_to_now: whether it is always predicted up to now.
+        history_ns: how long states are kept, for measurements that come late to be put where they belong; None where
+            late ones correct the state as it is.
+    """
+
+    sensor_timeout_ns: int
+    predict_to_now: bool = False
+    history_ns: int | None = None
+
+
+class Estimator:
+    """Keeps measurements until they are due, and hands them to a filter in the order of their stamps.
+
+    Args:
+        kalman: the filter.
+        timing: see there.
+    """
+
+    def __init__(self, kalman: KalmanFilter, timing: Timing) -> None:
+        self.filter = kalman
+        self._timing = timing
+        self._queue: list[tuple[int, int, Measurement]] = []
+        self._count = 0
+        self._past: deque[Measurement] = deque()
+        self._states: deque[Snapshot] = deque()
+
+    def add(self, measurement: Measurement) -> None:
+        """Add a measurement; it is used in the first `advance` to its time or a later one."""
+        self._count += 1  # with equal stamps, the first received is used first
+        heapq.heappush(self._queue, (measurement.time_ns, self._count, measurement))
+
+    def clear(self) -> None:
+        """Drop all measurements."""
+        self._queue.clear()
+        self._past.clear()
+        self._states.clear()
+
+    def advance(self, now_ns: int) -> None:
+        """Use the measurements up to now, and predict the state after a long gap."""
+        kalman, history_ns = self.filter, self._timing.history_ns
+        predict = self._timing.predict_to_now
+        if self._queue:
+            restored = 0
+            if history_ns is not None and kalman.initialized and self._queue[0][0] < kalman.time_ns:
+                restored = self._go_back(self._queue[0][0])
+            self._use(now_ns, restored)
+        elif kalman.initialized and now_ns - kalman.time_ns >= self._timing.sensor_timeout_ns:
+            predict = True
+        if kalman.initialized and predict and now_ns > kalman.time_ns:
+            kalman.predict(now_ns)
+        if history_ns is not None:
+            self._forget(kalman.time_ns - history_ns)
+
+    def _use(self, now_ns: int, restored: int) -> None:
+        kalman = self.filter
+        while self._queue and self._queue[0][0] <= now_ns:
+            _, _, measurement = heapq.heappop(self._queue)
+            if restored > 0 and measurement.control is not None:
+                kalman.command = measurement.control
+            restored -= 1
+            kalman.process(measurement)
+            if self._timing.history_ns is not None:
+                self._past.append(measurement)
+                if not self._queue or self._queue[0][0] != kalman.time_ns:
+                    self._states.append(kalman.snapshot())
+
+    def _go_back(self, time_ns: int) -> int:
+        """Restore the last state before a time and queue the measurements since then again; return their number."""
+        oldest = None
+        while self._states and self._states[-1].time_ns >= time_ns:
+            oldest = self._states.pop()
+        snapshot = self._states[-1] if self._states else oldest
+        if snapshot is None:
+            return 0
+        self.filter.restore(snapshot)
+        count = 0
+        while self._past and self._past[-1].time_ns >= time_ns:
+            measurement = self._past.pop()
+            if measurement.time_ns > snapshot.time_ns:
+                self.add(measurement)
+                count += 1
+        return count
+
+    def _forget(self, before_ns: int) -> None:
+        while self._past and self._past[0].time_ns < before_ns:
+            self._past.popleft()
+        while self._states and self._states[0].time_ns < before_ns:
+            self._states.popleft()

@@ -1,0 +1,308 @@
+"""Kalman filters of the motion of a body: extended and unscented.
+
+Both keep a state (see `motion_model`) with its covariance, predict them over time and correct them by measurements of
+some of the 15 quantities. Sources: T. Moore and D. Stouch 2014 for the extended filter and its default noise; S. Julier
+and J. Uhlmann, "Unscented Filtering and Nonlinear Estimation", 2004, for the other.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from math import inf, isfinite, sqrt
+
+import numpy as np
+
+from linkwright.navigation.estimation.motion_model import (
+    ACCELERATION,
+    POSE,
+    RATES,
+    SIZE,
+    TWIST,
+    Matrix,
+    State,
+    Vector,
+    derivatives,
+    predicted,
+    wrap_angles,
+    wrapped,
+)
+
+LEAST_VARIANCE = 1e-9
+"""The variance of measurements that claim to be exact, as the arithmetic needs some."""
+
+DEFAULT_NOISE = (0.05, 0.05, 0.06, 0.03, 0.03, 0.06, 0.025, 0.025, 0.04, 0.01, 0.01, 0.02, 0.01, 0.01, 0.015)
+"""Variances that a second adds to the state, where none are given."""
+
+_ANGLES = (State.ROLL, State.PITCH, State.YAW)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measurement:
+    """A measurement of some of the state's quantities.
+
+    Attributes:
+        source: which sensor.
+        time_ns: when it was measured.
+        values: shape (15,).
+        covariance: shape (15, 15).
+        used: which values count.
+        threshold: the most standard deviations from the expected value; a reading further away is rejected.
+        control: velocities that were commanded then, shape (6,), and when.
+    """
+
+    source: str
+    time_ns: int
+    values: Vector
+    covariance: Matrix
+    used: tuple[bool, ...]
+    threshold: float = inf
+    control: tuple[Vector, int] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """The response of a body to commanded velocities: for vx vy vz and the rates of roll, pitch and yaw.
+
+    Attributes:
+        used: which of the six count.
+        timeout_ns: after which time a command means standing still.
+        acceleration_limits: m/s2 and rad/s2.
+        acceleration_gains: acceleration for an error of velocity of 1.
+        deceleration_limits: as the others, for slowing down.
+        deceleration_gains: as the others.
+    """
+
+    used: tuple[bool, ...]
+    timeout_ns: int
+    acceleration_limits: tuple[float, ...]
+    acceleration_gains: tuple[float, ...]
+    deceleration_limits: tuple[float, ...]
+    deceleration_gains: tuple[float, ...]
+
+    def acceleration(self, index: int, velocity: float, commanded: float) -> float:
+        """The acceleration of one of the six towards its commanded velocity."""
+        error = commanded - velocity
+        goal = commanded if abs(error) <= abs(commanded) + 0.01 else 0.0
+        if abs(goal) < abs(velocity):
+            limit, gain = self.deceleration_limits[index], self.deceleration_gains[index]
+        else:
+            limit, gain = self.acceleration_limits[index], self.acceleration_gains[index]
+        return min(max(gain * error, -limit), limit)
+
+
+@dataclass(slots=True, eq=False)
+class Snapshot:
+    """A filter at one moment; see `KalmanFilter.snapshot`."""
+
+    state: Vector
+    covariance: Matrix
+    time_ns: int
+    initialized: bool
+    command: tuple[Vector, int]
+
+
+@dataclass(slots=True, eq=False)
+class Settings:
+    """Settings of a filter.
+
+    Attributes:
+        noise: covariance that a second adds, shape (15, 15).
+        initial_covariance: at the start, shape (15, 15).
+        initial_state: at the start, shape (15,).
+        dynamic_noise: whether the noise of the pose grows with the velocity, and is none at rest.
+        control: how commands are followed; None where they are not.
+    """
+
+    noise: Matrix = field(default_factory=lambda: np.diag(DEFAULT_NOISE))
+    initial_covariance: Matrix = field(default_factory=lambda: np.eye(SIZE) * 1e-9)
+    initial_state: Vector = field(default_factory=lambda: np.zeros(SIZE))
+    dynamic_noise: bool = False
+    control: Control | None = None
+
+
+class KalmanFilter(ABC):
+    """A state and its covariance, predicted from measurement to measurement.
+
+    Args:
+        settings: see there.
+
+    Attributes:
+        state: shape (15,).
+        covariance: shape (15, 15).
+        time_ns: when that holds.
+        initialized: whether there was a measurement.
+    """
+
+    def __init__(self, settings: Settings | None = None) -> None:
+        self.settings = settings or Settings()
+        self.state: Vector
+        self.covariance: Matrix
+        self.time_ns = 0
+        self.reset()
+
+    def reset(self) -> None:
+        """Reset: the next measurement is the first."""
+        self.state = self.settings.initial_state.copy()
+        self.covariance = self.settings.initial_covariance.copy()
+        self.initialized = False
+        self.command: tuple[Vector, int] = (np.zeros(6), 0)
+
+    def snapshot(self) -> Snapshot:
+        """The state, for `restore`."""
+        return Snapshot(self.state.copy(), self.covariance.copy(), self.time_ns, self.initialized, self.command)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Restore an earlier state."""
+        self.state, self.covariance = snapshot.state.copy(), snapshot.covariance.copy()
+        self.time_ns, self.initialized, self.command = snapshot.time_ns, snapshot.initialized, snapshot.command
+
+    def process(self, measurement: Measurement) -> bool:
+        """Predict up to the time of a measurement, unless that has passed, and correct the state by it.
+
+        The first measurement is taken as it is. Returns whether it was used.
+        """
+        if not self.initialized:
+            self._begin(measurement)
+            return True
+        if measurement.time_ns > self.time_ns:
+            self.predict(measurement.time_ns)
+        return self.correct(measurement)
+
+    def predict(self, time_ns: int) -> None:
+        """Predict up to a time without a measurement."""
+        seconds = (time_ns - self.time_ns) / 1e9
+        self._follow_commands(time_ns, seconds)
+        self._predict(seconds)
+        self.time_ns = time_ns
+
+    def correct(self, measurement: Measurement) -> bool:
+        """Correct the state by a current measurement; return whether it passed the Mahalanobis test."""
+        used = _used(measurement)
+        if not used:
+            return False
+        innovation = measurement.values[used] - self.state[used]
+        for row, index in enumerate(used):
+            if index in _ANGLES:
+                innovation[row] = wrapped(float(innovation[row]))
+        noise = _noise(measurement, used)
+        try:
+            inverse = np.linalg.inv(self.covariance[np.ix_(used, used)] + noise)
+        except np.linalg.LinAlgError:
+            return False
+        if float(innovation @ inverse @ innovation) >= measurement.threshold**2:
+            return False
+        gain = self.covariance[:, used] @ inverse
+        self.state = self.state + gain @ innovation
+        rest = np.eye(SIZE)
+        rest[:, used] -= gain
+        self.covariance = rest @ self.covariance @ rest.T + gain @ noise @ gain.T
+        wrap_angles(self.state)
+        return True
+
+    @abstractmethod
+    def _predict(self, seconds: float) -> None: ...
+
+    def _begin(self, measurement: Measurement) -> None:
+        used = _used(measurement)
+        self.state[used] = measurement.values[used]
+        self.covariance[np.ix_(used, used)] = measurement.covariance[np.ix_(used, used)]
+        self.time_ns = measurement.time_ns
+        self.initialized = True
+
+    def _noise_of(self, seconds: float) -> Matrix:
+        noise = self.settings.noise
+        if self.settings.dynamic_noise:
+            noise = noise.copy()
+            noise[POSE, POSE] *= float(self.state[TWIST] @ self.state[TWIST])
+        return noise * seconds
+
+    def _follow_commands(self, time_ns: int, seconds: float) -> None:
+        control = self.settings.control
+        if control is None:
+            return
+        command, commanded_ns = self.command
+        late = time_ns - commanded_ns >= control.timeout_ns
+        for index, used in enumerate(control.used):
+            if not used:
+                continue
+            velocity = float(self.state[TWIST][index])
+            acceleration = control.acceleration(index, velocity, 0.0 if late else float(command[index]))
+            if index < 3:
+                self.state[ACCELERATION][index] = acceleration
+            else:
+                self.state[RATES][index - 3] += acceleration * seconds
+
+
+class ExtendedKalmanFilter(KalmanFilter):
+    """A filter that linearises the motion at the state."""
+
+    def _predict(self, seconds: float) -> None:
+        jacobian, noise = derivatives(self.state, seconds), self._noise_of(seconds)
+        self.state = predicted(self.state, seconds)
+        self.covariance = jacobian @ self.covariance @ jacobian.T + noise
+
+
+class UnscentedKalmanFilter(KalmanFilter):
+    """A filter that propagates sigma points, and takes their mean and covariance.
+
+    Args:
+        settings: see there.
+        alpha: how far from the state the points are.
+        kappa: moves the weight from the state to the points.
+        beta: prior knowledge of the distribution; 2 for a normal one.
+    """
+
+    def __init__(
+        self, settings: Settings | None = None, *, alpha: float = 0.001, kappa: float = 0.0, beta: float = 2.0
+    ) -> None:
+        spread = alpha * alpha * (SIZE + kappa) - SIZE
+        self._scale = sqrt(SIZE + spread)
+        self._weights = np.full(2 * SIZE + 1, 0.5 / (SIZE + spread))
+        self._weights[0] = spread / (SIZE + spread)
+        self._covariance_weights = self._weights.copy()
+        self._covariance_weights[0] += 1.0 - alpha * alpha + beta
+        super().__init__(settings)
+
+    def _predict(self, seconds: float) -> None:
+        noise = self._noise_of(seconds)
+        root = _square_root(self.covariance) * self._scale
+        points = [self.state, *(self.state + column for column in root.T), *(self.state - column for column in root.T)]
+        moved = np.array([predicted(point, seconds) for point in points])
+        # Angles near +-pi are averaged around the first point's.
+        centre = moved[0]
+        away = moved - centre
+        for index in _ANGLES:
+            away[:, index] = [wrapped(float(angle)) for angle in away[:, index]]
+        mean = self._weights @ away
+        away -= mean
+        self.state = centre + mean
+        wrap_angles(self.state)
+        self.covariance = (away.T * self._covariance_weights) @ away + noise
+
+
+def _square_root(covariance: Matrix) -> Matrix:
+    """A matrix whose product with its transpose is the covariance; of the nearest valid one, if rounding spoilt it."""
+    try:
+        root: Matrix = np.asarray(np.linalg.cholesky(covariance), dtype=np.float64)
+    except np.linalg.LinAlgError:
+        values, vectors = np.linalg.eigh((covariance + covariance.T) / 2.0)
+        root = vectors * np.sqrt(np.maximum(values, 0.0))
+    return root
+
+
+def _used(measurement: Measurement) -> list[int]:
+    """Which quantities a measurement has: those that are used and finite."""
+    values, covariance = measurement.values, measurement.covariance
+    return [
+        index
+        for index, used in enumerate(measurement.used)
+        if used and isfinite(values[index]) and isfinite(covariance[index, index])
+    ]
+
+
+def _noise(measurement: Measurement, used: list[int]) -> Matrix:
+    noise = measurement.covariance[np.ix_(used, used)].copy()
+    for row in range(len(used)):
+        noise[row, row] = max(abs(noise[row, row]), LEAST_VARIANCE)
+    return noise

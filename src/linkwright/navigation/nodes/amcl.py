@@ -1,0 +1,381 @@
+"""amcl of nav2: localizes the robot on a map by a laser and odometry.
+
+Parameters, topics, services and texts are those of nav2. Deliberate differences: the random seed is fixed, so the same
+data give the same result; a scan that matches nowhere near is logged; clusters of particles continue across the end of
+a turn; ``save_pose_rate`` and ``freespace_downsampling`` have no effect.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from math import isfinite
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.single import Transform, compose, invert, quaternion_from_rpy, rpy_from_quaternion
+from linkwright.graph import SENSOR_DATA_QOS, TF_QOS, TransformException
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.graph.transforms.listener import TransformListener
+from linkwright.messages import TFMessage, TransformBatch, get_message, get_service
+from linkwright.navigation.grids.occupancy import BadGridError, grid_of
+from linkwright.navigation.localization.beams import Beams, beams_of_scan
+from linkwright.navigation.localization.motion_models import Pose, turned_by
+from linkwright.navigation.localization.particle_filter import Estimate, ParticleFilter
+from linkwright.navigation.localization.sensor_models import MapLikelihoods
+from linkwright.navigation.nodes.amcl_parameters import declare_parameters, read_parameters
+from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
+from linkwright.navigation.nodes.map_server import MAP_QOS
+
+_POSE = "geometry_msgs/msg/PoseWithCovarianceStamped"
+_MOST_WAITING = 10
+_SECONDS_BETWEEN_COMPLAINTS = 5.0
+_SECONDS_OF_SILENCE = 15.0
+_UNKNOWN_COVARIANCE = np.diag((0.25, 0.25, (np.pi / 12.0) ** 2))
+_FITS_LITTLE = 0.3
+"""The share of beams near obstacles of the map below which a scan does not fit."""
+_MISFITS = 5
+"""The number of consecutive measurements that do not match after which a warning is logged."""
+
+
+class AmclNode(ManagedNode):
+    """amcl as a managed node."""
+
+    def declare(self) -> None:
+        """Declare the parameters of nav2."""
+        declare_parameters(self)
+        self._pose: Pose | None = None
+        self._covariance: NDArray[np.float64] = _UNKNOWN_COVARIANCE
+        self._map: MapLikelihoods | None = None
+        self._active = self._begun = self._forced = False
+        self._measured = self._misfits = 0
+        self._odometry: Pose = (0.0, 0.0, 0.0)
+        self.add_post_set_parameters_callback(lambda _: self._follow())
+
+    def configure(self) -> None:
+        """Read the parameters and join the topics.
+
+        Raises:
+            LinkwrightError: NODE433, a parameter cannot have its value.
+        """
+        self._settings = read_parameters(self)
+        if self._settings.forgets:
+            self._pose = None
+        self._map = None
+        self._filter = ParticleFilter(self._settings.filter)
+        self._waiting: deque[Any] = deque(maxlen=_MOST_WAITING)
+        self._map_to_odom: Transform | None = None
+        self._begin_at(self._pose, self._covariance)
+        self._join()
+
+    def _join(self) -> None:
+        settings, register = self._settings, self.register
+        self._buffer = BufferCore(logger=self.get_logger().get_child("tf2"))
+        listener = TransformListener(self, self)
+        register(_Listening(listener))
+        self._clouds = register(
+            self.create_publisher(get_message("nav2_msgs/msg/ParticleCloud"), "particle_cloud", SENSOR_DATA_QOS)
+        )
+        pose, scan = get_message(_POSE), get_message("sensor_msgs/msg/LaserScan")
+        self._poses = register(self.create_publisher(pose, "amcl_pose", MAP_QOS))
+        self._transforms = register(self.create_publisher(TFMessage, "/tf", TF_QOS))
+        register(self.create_subscription(pose, "initialpose", self._on_initial_pose, 10))
+        grid = get_message("nav_msgs/msg/OccupancyGrid")
+        register(self.create_subscription(grid, settings.map_topic, self._on_map, MAP_QOS))
+        register(self.create_subscription(scan, settings.scan_topic, self._on_scan, SENSOR_DATA_QOS))
+        empty = get_service("std_srvs/srv/Empty")
+        register(self.create_service(empty, "reinitialize_global_localization", self._on_global_localization))
+        register(self.create_service(empty, "request_nomotion_update", self._on_no_motion))
+        initial = get_service("nav2_msgs/srv/SetInitialPose")
+        register(self.create_service(initial, "set_initial_pose", self._on_set_initial_pose))
+
+    def activate(self) -> None:
+        """Start, at the initial pose if there is one."""
+        self._heard_ns = self.get_clock().now().nanoseconds
+        self._silence = self.create_timer(_SECONDS_OF_SILENCE, self._look_for_scans)
+        if self._settings.initial_pose is not None:
+            self._set_pose(self._settings.initial_pose, np.zeros((3, 3)))
+        self._active = True
+
+    def deactivate(self) -> None:
+        """Stop; the pose stays known."""
+        self._active = False
+        self._silence.destroy()
+        self._waiting.clear()
+
+    def cleanup(self) -> None:
+        """Drop the map."""
+        self._map = None
+        self._active = False
+
+    # --- input -------------------------------------------------------------------------------------------------------
+
+    def update(self, message: TFMessage, *, static: bool, now_ns: int) -> None:
+        """Take over new transforms, and process the scans that waited for them."""
+        self._buffer.update(message, static=static, now_ns=now_ns)
+        if self._waiting:
+            self._work()
+
+    def _on_map(self, message: Any) -> None:
+        if self._map is not None and self._settings.first_map_only:
+            return
+        try:
+            grid = grid_of(message)
+        except BadGridError as error:
+            self.get_logger().error(f"the message on '{self._settings.map_topic}' is not a map: {error}")
+            return
+        self.get_logger().info(f"Received a {grid.columns} X {grid.rows} map @ {grid.resolution:.3f} m/pix")
+        if message.header.frame_id != self._settings.world:
+            self.get_logger().warning(
+                f"Frame_id of map received:'{message.header.frame_id}' doesn't match "
+                f"global_frame_id:'{self._settings.world}'. This could cause issues with reading published topics"
+            )
+        self._map = MapLikelihoods(grid, self._settings.laser)
+
+    def _on_scan(self, message: Any) -> None:
+        if not self._active:
+            return
+        self._heard_ns = self.get_clock().now().nanoseconds
+        if self._map is None:
+            topic = self.resolve_topic_name(self._settings.map_topic)
+            nobody = "" if self.count_publishers(topic) else f" No node publishes on '{topic}'."
+            self.get_logger().warning(f"Waiting for map....{nobody}", throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+            return
+        self._waiting.append(message)
+        self._work()
+
+    def _look_for_scans(self) -> None:
+        silent = (self.get_clock().now().nanoseconds - self._heard_ns) / 1e9
+        if silent >= _SECONDS_OF_SILENCE:
+            self.get_logger().warning(
+                f"No laser scan received (and thus no pose updates have been published) for {silent:.1f} seconds. "
+                f"Verify that data is being published on the {self._settings.scan_topic} topic."
+            )
+
+    def _work(self) -> None:
+        """Process the scans whose transforms are known; others wait until the transform tolerance is over."""
+        while self._waiting:
+            scan = self._waiting[0]
+            stamp_ns = scan.header.stamp.nanoseconds
+            try:
+                robot_in_odom, _ = self._buffer.lookup(self._settings.odom, self._settings.base, stamp_ns)
+                laser, _ = self._buffer.lookup(self._settings.base, scan.header.frame_id.removeprefix("/"), stamp_ns)
+            except TransformException as error:
+                late = self.get_clock().now().nanoseconds - stamp_ns > self._settings.tolerance * 1e9
+                if not late and len(self._waiting) < _MOST_WAITING:
+                    return
+                self._waiting.popleft()
+                self.get_logger().error(
+                    f"Couldn't determine robot's pose associated with laser scan: {error}",
+                    throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS,
+                )
+                continue
+            self._waiting.popleft()
+            settings = self._settings
+            beams = beams_of_scan(scan, laser, settings.max_beams, settings.range_min, settings.range_max)
+            self._update(beams, robot_in_odom, stamp_ns)
+
+    # --- the filter --------------------------------------------------------------------------------------------------
+
+    def _update(self, beams: Beams, robot_in_odom: Transform, stamp_ns: int) -> None:
+        assert self._map is not None, "scans wait for the map"
+        settings, odometry = self._settings, _flat(robot_in_odom)
+        moved = not self._begun or self._forced or self._has_moved(odometry)
+        if self._begun and moved:
+            settings.motion(self._filter.particles, self._odometry, odometry, settings.noise, self._filter.random)
+        published = not self._begun
+        self._begun, self._forced = True, False
+        if moved:
+            self._odometry = odometry
+            skipping = settings.skipping if self._filter.has_converged() else None
+            self._filter.weigh(self._map.likelihoods(settings.model, self._filter.particles, beams, skipping))
+            self._measured += 1
+            if self._measured % settings.resample_interval == 0:
+                grid = self._map
+                self._filter.resample(lambda count: grid.random_poses(count, self._filter.random))
+                published = True
+            self._publish_cloud(stamp_ns)
+        if published:
+            self._publish(self._filter.estimate(), beams, robot_in_odom, stamp_ns)
+        self._broadcast(stamp_ns)
+
+    def _has_moved(self, odometry: Pose) -> bool:
+        before, settings = self._odometry, self._settings
+        return (
+            abs(odometry[0] - before[0]) > settings.update_min_d
+            or abs(odometry[1] - before[1]) > settings.update_min_d
+            or abs(turned_by(odometry[2] - before[2])) > settings.update_min_a
+        )
+
+    def _begin_at(self, pose: Pose | None, covariance: NDArray[np.float64]) -> None:
+        """Initialise the particles around a pose; if it is unknown, around the origin of the map."""
+        self._pose, self._covariance = pose, covariance
+        self._filter.begin_at(pose or (0.0, 0.0, 0.0), covariance)
+        self._begin_anew()
+
+    def _begin_anew(self) -> None:
+        self._begun = self._forced = False
+        self._measured = self._misfits = 0
+
+    def _follow(self) -> None:
+        """Apply changed parameters while it is active; frames and topics stay as configured."""
+        if not hasattr(self, "_settings"):
+            return
+        before, self._settings = self._settings, read_parameters(self)
+        self._filter.settings = self._settings.filter
+        if self._map is not None and before.laser != self._settings.laser:
+            self._map = MapLikelihoods(self._map.grid, self._settings.laser)
+
+    # --- output ------------------------------------------------------------------------------------------------------
+
+    def _publish(self, estimate: Estimate, beams: Beams, robot_in_odom: Transform, stamp_ns: int) -> None:
+        if self._pose is None:
+            self.get_logger().warning(
+                "AMCL cannot publish a pose or update the transform. Please set the initial pose...",
+                throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS,
+            )
+            return
+        self._pose, self._covariance = estimate.pose, estimate.covariance
+        self._map_to_odom = compose(_transform(estimate.pose), invert(robot_in_odom))
+        message = get_message(_POSE)()
+        message.header.frame_id = self._settings.world
+        message.header.stamp = _stamp(stamp_ns)
+        _write_pose(message.pose.pose, estimate.pose)
+        covariance = np.zeros((6, 6))
+        covariance[:2, :2] = estimate.covariance[:2, :2]
+        covariance[5, 5] = estimate.covariance[2, 2]
+        message.pose.covariance = covariance.reshape(36)
+        self._poses.publish(message)
+        self._judge(estimate, beams)
+
+    def _judge(self, estimate: Estimate, beams: Beams) -> None:
+        """Warn when scans have not matched the map for a while."""
+        assert self._map is not None, "there is an estimate"
+        fit = self._map.fit(estimate.pose, beams)
+        if fit is None:
+            return
+        self._misfits = 0 if fit > _FITS_LITTLE else self._misfits + 1
+        if self._misfits >= _MISFITS:
+            self.get_logger().warning(
+                f"only {fit:.0%} of the beams end near something on the map: the robot is elsewhere, or the map is "
+                "another one. Say where it is (2D Pose Estimate), or call /reinitialize_global_localization and drive",
+                throttle_duration_sec=_SECONDS_OF_SILENCE,
+            )
+
+    def _publish_cloud(self, stamp_ns: int) -> None:
+        if self._pose is None or not self._clouds.get_subscription_count():
+            return
+        message = get_message("nav2_msgs/msg/ParticleCloud")()
+        message.header.frame_id = self._settings.world
+        message.header.stamp = _stamp(stamp_ns)
+        kind = get_message("nav2_msgs/msg/Particle")
+        for (x, y, yaw), weight in zip(self._filter.particles.tolist(), self._filter.weights.tolist(), strict=True):
+            particle = kind(weight=weight)
+            _write_pose(particle.pose, (x, y, yaw))
+            message.particles.append(particle)
+        self._clouds.publish(message)
+
+    def _broadcast(self, stamp_ns: int) -> None:
+        if self._map_to_odom is None or not self._settings.broadcasts:
+            return
+        good_until = stamp_ns + round(self._settings.tolerance * 1e9)
+        frames = (self._settings.world,), (self._settings.odom,)
+        self._transforms.publish(TFMessage(batch=TransformBatch(*frames, good_until, np.array([self._map_to_odom]))))
+
+    # --- commands ----------------------------------------------------------------------------------------------------
+
+    def _on_initial_pose(self, message: Any) -> None:
+        logger, frame = self.get_logger(), message.header.frame_id.removeprefix("/")
+        logger.info("initialPoseReceived")
+        if not frame:
+            logger.warning("Received initial pose with empty frame_id. You should always supply a frame_id.")
+            return
+        if frame != self._settings.world:
+            logger.warning(
+                f'Ignoring initial pose in frame "{frame}"; initial poses must be in the global frame, '
+                f'"{self._settings.world}"'
+            )
+            return
+        position, turned = message.pose.pose.position, message.pose.pose.orientation
+        pose = (position.x, position.y, rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2])
+        covariance = np.asarray(message.pose.covariance, np.float64).reshape(6, 6)[np.ix_((0, 1, 5), (0, 1, 5))]
+        if not all(map(isfinite, pose)) or not np.isfinite(covariance).all():
+            logger.error("Received initial pose contains NaNs or Infs! Ignoring as invalid!")
+            return
+        covariance[2, :2] = covariance[:2, 2] = 0.0  # as in nav2
+        self._set_pose(self._since(pose, message.header.stamp.nanoseconds), covariance)
+        if not self._active:
+            logger.warning("Received initial pose request, but AMCL is not yet in the active state")
+
+    def _since(self, pose: Pose, stamp_ns: int) -> Pose:
+        """An earlier pose moved by the odometry since then, as far as that is known."""
+        if not stamp_ns:
+            return pose
+        try:
+            then, _ = self._buffer.lookup(self._settings.odom, self._settings.base, stamp_ns)
+            now, _ = self._buffer.lookup(self._settings.odom, self._settings.base, 0)
+        except TransformException:
+            return pose  # without odometry there is no known motion
+        return _flat(compose(_transform(pose), compose(invert(then), now)))
+
+    def _set_pose(self, pose: Pose, covariance: NDArray[np.float64]) -> None:
+        seconds = self.get_clock().now().nanoseconds / 1e9
+        self.get_logger().info(f"Setting pose ({seconds:.6f}): {pose[0]:.3f} {pose[1]:.3f} {pose[2]:.3f}")
+        self._begin_at(pose, covariance)
+
+    def _on_set_initial_pose(self, request: Any, response: Any) -> Any:
+        self._on_initial_pose(request.pose)
+        return response
+
+    def _on_global_localization(self, _request: Any, response: Any) -> Any:
+        if self._map is None:
+            self.get_logger().error("There is no map yet, on which the robot could be anywhere")
+            return response
+        self.get_logger().info("Initializing with uniform distribution")
+        self._filter.begin(self._map.random_poses(self._settings.filter.max_particles, self._filter.random))
+        self._begin_anew()
+        self._pose = self._pose or (0.0, 0.0, 0.0)
+        self.get_logger().info("Global initialisation done!")
+        return response
+
+    def _on_no_motion(self, _request: Any, response: Any) -> Any:
+        self.get_logger().info("Requesting no-motion update")
+        self._forced = True
+        return response
+
+
+class _Listening:
+    """The subscriptions of a listener, removed when the node is cleaned up."""
+
+    def __init__(self, listener: TransformListener) -> None:
+        self._listener = listener
+
+    def destroy(self) -> None:
+        """Unsubscribe."""
+        self._listener.unregister()
+
+
+def _flat(pose: Transform) -> Pose:
+    return pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]
+
+
+def _transform(pose: Pose) -> Transform:
+    return (pose[0], pose[1], 0.0, *quaternion_from_rpy((0.0, 0.0, pose[2])))
+
+
+def _stamp(time_ns: int) -> Any:
+    return get_message("builtin_interfaces/msg/Time")(*divmod(time_ns, 1_000_000_000))
+
+
+def _write_pose(message: Any, pose: Pose) -> None:
+    message.position.x, message.position.y = pose[0], pose[1]
+    turned = message.orientation
+    turned.x, turned.y, turned.z, turned.w = quaternion_from_rpy((0.0, 0.0, pose[2]))
+
+
+class Amcl(ManagedServer):
+    """The running node."""
+
+    NODE = AmclNode
+    DEFAULT_NAME = "amcl"

@@ -1,0 +1,322 @@
+"""behavior_server of nav2: spin, back up, drive on heading, wait and assisted teleoperation as actions.
+
+Source: nav2_behaviors, Humble and Jazzy. Obstacles are those of ``local_costmap/costmap_raw``, the footprint is that of
+``local_costmap/published_footprint``. Deliberate differences: a costmap that falls silent ends a behaviour that moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.graph import DESCRIPTION_QOS, ParameterType
+from linkwright.graph.actions.goal import ServerGoalHandle
+from linkwright.graph.time.values import Duration, Time
+from linkwright.messages import get_message
+from linkwright.navigation.behaviors.behaviors import (
+    Behavior,
+    DriveStraight,
+    IsFree,
+    Outcome,
+    Spin,
+    SpinParameters,
+    Step,
+    Wait,
+    slowed,
+)
+from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
+from linkwright.navigation.costmaps.footprints import Footprint
+from linkwright.navigation.following.follower import STILL, Pose, Velocity
+from linkwright.navigation.nodes.costmap_reading import costmap_of
+from linkwright.navigation.nodes.goals import GoalServer
+from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
+from linkwright.navigation.nodes.plugins import texts_of, type_of
+from linkwright.nodes.frame_poses import FramePoses
+from linkwright.nodes.settings import bad_value, positive
+from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
+
+_DEPTH = 10
+_SILENT_COSTMAP = 5.0
+"""The seconds after which a costmap is out of date."""
+_CODES = {Outcome.TIMEOUT: "TIMEOUT", Outcome.COLLISION: "COLLISION_AHEAD"}
+_TYPES = {
+    "spin": ("nav2_behaviors/Spin", "nav2_msgs/action/Spin"),
+    "backup": ("nav2_behaviors/BackUp", "nav2_msgs/action/BackUp"),
+    "drive_on_heading": ("nav2_behaviors/DriveOnHeading", "nav2_msgs/action/DriveOnHeading"),
+    "assisted_teleop": ("nav2_behaviors/AssistedTeleop", "nav2_msgs/action/AssistedTeleop"),
+    "wait": ("nav2_behaviors/Wait", "nav2_msgs/action/Wait"),
+}
+
+
+class _AssistedTeleop(Behavior):
+    """Drives by an operator's velocities, slowed down near obstacles; ends when canceled or by a time limit.
+
+    Args:
+        allowance: how long it may take, in seconds; 0 for ever.
+        seconds: how far ahead obstacles count.
+        asked: the requested velocity.
+    """
+
+    def __init__(self, allowance: float, seconds: float, asked: Callable[[], Velocity]) -> None:
+        super().__init__(allowance)
+        self._seconds, self._asked = seconds, asked
+
+    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
+        return Step(Outcome.RUNNING, slowed(pose, self._asked(), self._seconds, is_free))
+
+
+class BehaviorNode(ManagedNode):
+    """behavior_server as a managed node."""
+
+    _FRAME: ClassVar[str] = "odom"
+
+    def declare(self) -> None:
+        """Declare the parameters of nav2."""
+        declare = self.declare_parameter
+        given = set(self.undeclared_overrides())
+        self._humble = {"costmap_topic", "footprint_topic"} & given
+        for which in ("local", "global"):
+            declare(f"{which}_costmap_topic", f"{which}_costmap/costmap_raw")
+            declare(f"{which}_footprint_topic", f"{which}_costmap/published_footprint")
+        declare("costmap_topic", "local_costmap/costmap_raw")  # Humble's names of the same
+        declare("footprint_topic", "local_costmap/published_footprint")
+        declare("cycle_frequency", 10.0)
+        declare("local_frame", self._FRAME)
+        declare("global_frame", "")  # Humble's name of the local one is this
+        declare("robot_base_frame", "base_link")
+        declare("transform_tolerance", 0.1)
+        declare("simulate_ahead_time", 2.0)
+        declare("max_rotational_vel", 1.0)
+        declare("min_rotational_vel", 0.4)
+        declare("rotational_acc_lim", 3.2)
+        declare("projection_time", 1.0)
+        declare("simulation_time_step", 0.1)
+        declare("cmd_vel_teleop", "cmd_vel_teleop")
+        declare("action_server_result_timeout", 10.0)
+        self._stamped: bool | None = declare("enable_stamped_cmd_vel", ParameterType.BOOL).value
+        self._poses = FramePoses(self, "the pose of the robot is not known:")
+        self._servers: dict[str, GoalServer] = {}
+        self._running: tuple[GoalServer, Behavior, str] | None = None
+        self._costmap: Costmap | None = None
+        self._heard_ns = 0
+        self._costmap_frame = ""
+        self._footprint: Footprint | None = None
+        self._asked = STILL
+
+    def configure(self) -> None:
+        """Make the topics and the action servers.
+
+        Raises:
+            LinkwrightError: a parameter is not given or means nothing.
+        """
+        self._period = 1.0 / positive(self, "cycle_frequency", self._value("cycle_frequency"))
+        raw, polygon = get_message("nav2_msgs/msg/Costmap"), get_message("geometry_msgs/msg/PolygonStamped")
+        self.register(self.create_subscription(raw, self._topic("costmap"), self._on_costmap, DESCRIPTION_QOS))
+        self.register(self.create_subscription(polygon, self._topic("footprint"), self._on_footprint, _DEPTH))
+        asked = self._value("cmd_vel_teleop")
+        for kind in velocity_types(self, asked, self._stamped):
+            self.register(self.create_subscription(kind, asked, self._on_asked, _DEPTH))
+        self._output = VelocityTopic(self, "cmd_vel", self._stamped)
+        for plugin in texts_of(self, "behavior_plugins", list(_TYPES)):
+            kind = type_of(self, plugin, {name: class_name for name, (class_name, _) in _TYPES.items()})
+            known = {class_name: (name, action) for name, (class_name, action) in _TYPES.items()}
+            if kind not in known:
+                raise bad_value(f"{plugin}.plugin", kind, self.get_name(), list(known))
+            name, action = known[kind]
+            self.get_logger().info(f"Creating behavior plugin {plugin} of type {kind}")
+            self._servers[plugin] = self.register(self._server(plugin, name, action))
+
+    def deactivate(self) -> None:
+        """Stop the robot, and refuse goals."""
+        if self._running is not None:
+            server, _, _ = self._running
+            self._halt()
+            server.abort("UNKNOWN", "the server was deactivated")
+
+    def cleanup(self) -> None:
+        """Remove the topics."""
+        self.end_cycles()
+        self._servers.clear()
+        self._costmap = self._footprint = None
+        if hasattr(self, "_output"):
+            self._output.close()
+
+    # --- goals --------------------------------------------------------------------------------------------------------
+
+    def _server(self, plugin: str, name: str, action: str) -> GoalServer:
+        def begin(goal: ServerGoalHandle) -> None:
+            self._start(self._servers[plugin], name, goal.request)
+
+        return GoalServer(self, action, plugin, begin)
+
+    def _start(self, server: GoalServer, name: str, goal: Any) -> None:
+        self.get_logger().info(f"Running {name}")
+        if self._running is not None and self._running[0] is not server:
+            self._running[0].abort("UNKNOWN", f"{name} took its place")
+        self._halt()
+        start = self._pose() if name not in ("wait", "assisted_teleop") else (0.0, 0.0, 0.0)
+        if start is None:
+            server.abort("TF_ERROR", "Initial robot pose is not available.")
+            return
+        behavior = self._behavior(name, goal, start)
+        if isinstance(behavior, str):
+            self.get_logger().error(behavior)
+            server.abort("INVALID_INPUT", behavior)
+            return
+        self._running = (server, behavior, name)
+        self._since_ns = self.now_ns()
+        self._asked = STILL
+        self._output.review()
+        self.begin_cycles(self._period, self._cycle)
+
+    def _behavior(self, name: str, goal: Any, start: Pose) -> Behavior | str:
+        """Make the behaviour of a goal, or the reason for refusing it."""
+        if name == "wait":
+            return Wait(_seconds(goal.time))
+        allowance = _seconds(goal.time_allowance)
+        if name == "spin":
+            parameters = SpinParameters(
+                max_rotational_vel=self._value("max_rotational_vel"),
+                min_rotational_vel=self._value("min_rotational_vel"),
+                rotational_acc_lim=self._value("rotational_acc_lim"),
+                simulate_ahead_time=self._value("simulate_ahead_time"),
+            )
+            return Spin(goal.target_yaw, allowance, parameters, start)
+        if name == "assisted_teleop":
+            return _AssistedTeleop(allowance, self._value("projection_time"), lambda: self._asked)
+        if goal.target.y or goal.target.z:
+            return f"{name} drives along x alone, and its target has y or z"
+        distance, speed = goal.target.x, abs(goal.speed)
+        if name == "backup":
+            distance = -abs(distance)
+        elif (goal.target.x > 0.0) != (goal.speed > 0.0):
+            return "Speed and command sign did not match"
+        if not speed > 0.0:
+            return f"{name} needs a speed"
+        return DriveStraight(distance, speed, allowance, self._value("simulate_ahead_time"), start)
+
+    def _cycle(self) -> None:
+        if self._running is None:
+            self.end_cycles()
+            return
+        server, behavior, name = self._running
+        elapsed = (self.now_ns() - self._since_ns) / 1e9
+        if server.is_canceled:
+            self.get_logger().info(f"Canceling {name}")
+            self._halt()
+            server.canceled(total_elapsed_time=_duration(elapsed))
+            return
+        pose = self._pose() if name != "wait" else (0.0, 0.0, 0.0)
+        if pose is None:
+            self._finish(server, name, "TF_ERROR", "the pose of the robot is not known", elapsed)
+            return
+        if name != "wait" and (reason := self._blind()):
+            self._finish(server, name, "UNKNOWN", reason, elapsed)
+            return
+        step = behavior.step(pose, elapsed, self._is_free)
+        if step.outcome is Outcome.RUNNING:
+            if name != "wait":
+                self._output.publish((step.velocity.x, step.velocity.y, 0.0), (0.0, 0.0, step.velocity.yaw))
+            server.feedback(**_feedback(name, step, elapsed, server.goal))
+        elif step.outcome is Outcome.DONE:
+            self.get_logger().info(f"{name} completed successfully")
+            self._halt()
+            server.succeed(total_elapsed_time=_duration(elapsed))
+        else:
+            self._finish(server, name, _CODES[step.outcome], step.outcome.value, elapsed)
+
+    def _finish(self, server: GoalServer, name: str, code: str, reason: str, elapsed: float) -> None:
+        self.get_logger().warning(f"{name} failed: {reason}")
+        self._halt()
+        server.abort(code, reason, total_elapsed_time=_duration(elapsed))
+
+    def _halt(self) -> None:
+        """Stop the robot, if it was moved."""
+        self.end_cycles()
+        if self._running is not None and self._running[2] != "wait":
+            self._output.stop()
+        self._running = None
+
+    # --- what is known of the surroundings ----------------------------------------------------------------------------
+
+    def _blind(self) -> str:
+        """The reason why obstacles are unknown; empty if they are known."""
+        if self._costmap is None or self._footprint is None:
+            return "no costmap has come yet"
+        if self.now_ns() - self._heard_ns > _SILENT_COSTMAP * 1e9:
+            return "the costmap has fallen silent"
+        return ""
+
+    def _is_free(self, poses: NDArray[np.float64]) -> bool:
+        assert self._costmap is not None, "it was looked whether there is one"
+        assert self._footprint is not None, "it was looked whether there is one"
+        return not bool(np.any(self._costmap.footprint_cost(poses, self._footprint) == LETHAL))
+
+    def _pose(self) -> Pose | None:
+        """The robot's pose in the frame of the costmap."""
+        frame = self._costmap_frame or self._value("local_frame")
+        found = self._poses.pose(frame, self._value("robot_base_frame"), 0)
+        return None if found is None else (found[0], found[1], rpy_from_quaternion(found[3:])[2])
+
+    def _on_costmap(self, message: Any) -> None:
+        self._costmap = costmap_of(message)
+        self._costmap_frame = message.header.frame_id
+        self._heard_ns = self.now_ns()
+
+    def _on_footprint(self, message: Any) -> None:
+        """Set the footprint from a message, which has it at the robot's pose; converts it to the robot's frame."""
+        found = self._poses.pose(
+            message.header.frame_id,
+            self._value("robot_base_frame"),
+            Time.from_msg(message.header.stamp).nanoseconds,
+        )
+        if found is None:
+            return
+        yaw = rpy_from_quaternion(found[3:])[2]
+        corners = np.array([(point.x, point.y) for point in message.polygon.points], np.float64).reshape(-1, 2)
+        c, s = np.cos(yaw), np.sin(yaw)
+        footprint: Footprint = (corners - found[:2]) @ np.array([[c, -s], [s, c]])
+        self._footprint = footprint
+
+    def _on_asked(self, message: Any) -> None:
+        twist = message.twist if hasattr(message, "twist") else message
+        self._asked = Velocity(twist.linear.x, twist.linear.y, twist.angular.z)
+
+    def _topic(self, what: str) -> str:
+        """The name of a topic, from Humble's or Jazzy's parameter."""
+        old = str(self._value(f"{what}_topic"))
+        new = str(self._value(f"local_{what}_topic"))
+        return old if f"{what}_topic" in self._humble else new
+
+    def _value(self, name: str) -> Any:
+        return self.get_parameter(name).value
+
+
+class BehaviorServer(ManagedServer):
+    """The running node."""
+
+    DEFAULT_NAME = "behavior_server"
+    NODE = BehaviorNode
+
+
+def _feedback(name: str, step: Step, elapsed: float, goal: Any) -> dict[str, Any]:
+    """The fields of a behaviour's feedback."""
+    if name == "spin":
+        return {"angular_distance_traveled": float(step.traveled)}
+    if name == "wait":
+        return {"time_left": _duration(max(0.0, _seconds(goal.time) - elapsed))}
+    if name == "assisted_teleop":
+        return {"current_teleop_duration": _duration(elapsed)}
+    return {"distance_traveled": float(step.traveled)}
+
+
+def _seconds(message: Any) -> float:
+    return float(message.sec + message.nanosec / 1e9)
+
+
+def _duration(seconds: float) -> Any:
+    return Duration(seconds=seconds).to_msg()

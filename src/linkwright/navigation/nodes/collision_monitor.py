@@ -1,0 +1,171 @@
+"""collision_monitor of nav2: forwards velocities, slowed down or stopped when sensors see something in a zone.
+
+Parameters, topics and rules are those of nav2, Humble's and Jazzy's. Deliberate differences: unless
+``enable_stamped_cmd_vel`` is set it takes Twist and TwistStamped, and publishes what the subscribers take; a sensor
+that is silent stops the robot, which in Humble it does not; and so does a driver that was lost. Sensors of the types
+``polygon`` and ``costmap`` are not had, and ``transform_tolerance`` has no effect: what has no place yet waits.
+"""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+from linkwright.diagnostics import phrase
+from linkwright.graph import EndpointInfo, ParameterType, Subscription
+from linkwright.graph.endpoints.commander import Commander, who_was_lost
+from linkwright.graph.endpoints.drivers import DriverWatch
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.graph.transforms.listener import TransformListener
+from linkwright.messages import get_message
+from linkwright.navigation.behaviors.zones import Action, Verdict, judged
+from linkwright.navigation.following.follower import STILL, Velocity
+from linkwright.navigation.nodes.collision_sources import Source
+from linkwright.navigation.nodes.collision_zones import Zone
+from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
+from linkwright.navigation.nodes.plugins import texts_of
+from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
+
+_DEPTH = 10
+_NO_SOURCE = "invalid source"
+"""nav2's name of the zone when a sensor is silent."""
+_DONE = {
+    Action.STOP: "Robot to stop due to {}",
+    Action.SLOWDOWN: "Robot to slow down due to {}",
+    Action.APPROACH: "Robot to slow down while it approaches what is in the way of {}",
+    Action.LIMIT: "Robot to limit its speed due to {}",
+    Action.NOTHING: "Robot to continue normal operation",
+}
+
+
+class MonitorNode(ManagedNode):
+    """collision_monitor as a managed node."""
+
+    def declare(self) -> None:
+        """Declare the parameters that do not belong to a zone or a sensor."""
+        self._transforms = BufferCore(logger=self.get_logger().get_child("tf2"))
+        TransformListener(self._transforms, self)
+        self._zones: list[Zone] = []
+        self._sources: list[Source] = []
+        self._output: VelocityTopic | None = None
+        self._state: Any = None
+        self._verdict = Verdict(STILL)
+        self._stopped_ns: int | None = None
+        for name, value in {
+            "cmd_vel_in_topic": "cmd_vel_smoothed",
+            "cmd_vel_out_topic": "cmd_vel",
+            "state_topic": "",
+            "base_frame_id": "base_footprint",
+            "odom_frame_id": "odom",
+            "transform_tolerance": 0.1,
+            "source_timeout": 2.0,
+            "base_shift_correction": True,
+            "stop_pub_timeout": 1.0,
+        }.items():
+            self.declare_parameter(name, value)
+        self._stamped: bool | None = self.declare_parameter("enable_stamped_cmd_vel", ParameterType.BOOL).value
+
+    def configure(self) -> None:
+        """Read the zones and sensors, and make the topics.
+
+        Raises:
+            LinkwrightError: NODE431, NODE433, a parameter is not given or cannot have its value.
+        """
+        base, odom = str(self._value("base_frame_id")), str(self._value("odom_frame_id"))
+        fixed = odom if self._value("base_shift_correction") else None
+        for name in texts_of(self, "observation_sources", []):
+            self._sources.append(self.register(Source(self, name, self._transforms, base, fixed)))
+        for name in texts_of(self, "polygons", []):
+            self._zones.append(self.register(Zone(self, name, self._transforms, base)))
+        topic = str(self._value("state_topic"))
+        if topic:
+            self._state = self.register(self.create_publisher("nav2_msgs/msg/CollisionMonitorState", topic, _DEPTH))
+        self._output = VelocityTopic(self, str(self._value("cmd_vel_out_topic")), self._stamped)
+        topic = str(self._value("cmd_vel_in_topic"))
+        for kind in velocity_types(self, topic, self._stamped):
+            commander = Commander(self._on_lost, DriverWatch.of(self))
+            take = commander.taking(self._on_velocity)
+            heard: Subscription[Any] = self.create_subscription(kind, topic, take, _DEPTH)
+            commander.watch(self.register(heard))
+
+    def activate(self) -> None:
+        """Start to forward velocities."""
+        for zone in self._zones:
+            zone.publish()
+
+    def deactivate(self) -> None:
+        """Stop the robot, and forward nothing."""
+        if self._output is not None and self._verdict.velocity != STILL:
+            self._output.stop()
+        self._verdict = Verdict(STILL)
+
+    def cleanup(self) -> None:
+        """Remove the topics."""
+        self._zones, self._sources, self._state = [], [], None
+        if self._output is not None:
+            self._output.close()
+            self._output = None
+
+    def _value(self, name: str) -> Any:
+        return self.get_parameter(name).value
+
+    def _on_velocity(self, message: Any) -> None:
+        if not self.is_active or self._output is None:
+            return
+        twist, stamped = (message.twist, True) if hasattr(message, "twist") else (message, False)
+        velocity = Velocity(twist.linear.x, twist.linear.y, twist.angular.z)
+        if not all(map(isfinite, velocity)):
+            self.get_logger().error("Velocity message contains NaNs or Infs! Ignoring as invalid!")
+            return
+        if self._verdict.velocity == STILL:
+            self._output.review()
+        self._output.frame_id = message.header.frame_id if stamped else ""
+        verdict = self._judged(velocity)
+        if verdict.zone != self._verdict.zone:
+            self._publish_state(verdict)
+        self._publish(verdict.velocity)
+        self._verdict = verdict
+        for zone in self._zones:
+            zone.publish()
+
+    def _judged(self, velocity: Velocity) -> Verdict:
+        now_ns = self.get_clock().now().nanoseconds
+        seen = {}
+        for source in self._sources:
+            points = source.points(now_ns, float(self._value("source_timeout")))
+            if points is None:
+                return Verdict(STILL, Action.STOP, _NO_SOURCE)
+            seen[source.name] = points
+        zones = [zone.judging(velocity, seen) for zone in self._zones]
+        return judged(velocity, [zone for zone in zones if zone is not None])
+
+    def _publish(self, velocity: Velocity) -> None:
+        """Publish a velocity; zeros only for ``stop_pub_timeout``, so that others can drive then."""
+        assert self._output is not None, "it is configured"
+        now_ns = self.get_clock().now().nanoseconds
+        if velocity != STILL:
+            self._stopped_ns = None
+        elif self._stopped_ns is None:
+            self._stopped_ns = now_ns
+        elif now_ns - self._stopped_ns > float(self._value("stop_pub_timeout")) * 1e9:
+            return
+        self._output.publish((velocity.x, velocity.y, 0.0), (0.0, 0.0, velocity.yaw))
+
+    def _on_lost(self, publisher: EndpointInfo) -> None:
+        if self._output is not None and self._verdict.velocity != STILL:
+            self.get_logger().warning(str(phrase("{who}: the robot is stopped", who=who_was_lost(publisher))))
+            self._output.stop()
+            self._verdict = Verdict(STILL)
+
+    def _publish_state(self, verdict: Verdict) -> None:
+        self.get_logger().info(_DONE[verdict.action].format(verdict.zone))
+        if self._state is not None:
+            state = get_message("nav2_msgs/msg/CollisionMonitorState")
+            self._state.publish(state(action_type=int(verdict.action), polygon_name=verdict.zone))
+
+
+class CollisionMonitor(ManagedServer):
+    """The running node."""
+
+    DEFAULT_NAME = "collision_monitor"
+    NODE = MonitorNode

@@ -1,0 +1,212 @@
+"""Zones of collision_monitor: their parameters, and shapes from topics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.graph import Node, ParameterDescriptor, TransformException
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.messages import get_message
+from linkwright.navigation.behaviors.zones import Action, Circle, Outline, Points, Rule, Shape, SpeedRange
+from linkwright.navigation.costmaps.footprints import BadFootprintError, Footprint, read_footprint
+from linkwright.navigation.following.follower import Velocity
+from linkwright.navigation.nodes.plugins import texts_of, value_of
+from linkwright.nodes.settings import bad_value
+
+_ACTIONS = {
+    "stop": Action.STOP,
+    "slowdown": Action.SLOWDOWN,
+    "approach": Action.APPROACH,
+    "limit": Action.LIMIT,
+    "none": Action.NOTHING,
+}
+_TYPES = ("polygon", "circle", "velocity_polygon")
+_POLYGON = "geometry_msgs/msg/PolygonStamped"
+_DEPTH = 10
+
+
+class Zone:
+    """A zone with its rule and shape.
+
+    Args:
+        node: whose it is.
+        name: of the zone, before its parameters.
+        transforms: where frames of shapes are.
+        base: frame of the robot.
+
+    Raises:
+        LinkwrightError: NODE433, a parameter cannot have its value.
+    """
+
+    def __init__(self, node: Node, name: str, transforms: BufferCore, base: str) -> None:
+        self.name = name
+        self._node, self._transforms, self._base = node, transforms, base
+        self._parts: list[Any] = []
+        self._shape: Shape | None = None
+        self._polygon: Any = None
+        self._ranges: list[SpeedRange] = []
+        self._value("enabled", True)
+        self.rule = self._read_rule()
+        self._sources = texts_of(node, f"{name}.sources_names", [])
+        kind = str(self._value("type", "polygon"))
+        if kind not in _TYPES:
+            raise bad_value(f"{name}.type", kind, node.get_name(), _TYPES)
+        if kind == "velocity_polygon":
+            self._ranges = [self._read_range(part) for part in texts_of(node, f"{name}.velocity_polygons", [])]
+        else:
+            self._read_shape(kind)
+        self._publisher: Any = None
+        if self._value("visualize", False):
+            topic = str(self._value("polygon_pub_topic", name))
+            self._publisher = self._register(node.create_publisher(get_message(_POLYGON), topic, _DEPTH))
+
+    def destroy(self) -> None:
+        """Remove the topics."""
+        for part in self._parts:
+            part.destroy()
+
+    def judging(self, velocity: Velocity, seen: Mapping[str, Points]) -> tuple[str, Rule, Shape, Points] | None:
+        """Its name, rule, shape at a velocity and points; None if it is switched off or has no shape."""
+        if not self._value("enabled", True):
+            return None
+        for speed_range in self._ranges:
+            if speed_range.covers(velocity):
+                self._shape = speed_range.shape
+                break
+        self._place()
+        if self._shape is None:
+            self._node.get_logger().warning(f"[{self.name}]: Polygon shape is not set yet", throttle_duration_sec=2.0)
+            return None
+        mine = [points for name, points in seen.items() if not self._sources or name in self._sources]
+        return self.name, self.rule, self._shape, np.concatenate(mine) if mine else np.zeros((0, 2))
+
+    def publish(self) -> None:
+        """Publish its polygon for displays."""
+        if (
+            self._publisher is None
+            or not isinstance(self._shape, Outline)
+            or not self._publisher.get_subscription_count()
+        ):
+            return
+        message, point = get_message(_POLYGON)(), get_message("geometry_msgs/msg/Point32")
+        message.header.frame_id = self._base
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        message.polygon.points = [point(x=float(x), y=float(y)) for x, y in self._shape.corners]
+        self._publisher.publish(message)
+
+    # --- parameters --------------------------------------------------------------------------------------------------
+
+    def _value(self, name: str, default: Any) -> Any:
+        return value_of(self._node, f"{self.name}.{name}", default)
+
+    def _read_rule(self) -> Rule:
+        word = str(self._value("action_type", ""))
+        if word not in _ACTIONS:
+            raise bad_value(f"{self.name}.action_type", word, self._node.get_name(), list(_ACTIONS))
+        least = int(self._value("min_points", 4))
+        if f"{self.name}.max_points" in self._node.undeclared_overrides():  # Humble's
+            least = int(self._value("max_points", 3)) + 1
+        usual = Rule(_ACTIONS[word])
+        names = [
+            *(("slowdown_ratio",) if usual.action is Action.SLOWDOWN else ()),
+            *(("linear_limit", "angular_limit") if usual.action is Action.LIMIT else ()),
+            *(("time_before_collision", "simulation_time_step") if usual.action is Action.APPROACH else ()),
+        ]
+        values = {name: float(self._value(name, getattr(usual, name))) for name in names}
+        for name in ("time_before_collision", "simulation_time_step"):
+            if values.get(name, 1.0) <= 0.0:
+                raise bad_value(f"{self.name}.{name}", values[name], self._node.get_name())
+        return Rule(usual.action, least, **values)
+
+    def _read_range(self, part: str) -> SpeedRange:
+        corners = self._corners(f"{part}.points")
+        if corners is None:
+            raise bad_value(f"{self.name}.{part}.points", "", self._node.get_name())
+        between = [float(self._value(f"{part}.{each}", 0.0)) for each in _RANGES]
+        direction = None
+        if self._value("holonomic", False):
+            direction = (
+                float(self._value(f"{part}.direction_start_angle", -np.pi)),
+                float(self._value(f"{part}.direction_end_angle", np.pi)),
+            )
+        return SpeedRange(Outline(corners), (between[0], between[1]), (between[2], between[3]), direction)
+
+    def _read_shape(self, kind: str) -> None:
+        """Read the shape from parameters, or subscribe to its topic."""
+        polygon = get_message(_POLYGON)
+        if kind == "circle":
+            radius = float(self._value("radius", 0.0))
+            if radius > 0.0:
+                self._shape = Circle(radius)
+                return
+            topic = str(self._value("polygon_sub_topic", ""))
+            if not topic:
+                raise bad_value(f"{self.name}.radius", radius, self._node.get_name())
+            number = get_message("std_msgs/msg/Float32")
+            self._register(self._node.create_subscription(number, topic, self._on_radius, _DEPTH))
+            return
+        corners = self._corners("points")
+        if corners is not None:
+            self._shape = Outline(corners)
+        elif self.rule.action is Action.APPROACH:
+            topic = str(self._value("footprint_topic", "local_costmap/published_footprint"))
+            self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
+        else:
+            topic = str(self._value("polygon_sub_topic", ""))
+            if not topic:
+                raise bad_value(f"{self.name}.points", "", self._node.get_name())
+            self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
+
+    def _corners(self, name: str) -> Footprint | None:
+        """Return the corners from Jazzy's parameter, a text, or Humble's, a list of numbers; None if there are none."""
+        full = f"{self.name}.{name}"
+        if not self._node.has_parameter(full):
+            self._node.declare_parameter(full, None, ParameterDescriptor(dynamic_typing=True))
+        value = self._node.get_parameter(full).value
+        if value is None or value == "":
+            return None
+        if not isinstance(value, str):
+            numbers = list(value)
+            value = str([numbers[start : start + 2] for start in range(0, len(numbers), 2)])
+        try:
+            return read_footprint(value)
+        except BadFootprintError:
+            raise bad_value(full, value, self._node.get_name()) from None
+
+    # --- topics ------------------------------------------------------------------------------------------------------
+
+    def _register(self, part: Any) -> Any:
+        self._parts.append(part)
+        return part
+
+    def _on_radius(self, message: Any) -> None:
+        self._shape = Circle(float(message.data))
+
+    def _on_polygon(self, message: Any) -> None:
+        self._polygon = message if len(message.polygon.points) >= 3 else None
+        self._place()
+
+    def _place(self) -> None:
+        """Transform the corners of a topic to the robot's frame of now.
+
+        Footprints are published at the robot's pose, so they are transformed back with the transform of their stamp.
+        """
+        if self._polygon is None:
+            return
+        header = self._polygon.header
+        stamp_ns = header.stamp.nanoseconds if self.rule.action is Action.APPROACH else 0
+        try:
+            pose = self._transforms.lookup(self._base, header.frame_id or self._base, stamp_ns)[0]
+        except TransformException:
+            return
+        corners = np.array([(point.x, point.y, 0.0) for point in self._polygon.polygon.points])
+        self._shape = Outline((corners @ rotation_matrix(pose[3:]).T + np.array(pose[:3]))[:, :2])
+        if header.frame_id in ("", self._base) or stamp_ns:
+            self._polygon = None
+
+
+_RANGES = ("linear_min", "linear_max", "theta_min", "theta_max")

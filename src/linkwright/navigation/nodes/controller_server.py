@@ -1,0 +1,326 @@
+"""controller_server of nav2: follows the paths of the action ``follow_path``.
+
+Parameters, topics and results are those of nav2. Deliberate differences: unless ``enable_stamped_cmd_vel`` is set,
+Twist or TwistStamped is published, whichever is listened to; while the costmap is not current the robot stands still.
+"""
+
+from __future__ import annotations
+
+from math import cos, hypot, sin
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.graph import Graph, ParameterType, TransformException
+from linkwright.graph.actions.goal import ServerGoalHandle
+from linkwright.graph.lifecycle.states import INACTIVE
+from linkwright.messages import get_message
+from linkwright.navigation.following.follower import STILL, Follower, FollowingError, Pose, Situation, Velocity
+from linkwright.navigation.following.path import FollowedPath
+from linkwright.navigation.nodes.costmap import CostmapNode, make_costmap
+from linkwright.navigation.nodes.followers import make_follower, make_goal_checker, make_progress_checker
+from linkwright.navigation.nodes.goals import GoalError, GoalServer
+from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
+from linkwright.navigation.nodes.paths import poses_of
+from linkwright.navigation.nodes.plugins import texts_of
+from linkwright.nodes.options import NodeOptions
+from linkwright.nodes.settings import positive
+from linkwright.nodes.velocity_topic import VelocityTopic
+
+_DEPTH = 10
+_SECONDS_BETWEEN_COMPLAINTS = 2.0
+_LONGEST_WAIT = 3.0
+"""The seconds that the robot waits for missing data before the goal is aborted."""
+_STALE_PATH_FRAME = 5.0
+"""Seconds after which where the path's frame is, is not known any more."""
+
+
+class _NotNowError(GoalError):
+    """Something is unknown for the moment, and the goal fails if that lasts."""
+
+
+class ControllerNode(ManagedNode):
+    """controller_server as a managed node.
+
+    Attributes:
+        costmap: around the robot; set before it is configured.
+    """
+
+    costmap: CostmapNode
+
+    def declare(self) -> None:
+        """Declare the parameters of nav2 that do not belong to a plugin."""
+        declare = self.declare_parameter
+        declare("controller_frequency", 20.0)
+        for axis in ("x", "y", "theta"):
+            declare(f"min_{axis}_velocity_threshold", 0.0001)
+        declare("speed_limit_topic", "speed_limit")
+        declare("failure_tolerance", 0.0)
+        declare("costmap_update_timeout", 0.3)
+        declare("odom_topic", "odom")
+        declare("odom_duration", 0.3)
+        declare("publish_zero_velocity", True)
+        declare("use_realtime_priority", False)
+        declare("action_server_result_timeout", 10.0)
+        self._stamped: bool | None = declare("enable_stamped_cmd_vel", ParameterType.BOOL).value
+        self._old_progress: str = declare("progress_checker_plugin", "").value  # Humble's
+        self._followers: dict[str, Follower] = {}
+        self._goals: GoalServer | None = None
+        self._measured = STILL
+        self._command: Velocity | None = None
+
+    def configure(self) -> None:
+        """Make the plugins, the costmap and the action server.
+
+        Raises:
+            LinkwrightError: a parameter is not given or means nothing.
+        """
+        self._frequency = positive(self, "controller_frequency", self._value("controller_frequency"))
+        progress = [self._old_progress] if self._old_progress else None
+        self._progress = {
+            checker: make_progress_checker(self, checker)
+            for checker in progress or texts_of(self, "progress_checker_plugins", ["progress_checker"])
+        }
+        names = texts_of(self, "goal_checker_plugins", ["goal_checker"])
+        self._checkers = {name: make_goal_checker(self, name) for name in names}
+        names = texts_of(self, "controller_plugins", ["FollowPath"])
+        self._followers = {name: make_follower(self, name) for name in names}
+        self.costmap.trigger_configure()
+        odometry, limit = get_message("nav_msgs/msg/Odometry"), get_message("nav2_msgs/msg/SpeedLimit")
+        self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
+        self.register(self.create_subscription(limit, self._value("speed_limit_topic"), self._on_speed_limit, _DEPTH))
+        self._output = VelocityTopic(self, "cmd_vel", self._stamped)
+        self._goals = self.register(GoalServer(self, "nav2_msgs/action/FollowPath", "follow_path", self._start))
+
+    def activate(self) -> None:
+        """Accept goals."""
+        self.costmap.trigger_activate()
+
+    def deactivate(self) -> None:
+        """Stop the robot, and refuse goals."""
+        if self._goals is not None and self._goals.current is not None:
+            self._halt()
+            self._goals.abort("UNKNOWN", "the server was deactivated")
+        if self.costmap.is_active:
+            self.costmap.trigger_deactivate()
+
+    def cleanup(self) -> None:
+        """Drop the plugins."""
+        self.end_cycles()
+        self._followers.clear()
+        self._goals = None
+        if hasattr(self, "_output"):
+            self._output.close()
+        if self.costmap.lifecycle_state == INACTIVE:
+            self.costmap.trigger_cleanup()
+
+    # --- goals --------------------------------------------------------------------------------------------------------
+
+    def _start(self, goal: ServerGoalHandle) -> None:
+        """Start with a goal; a moving robot keeps moving."""
+        request = goal.request
+        assert self._goals is not None, "it is configured"
+        drives = self.is_cycling
+        self.get_logger().info(
+            "Passing new path to controller." if drives else "Received a goal, begin computing control effort."
+        )
+        try:
+            self._follower = _chosen(self._followers, request.controller_id, "controller", "INVALID_CONTROLLER")
+            self._checker = _chosen(self._checkers, request.goal_checker_id, "goal checker", "INVALID_CONTROLLER")
+            asked = getattr(request, "progress_checker_id", "")
+            checker = _chosen(self._progress, asked, "progress checker", "INVALID_CONTROLLER")
+            self._accept_path(request.path)
+        except GoalError as failure:
+            self._fail(failure)
+            return
+        if not drives:
+            self._progress_checker = checker
+            self._progress_checker.begin()
+            self._good_ns = self.now_ns()
+            self._output.review()
+            self.begin_cycles(1.0 / self._frequency, self._cycle)
+
+    def _accept_path(self, message: Any) -> None:
+        poses = poses_of(message.poses)
+        if not len(poses):
+            raise GoalError("INVALID_PATH", "Path is empty.")
+        goal = tuple(poses[-1])
+        if not self.is_cycling or getattr(self, "_goal_in_path", None) != goal:
+            self._checker.begin()
+        self._goal_in_path: Pose = goal
+        self._path_frame = message.header.frame_id or message.poses[0].header.frame_id
+        grid = self.costmap.costmap.grid
+        self._reach = max(grid.rows, grid.columns) * grid.resolution / 2.0
+        self._path = FollowedPath(poses if len(poses) > 1 else np.repeat(poses, 2, axis=0), self._reach)
+        self._follower.begin()
+
+    def _cycle(self) -> None:
+        """Compute and publish the next velocity."""
+        goals = self._goals
+        if goals is None or goals.current is None:
+            self._halt()
+            return
+        if goals.is_canceled:
+            self.get_logger().info("Goal was canceled. Stopping the robot.")
+            self._halt()
+            goals.canceled()
+            return
+        try:
+            self._drive(goals)
+        except _NotNowError as problem:
+            self._wait(problem)
+        except GoalError as failure:
+            self._fail(failure)
+
+    def _wait(self, problem: _NotNowError) -> None:
+        """Stop the robot until the missing data arrives, or abort."""
+        self._publish(STILL)
+        waited = (self.now_ns() - self._good_ns) / 1e9
+        if waited > max(self._value("costmap_update_timeout"), _LONGEST_WAIT):
+            self._fail(GoalError(problem.code, f"{problem}: given up"))
+        else:
+            message = f"{problem}: the robot waits"
+            self.get_logger().warning(message, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+
+    def _drive(self, goals: GoalServer) -> None:
+        """Run a cycle of following."""
+        now_ns = self.now_ns()
+        frame = self._pose(self._path_frame, _STALE_PATH_FRAME)
+        pose = self._pose(self.costmap.robot_base_frame, self.costmap.get_parameter("transform_tolerance").value)
+        if not self.costmap.is_current:
+            raise _NotNowError("CONTROLLER_TIMED_OUT", "the costmap is not current")
+        x, y, yaw = _seen_from(frame, pose)
+        self._path.progress(x, y)
+        velocity = self._velocity()
+        if self._checker.is_reached((x, y, yaw), self._goal_in_path, self._measured):
+            self.get_logger().info("Reached the goal!")
+            self._halt()
+            goals.succeed()
+            return
+        if not self._progress_checker.gets_on((x, y, yaw), now_ns):
+            raise GoalError("FAILED_TO_MAKE_PROGRESS", "Failed to make progress")
+        situation = Situation(
+            pose=pose,
+            velocity=velocity,
+            path=_placed(frame, self._path.ahead(self._reach)),
+            costmap=self.costmap.costmap,
+            footprint=self.costmap.footprint,
+            period=1.0 / self._frequency,
+            xy_tolerance=self._checker.xy_tolerance,
+        )
+        try:
+            command = self._follower.velocity(situation)
+        except FollowingError as error:
+            self._bear(str(error), now_ns)
+            return
+        self._good_ns = now_ns
+        self._publish(command)
+        goals.feedback(distance_to_goal=self._path.remaining(x, y), speed=hypot(self._measured.x, self._measured.y))
+
+    def _bear(self, reason: str, now_ns: int) -> None:
+        """Stop the robot without a valid velocity, for as long as ``failure_tolerance`` allows."""
+        tolerance = self._value("failure_tolerance")
+        if not tolerance:
+            raise GoalError("NO_VALID_CONTROL", reason)
+        self.get_logger().warning(reason, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+        self._publish(STILL)
+        if 0.0 < tolerance < (now_ns - self._good_ns) / 1e9:
+            raise GoalError("PATIENCE_EXCEEDED", "Controller patience exceeded")
+
+    def _velocity(self) -> Velocity:
+        """The robot's velocity: the commanded one, before that the measured one."""
+        return self._measured if self._command is None else self._command
+
+    def _pose(self, frame: str, most_seconds: float) -> Pose:
+        """The pose of a frame in that of the costmap.
+
+        Raises:
+            _NotNowError: it is not known, or has not been for too long.
+        """
+        target = self.costmap.global_frame
+        if not frame or frame == target:
+            return 0.0, 0.0, 0.0
+        try:
+            found, stamp_ns = self.costmap.transforms.lookup(target, frame, 0)
+        except TransformException as error:
+            raise _NotNowError("TF_ERROR", f"Failed to obtain the pose of {frame} in {target}: {error}") from None
+        age = (self.now_ns() - stamp_ns) / 1e9
+        if stamp_ns and age > most_seconds:
+            raise _NotNowError("TF_ERROR", f"the pose of {frame} in {target} is {age:.2f} s old")
+        return found[0], found[1], rpy_from_quaternion(found[3:])[2]
+
+    def _fail(self, failure: GoalError) -> None:
+        self.get_logger().error(str(failure))
+        self._halt()
+        assert self._goals is not None, "it is configured"
+        self._goals.abort(failure.code, str(failure))
+
+    def _halt(self) -> None:
+        """Stop the robot."""
+        self.end_cycles()
+        self._output.stop()
+        self._command = None
+
+    def _publish(self, velocity: Velocity) -> None:
+        self._command = velocity
+        self._output.publish((velocity.x, velocity.y, 0.0), (0.0, 0.0, velocity.yaw))
+
+    # --- topics -------------------------------------------------------------------------------------------------------
+
+    def _on_odometry(self, message: Any) -> None:
+        twist = message.twist.twist
+        measured = (twist.linear.x, twist.linear.y, twist.angular.z)
+        least = (self._value(f"min_{axis}_velocity_threshold") for axis in ("x", "y", "theta"))
+        self._measured = Velocity(*(v if abs(v) > low else 0.0 for v, low in zip(measured, least, strict=True)))
+
+    def _on_speed_limit(self, message: Any) -> None:
+        for follower in self._followers.values():
+            follower.limit_speed(message.speed_limit, is_percentage=message.percentage)
+
+    def _value(self, name: str) -> Any:
+        return self.get_parameter(name).value
+
+
+class ControllerServer(ManagedServer):
+    """The running node, with its costmap."""
+
+    DEFAULT_NAME = "controller_server"
+    NODE = ControllerNode
+    _node: ControllerNode
+
+    def prepare(self, graph: Graph, options: NodeOptions) -> None:
+        """Make the costmap."""
+        self._node.costmap = make_costmap(self._node, graph, options, "local_costmap")
+
+    def close(self) -> None:
+        """End it."""
+        super().close()
+        self._node.costmap.destroy_node()
+
+
+def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
+    """The plugin that a goal names; the only one if it names none."""
+    if name in plugins:
+        return plugins[name]
+    if not name and len(plugins) == 1:
+        return next(iter(plugins.values()))
+    raise GoalError(code, f"there is no {what} '{name}'; there are: {', '.join(plugins)}")
+
+
+def _placed(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Poses of a frame, of shape (poses, 3), transformed by the pose of that frame."""
+    x, y, yaw = frame
+    c, s = cos(yaw), sin(yaw)
+    placed: NDArray[np.float64] = np.stack(
+        (x + c * poses[:, 0] - s * poses[:, 1], y + s * poses[:, 0] + c * poses[:, 1], yaw + poses[:, 2]), axis=-1
+    )
+    return placed
+
+
+def _seen_from(frame: Pose, pose: Pose) -> Pose:
+    """A pose in a frame, both given in the same one."""
+    c, s = cos(frame[2]), sin(frame[2])
+    dx, dy = pose[0] - frame[0], pose[1] - frame[1]
+    return c * dx + s * dy, c * dy - s * dx, pose[2] - frame[2]

@@ -1,0 +1,423 @@
+"""Costmaps of nav2's servers: nodes such as ``/local_costmap/local_costmap`` in the process of a server.
+
+Source: nav2_costmap_2d ``Costmap2DROS``, Humble and Jazzy. Deliberate differences: it is activated even where the place
+of the robot is not known yet, and begins to work when it is; layers that we do not have, and filters of costs, are left
+out with a line.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.single import Transform, compose, quaternion_from_rpy, rpy_from_quaternion
+from linkwright.graph import Graph, Node, Parameter, TransformException
+from linkwright.graph.command_line.ros_arguments import parse
+from linkwright.graph.names.rules import join
+from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.graph.transforms.listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC, TransformListener
+from linkwright.messages import get_message, get_service, is_before_iron
+from linkwright.navigation.costmaps.costmap import Costmap
+from linkwright.navigation.costmaps.footprints import BadFootprintError, Footprint, circle, placed, read_footprint
+from linkwright.navigation.costmaps.layered import LayeredCostmap, Pose
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.grids.library import load_scipy
+from linkwright.navigation.nodes.costmap_layers import (
+    DEFAULT_LAYERS,
+    Surroundings,
+    follow,
+    make_layers,
+)
+from linkwright.navigation.nodes.costmap_messages import CostmapPublisher, raw_message
+from linkwright.navigation.nodes.managed import ManagedNode
+from linkwright.navigation.nodes.plugins import declare_unread, texts_of
+from linkwright.nodes.options import NodeOptions
+from linkwright.nodes.settings import bad_value
+
+_SECONDS_BETWEEN_COMPLAINTS = 5.0
+_LEAST_CORNERS = 3
+_PARAMETERS: dict[str, Any] = {
+    "always_send_full_costmap": False,
+    "map_vis_z": 0.0,
+    "footprint_padding": 0.01,
+    "footprint": "[]",
+    "global_frame": "map",
+    "height": 5,
+    "width": 5,
+    "lethal_cost_threshold": 100,
+    "observation_sources": "",
+    "origin_x": 0.0,
+    "origin_y": 0.0,
+    "publish_frequency": 1.0,
+    "resolution": 0.1,
+    "robot_base_frame": "base_link",
+    "robot_radius": 0.1,
+    "rolling_window": False,
+    "track_unknown_space": False,
+    "transform_tolerance": 0.3,
+    "initial_transform_timeout": 60.0,
+    "trinary_costmap": True,
+    "unknown_cost_value": 255,
+    "update_frequency": 5.0,
+    "use_maximum": False,
+    "map_topic": "map",
+}
+
+
+_OF_TF = (DEFAULT_TF_TOPIC, DEFAULT_STATIC_TF_TOPIC)
+
+
+class CostmapNode(ManagedNode):
+    """A costmap as a managed node.
+
+    Attributes:
+        transforms: where frames are, from before it is configured.
+    """
+
+    def __init__(self, *arguments: Any, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self._beats = 0.0  # the server that it belongs to has the bond
+
+    def declare(self) -> None:
+        """Declare the parameters that do not belong to a layer."""
+        for name, value in _PARAMETERS.items():
+            self.declare_parameter(name, value)
+        self._filters: list[str] = texts_of(self, "filters", [])
+        self.transforms = BufferCore(logger=self.get_logger().get_child("tf2"))
+        TransformListener(self.transforms, self)
+        self._shared: Surroundings | None = None
+        self._layered: LayeredCostmap | None = None
+        self._publisher: CostmapPublisher | None = None
+        self._published_ns: int | None = None
+        self.add_post_set_parameters_callback(self._follow)
+
+    # --- what servers ask ---------------------------------------------------------------------------------------------
+
+    @property
+    def global_frame(self) -> str:
+        """Its own frame."""
+        return str(self._value("global_frame"))
+
+    @property
+    def robot_base_frame(self) -> str:
+        """The frame of the robot."""
+        return str(self._value("robot_base_frame"))
+
+    @property
+    def layered(self) -> LayeredCostmap:
+        """The costmap with its layers.
+
+        Raises:
+            RuntimeError: it is not configured.
+        """
+        if self._layered is None:
+            raise RuntimeError(f"{self.get_name()} is not configured")
+        return self._layered
+
+    @property
+    def costmap(self) -> Costmap:
+        """The costs as of the last update; another object after the costmap has moved. See `layered`."""
+        return self.layered.costmap
+
+    @property
+    def footprint(self) -> Footprint:
+        """The footprint with its padding, in the frame of the robot. See `layered`."""
+        return self.layered.footprint
+
+    @property
+    def uses_radius(self) -> bool:
+        """Whether the robot is treated as round."""
+        return str(self._value("footprint")).replace(" ", "") in {"", "[]"}
+
+    @property
+    def is_current(self) -> bool:
+        """Whether it was updated, has its map, and sensors publish as often as expected."""
+        return self._layered is not None and self._layered.is_current(self.now_ns())
+
+    def robot_pose(self) -> Pose | None:
+        """x, y (metres) and yaw (radians) of the robot in the frame of the costmap; None if they are unknown."""
+        return self.pose_of((0.0, 0.0, 0.0), self.robot_base_frame)
+
+    def pose_of(self, pose: Pose, frame: str, time_ns: int = 0) -> Pose | None:
+        """Transform a pose to the frame of the costmap; None if there is no transform.
+
+        Args:
+            pose: x, y (metres) and yaw (radians).
+            frame: the frame of the pose; empty for that of the costmap.
+            time_ns: the time of the transform; 0 for the latest.
+        """
+        if not frame or frame == self.global_frame:
+            return pose
+        try:
+            transform: Transform = self.transforms.lookup(self.global_frame, frame, time_ns)[0]
+        except TransformException as error:
+            self.get_logger().warning(str(error), throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+            return None
+        x, y, yaw = pose
+        found = compose(transform, (x, y, 0.0, *quaternion_from_rpy((0.0, 0.0, yaw))))
+        return found[0], found[1], rpy_from_quaternion(found[3:])[2]
+
+    # --- its life -----------------------------------------------------------------------------------------------------
+
+    def configure(self) -> None:
+        """Make the layers, the topics and the services.
+
+        Raises:
+            LinkwrightError: NODE431, NODE433, a parameter is not given or cannot have its value; NAV101, SciPy is not
+                installed.
+        """
+        load_scipy("ndimage")
+        footprint = self._read_footprint()
+        self._shared = Surroundings(self, self.transforms, self.global_frame, self._on_map)
+        self._leave_out_filters()
+        make_layers(self._shared, texts_of(self, "plugins", list(DEFAULT_LAYERS)))
+        resolution = self._positive("resolution")
+        rows, columns = (max(1, int(self._positive(name) / resolution)) for name in ("height", "width"))
+        cells = np.zeros((rows, columns), np.uint8)
+        grid = Grid(cells=cells, resolution=resolution, x=self._value("origin_x"), y=self._value("origin_y"))
+        self._layered = LayeredCostmap(
+            grid,
+            list(self._shared.layers.values()),
+            footprint,
+            rolling=self._value("rolling_window"),
+            track_unknown=self._value("track_unknown_space"),
+            footprint_padding=self._value("footprint_padding"),
+        )
+        always_full = self._value("always_send_full_costmap")
+        self._publisher = self.register(
+            CostmapPublisher(self, self._layered, self.global_frame, always_full=always_full)
+        )
+        polygon = get_message("geometry_msgs/msg/PolygonStamped")
+        self._footprints = self.register(self.create_publisher(polygon, "published_footprint", 10))
+        polygon = get_message("geometry_msgs/msg/Polygon")
+        self.register(self.create_subscription(polygon, "footprint", self._on_footprint, 10))
+        self._offer_services()
+
+    def activate(self) -> None:
+        """Start to update it."""
+        self.layered.touch()
+        self._begin_updates()
+
+    def deactivate(self) -> None:
+        """Stop to update it."""
+        self.end_cycles()
+
+    def cleanup(self) -> None:
+        """Remove the subscriptions of the layers."""
+        self.end_cycles()
+        for topic in self._shared.topics if self._shared is not None else []:
+            topic.destroy()
+        self._shared = self._layered = self._publisher = None
+
+    def update(self) -> bool:
+        """Update it; False if the robot's pose is unknown."""
+        assert self._shared is not None, "it is configured"
+        pose = self.robot_pose()
+        if pose is None:
+            return False
+        for sensor in self._shared.sensors:
+            sensor.process()
+        layered = self.layered
+        if layered.update(pose, self.now_ns()) and self._publisher is not None:
+            self._publisher.note(layered.changed)
+        self._publish_footprint(pose)
+        return True
+
+    # --- inside -------------------------------------------------------------------------------------------------------
+
+    def _value(self, name: str) -> Any:
+        return self.get_parameter(name).value
+
+    def _positive(self, name: str) -> float:
+        value = self._value(name)
+        if not value > 0:
+            raise bad_value(name, value, self.get_name())
+        return float(value)
+
+    def _read_footprint(self) -> Footprint:
+        text = self._value("footprint")
+        if self.uses_radius:
+            return circle(self._positive("robot_radius"))
+        try:
+            return read_footprint(text)
+        except BadFootprintError as error:
+            self.get_logger().error(str(error))
+            raise bad_value("footprint", text, self.get_name()) from None
+
+    def _leave_out_filters(self) -> None:
+        for name in self._filters:
+            declare_unread(self, name)
+        if self._filters:
+            named = ", ".join(self._filters)
+            self.get_logger().warning(f"costmap filters are not supported: the costmap ignores {named}")
+
+    def _begin_updates(self) -> None:
+        self.end_cycles()
+        frequency = self._value("update_frequency")
+        if frequency > 0.0:
+            self.begin_cycles(1.0 / frequency, self._cycle)
+
+    def _cycle(self) -> None:
+        if not self.update() or self._publisher is None:
+            return
+        frequency, now_ns = self._value("publish_frequency"), self.now_ns()
+        if frequency <= 0.0:
+            return
+        if self._published_ns is None or not 0 <= now_ns - self._published_ns < 1e9 / frequency:
+            self._published_ns = now_ns
+            self._publisher.publish()
+
+    def _publish_footprint(self, pose: Pose) -> None:
+        message = self._footprints.msg_type()
+        message.header.frame_id, message.header.stamp = self.global_frame, self.get_clock().now().to_msg()
+        point = get_message("geometry_msgs/msg/Point32")
+        corners = placed(self.layered.footprint, *pose)
+        message.polygon.points = [point(x=float(x), y=float(y)) for x, y in corners]
+        self._footprints.publish(message)
+
+    def _on_map(self, grid: Grid, frame: str) -> None:
+        """Resize a static costmap to its map."""
+        self.get_logger().info(
+            f"StaticLayer: Resizing costmap to {grid.columns} X {grid.rows} at {grid.resolution:g} m/pix"
+        )
+        layered = self._layered
+        if layered is None or layered.rolling:
+            return
+        known = layered.costmap.grid
+        wanted = _upright(grid) if frame == self.global_frame else grid
+        if (known.rows, known.columns, known.resolution, known.x, known.y) != (
+            wanted.rows,
+            wanted.columns,
+            wanted.resolution,
+            wanted.x,
+            wanted.y,
+        ):
+            layered.resize(wanted)
+
+    def _on_footprint(self, message: Any) -> None:
+        corners = np.array([(point.x, point.y) for point in message.points], np.float64).reshape(-1, 2)
+        if len(corners) < _LEAST_CORNERS or not np.isfinite(corners).all():
+            self.get_logger().error(f"a footprint has three corners or more, and one came with {len(corners)}")
+            return
+        self.layered.footprint = corners
+
+    def _follow(self, changed: list[Parameter]) -> None:
+        """Apply changed parameters while it is active."""
+        layered = self._layered
+        if layered is None or self._shared is None:
+            return
+        names = {parameter.name for parameter in changed}
+        if names & {"footprint", "robot_radius", "footprint_padding"}:
+            try:
+                layered.padding = self._value("footprint_padding")
+                layered.footprint = self._read_footprint()
+            except LinkwrightError as error:
+                self.tell(error)
+        if follow(self._shared, changed):
+            layered.touch()
+        if "update_frequency" in names and self.is_cycling:
+            self._begin_updates()
+
+    # --- services -----------------------------------------------------------------------------------------------------
+
+    def _offer_services(self) -> None:
+        name = self.get_name()
+        offered: list[tuple[str, str, Any]] = [
+            ("ClearEntireCostmap", f"clear_entirely_{name}", self._clear_entirely),
+            ("ClearCostmapAroundRobot", f"clear_around_{name}", self._clear_around),
+            ("ClearCostmapExceptRegion", f"clear_except_{name}", self._clear_except),
+            ("GetCostmap", "get_costmap", self._get_costmap),
+        ]
+        if not is_before_iron():
+            offered.append(("GetCost", f"get_cost_{name}", self._get_cost))
+        for kind, service, callback in offered:
+            self.register(self.create_service(get_service(f"nav2_msgs/srv/{kind}"), service, callback))
+
+    def _clear_entirely(self, _request: Any, response: Any) -> Any:
+        self.get_logger().info("Received request to clear entirely the " + self.get_name())
+        self.layered.clear_entirely()
+        self.update()
+        return response
+
+    def _clear_around(self, request: Any, response: Any) -> Any:
+        return self._clear(request, response, except_it=False)
+
+    def _clear_except(self, request: Any, response: Any) -> Any:
+        return self._clear(request, response, except_it=True)
+
+    def _clear(self, request: Any, response: Any, *, except_it: bool) -> Any:
+        pose = self.robot_pose()
+        if pose is None:
+            self.get_logger().error("Cannot clear map because robot pose cannot be retrieved.")
+            return response
+        self.layered.clear_around(pose, request.reset_distance, except_it=except_it)
+        self.update()
+        return response
+
+    def _get_costmap(self, _request: Any, response: Any) -> Any:
+        response.map = raw_message(self.costmap, self.global_frame, self.get_clock().now().to_msg())
+        return response
+
+    def _get_cost(self, request: Any, response: Any) -> Any:
+        pose = (request.x, request.y, request.theta)
+        if request.use_footprint:
+            response.cost = float(self.costmap.footprint_cost(pose, self.footprint))
+        else:
+            response.cost = float(self.costmap.cost_at(np.array(pose[:2])))
+        return response
+
+
+def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) -> CostmapNode:
+    """Make the costmap of a server, in a namespace of its name within the server's.
+
+    Args:
+        server: whose it is; its ``use_sim_time`` counts for the costmap, too.
+        graph: where it is to live.
+        options: how the server is started; parameters for the costmap are those of its process.
+        name: ``local_costmap`` or ``global_costmap``.
+
+    Raises:
+        LinkwrightError: a parameter has another type.
+    """
+    ros = parse(options.arguments)
+    rules = ParameterRules()
+    rules.add(options.for_others)
+    rules.add(ros.parameters)
+    namespace = join(server.get_namespace(), name)
+    remappings = [*ros.remappings_for(name), *options.remappings]
+    parameters = rules.for_node(join(namespace, name))
+    parameters["use_sim_time"] = server.get_parameter("use_sim_time").value
+    return CostmapNode(
+        graph,
+        name,
+        namespace=namespace,
+        parameters=parameters,
+        remappings=[_for_tf(server, remapping) for remapping in remappings if not remapping[0].startswith("__")],
+        enclave=ros.enclave or "/",
+    )
+
+
+def _for_tf(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
+    """Remapping rules for tf: the costmap uses the server's topics, not those of its own namespace.
+
+    Source: a costmap of nav2 listens by a node of its process that is not in the costmap's namespace.
+    """
+    source, target = rule
+    if source not in _OF_TF or target.startswith("/"):
+        return rule
+    return source, join(server.get_namespace(), target)
+
+
+def _upright(grid: Grid) -> Grid:
+    """The size and origin of the smallest axis-aligned grid around another one."""
+    if not grid.yaw:
+        return grid
+    rows, columns = grid.rows, grid.columns
+    corners = grid.centres_of(np.array([[-1, -1], [-1, columns], [rows, -1], [rows, columns]]))
+    (x, y), (right, top) = corners.min(axis=0), corners.max(axis=0)
+    shape = (int(np.ceil((top - y) / grid.resolution)), int(np.ceil((right - x) / grid.resolution)))
+    return replace(grid, cells=np.zeros(shape, np.uint8), x=float(x), y=float(y), yaw=0.0)

@@ -1,0 +1,239 @@
+"""Making the layers of costmaps from nav2's parameters.
+
+Source: nav2_costmap_2d, Humble and Jazzy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.graph import Node, Parameter, TransformException
+from linkwright.graph.names.rules import join, split
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.navigation.costmaps.denoise_layer import DenoiseLayer
+from linkwright.navigation.costmaps.inflation_layer import Inflation, InflationLayer
+from linkwright.navigation.costmaps.layer import Layer
+from linkwright.navigation.costmaps.observations import ObservationBuffer, Source
+from linkwright.navigation.costmaps.obstacle_layer import Heights, ObstacleLayer
+from linkwright.navigation.costmaps.range_layer import RangeLayer, RangeSettings
+from linkwright.navigation.costmaps.static_layer import Interpretation, MapPose, StaticLayer
+from linkwright.navigation.costmaps.voxel_layer import MOST_LEVELS, VoxelLayer, Voxels
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.nodes.costmap_sources import MapTopic, PointsTopic, RangeTopic, SensorTopic
+from linkwright.navigation.nodes.plugins import declare_unread, declared, texts_of, value_of
+from linkwright.nodes.settings import bad_value
+
+DEFAULT_LAYERS: Final = {
+    "static_layer": "nav2_costmap_2d::StaticLayer",
+    "obstacle_layer": "nav2_costmap_2d::ObstacleLayer",
+    "inflation_layer": "nav2_costmap_2d::InflationLayer",
+}
+_KINDS: Final = ("LaserScan", "PointCloud2")
+
+
+@dataclass(slots=True)
+class Surroundings:
+    """The node and data that the layers of a costmap share.
+
+    Attributes:
+        node: the node of the costmap.
+        transforms: the transforms between frames.
+        frame: the frame of the costmap.
+        on_map: called by the static layer with a map and its frame.
+        topics: the topics of the layers, to be destroyed in the end.
+        sensors: the topics whose messages are processed when the costmap is updated.
+        layers: the layers by name, from the bottom to the top.
+    """
+
+    node: Node
+    transforms: BufferCore
+    frame: str
+    on_map: Callable[[Grid, str], None]
+    topics: list[SensorTopic | MapTopic] = field(default_factory=list)
+    sensors: list[SensorTopic] = field(default_factory=list)
+    layers: dict[str, Layer] = field(default_factory=dict)
+
+    def value(self, name: str, default: Any) -> Any:
+        """The value of a parameter, which is declared if it is not yet."""
+        return value_of(self.node, name, default)
+
+
+def make_layers(shared: Surroundings, names: list[str]) -> None:
+    """Make the layers of the parameter ``plugins``; unknown ones are left out with a warning.
+
+    Raises:
+        LinkwrightError: NODE431, a layer has no type; NODE433, a parameter cannot have its value.
+    """
+    makers: dict[str, Callable[[Surroundings, str], Layer]] = {
+        "StaticLayer": _static,
+        "ObstacleLayer": _obstacles,
+        "VoxelLayer": _voxels,
+        "InflationLayer": _inflation,
+        "DenoiseLayer": _denoise,
+        "RangeSensorLayer": _ranges,
+    }
+    node = shared.node
+    for name in names:
+        kind = shared.value(f"{name}.plugin", DEFAULT_LAYERS.get(name, ""))
+        if not kind:
+            message = phrase("parameter '{name}' of '{node}' is not given", name=f"{name}.plugin", node=node.get_name())
+            raise LinkwrightError(Diagnostic("NODE431", message))
+        maker = makers.get(kind.removeprefix("nav2_costmap_2d::"))
+        if maker is None:
+            declare_unread(node, name)
+            node.get_logger().warning(f"there is no layer {kind} here: the costmap ignores '{name}'")
+            continue
+        node.get_logger().info(f'Using plugin "{name}"')
+        layer = maker(shared, name)
+        layer.enabled = shared.value(f"{name}.enabled", True)
+        shared.layers[name] = layer
+    given = [
+        undeclared_override.removesuffix(".plugin")
+        for undeclared_override in node.undeclared_overrides()
+        if undeclared_override.endswith(".plugin")
+    ]
+    for name in given:
+        declare_unread(node, name)
+    if given:
+        node.get_logger().info(f"layers that 'plugins' does not name are ignored: {', '.join(given)}")
+
+
+def follow(shared: Surroundings, changed: list[Parameter]) -> bool:
+    """Apply changed parameters of layers; whether there were any."""
+    found = False
+    for changed_parameter in changed:
+        name, _, parameter = changed_parameter.name.partition(".")
+        layer = shared.layers.get(name)
+        if layer is None:
+            continue
+        found = True
+        if parameter == "enabled":
+            layer.enabled = changed_parameter.value
+        elif isinstance(layer, InflationLayer) and hasattr(layer.inflation, parameter):
+            layer.inflation = replace(layer.inflation, **{parameter: changed_parameter.value})
+        elif isinstance(layer, ObstacleLayer) and hasattr(layer.heights, parameter):
+            layer.heights = replace(layer.heights, **{parameter: changed_parameter.value})
+        elif isinstance(layer, ObstacleLayer) and parameter == "combination_method":
+            layer.combination_method = changed_parameter.value
+    return found
+
+
+def _static(shared: Surroundings, name: str) -> Layer:
+    interpretation = Interpretation(
+        track_unknown_space=shared.value("track_unknown_space", False),
+        unknown_cost_value=shared.value("unknown_cost_value", 255) % 256,
+        lethal_threshold=max(0, min(100, shared.value("lethal_cost_threshold", 100))),
+        trinary=shared.value("trinary_costmap", True),
+    )
+    shared.value(f"{name}.transform_tolerance", 0.0)
+    topic = shared.value(f"{name}.map_topic", "") or shared.value("map_topic", "map")
+    map_topic: list[MapTopic] = []
+
+    def pose() -> MapPose | None:
+        frame = map_topic[0].frame
+        if frame is None or frame == shared.frame:
+            return 0.0, 0.0, 0.0
+        try:
+            found, _ = shared.transforms.lookup(frame, shared.frame, 0)
+        except TransformException:
+            return None
+        return found[0], found[1], rpy_from_quaternion(found[3:])[2]
+
+    layer = StaticLayer(
+        interpretation,
+        use_maximum=shared.value("use_maximum", False),
+        footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", False),
+        pose=pose,
+    )
+    map_topic.append(
+        MapTopic(
+            shared.node,
+            _beside(shared.node, topic),
+            layer,
+            transient_local=shared.value(f"{name}.map_subscribe_transient_local", True),
+            updates=shared.value(f"{name}.subscribe_to_updates", False),
+            on_map=shared.on_map,
+        )
+    )
+    shared.topics += map_topic
+    return layer
+
+
+def _obstacles(shared: Surroundings, name: str) -> Layer:
+    return ObstacleLayer(
+        _buffers(shared, name),
+        declared(shared.node, name, Heights),
+        combination_method=shared.value(f"{name}.combination_method", 1),
+        footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", True),
+    )
+
+
+def _voxels(shared: Surroundings, name: str) -> Layer:
+    if shared.value(f"{name}.publish_voxel_map", False):
+        shared.node.get_logger().info(f"'{name}' publishes no voxels, though {name}.publish_voxel_map asks for them")
+    voxels: Voxels = declared(shared.node, name, Voxels)
+    if not 0 < voxels.z_voxels <= MOST_LEVELS:
+        known = [str(count) for count in range(1, MOST_LEVELS + 1)]
+        raise bad_value(f"{name}.z_voxels", voxels.z_voxels, shared.node.get_name(), known)
+    return VoxelLayer(
+        _buffers(shared, name),
+        declared(shared.node, name, Heights),
+        voxels,
+        combination_method=shared.value(f"{name}.combination_method", 1),
+        footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", True),
+    )
+
+
+def _buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
+    shared.value(f"{name}.tf_filter_tolerance", 0.05)
+    buffers = []
+    for source in shared.value(f"{name}.observation_sources", "").split():
+        prefix = f"{name}.{source}"
+        kind = shared.value(f"{prefix}.data_type", "LaserScan")
+        if kind not in _KINDS:
+            raise bad_value(f"{prefix}.data_type", kind, shared.node.get_name(), _KINDS)
+        buffer = ObservationBuffer(declared(shared.node, prefix, Source))
+        topic = PointsTopic(
+            shared.node,
+            _beside(shared.node, shared.value(f"{prefix}.topic", source)),
+            kind,
+            buffer,
+            shared.transforms,
+            shared.frame,
+            sensor_frame=shared.value(f"{prefix}.sensor_frame", ""),
+            inf_is_valid=shared.value(f"{prefix}.inf_is_valid", False),
+        )
+        shared.topics.append(topic)
+        shared.sensors.append(topic)
+        buffers.append(buffer)
+    return buffers
+
+
+def _inflation(shared: Surroundings, name: str) -> Layer:
+    return InflationLayer(declared(shared.node, name, Inflation))
+
+
+def _ranges(shared: Surroundings, name: str) -> Layer:
+    layer = RangeLayer(declared(shared.node, name, RangeSettings))
+    shared.value(f"{name}.inflate_cone", 1.0)
+    shared.value(f"{name}.input_sensor_type", "ALL")
+    for topic in texts_of(shared.node, f"{name}.topics", []):
+        listening = RangeTopic(shared.node, _beside(shared.node, topic), layer, shared.transforms, shared.frame)
+        shared.topics.append(listening)
+        shared.sensors.append(listening)
+    return layer
+
+
+def _denoise(shared: Surroundings, name: str) -> Layer:
+    return DenoiseLayer(
+        shared.value(f"{name}.minimal_group_size", 2), shared.value(f"{name}.group_connectivity_type", 8)
+    )
+
+
+def _beside(node: Node, topic: str) -> str:
+    """A relative topic, resolved beside the namespace of the costmap, not in it."""
+    return topic if topic.startswith(("/", "~")) else join(split(node.get_namespace())[0], topic)

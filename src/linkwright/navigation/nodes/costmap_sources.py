@@ -1,0 +1,239 @@
+"""Subscriptions of a costmap's layers: laser scans, clouds, ranges and maps.
+
+Source: nav2_costmap_2d ``ObservationBuffer``, ``StaticLayer``. Scans wait until their place is known, and are taken in
+when the costmap is updated: of a sensor whose points count only until there are others, the last one that has a place.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Callable
+from math import ceil
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.geometry.single import Transform
+from linkwright.graph import (
+    DESCRIPTION_QOS,
+    SENSOR_DATA_QOS,
+    DurabilityPolicy,
+    Node,
+    QoSProfile,
+    TransformException,
+)
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.messages import get_message
+from linkwright.navigation.costmaps.observations import ObservationBuffer
+from linkwright.navigation.costmaps.range_layer import RangeLayer, Reading
+from linkwright.navigation.costmaps.static_layer import StaticLayer
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.grids.occupancy import BadGridError, grid_of
+from linkwright.perception.nodes.laser_filters import scan_of
+from linkwright.perception.nodes.pointcloud_to_laserscan import points_of
+from linkwright.perception.scans.projection import points_of_scan
+
+_WAITING = 50
+_MOST_POINTS = 40_000
+"""The greatest number of points of a cloud; of a larger one every n-th is used, still many for each cell."""
+_LITTLE = 1e-4
+"""The distance in metres before the greatest range at which a ray without a hit ends."""
+
+
+class SensorTopic(ABC):
+    """A topic of a sensor, whose messages wait until their transforms are known.
+
+    Args:
+        node: listens.
+        topic: its name.
+        kind: of its messages, in sensor_msgs.
+        transforms: where sensors are.
+        frame: of the costmap.
+    """
+
+    def __init__(self, node: Node, topic: str, kind: str, transforms: BufferCore, frame: str) -> None:
+        self._transforms, self._frame = transforms, frame
+        self._waiting: deque[Any] = deque(maxlen=_WAITING)
+        message = get_message(f"sensor_msgs/msg/{kind}")
+        self._subscription = node.create_subscription(message, topic, self._receive, SENSOR_DATA_QOS)
+
+    def destroy(self) -> None:
+        """Remove the subscription."""
+        self._subscription.destroy()
+
+    def process(self) -> None:
+        """Give the layer the messages whose transforms are known."""
+        waiting = list(self._waiting)
+        placed = [(message, pose) for message in waiting if (pose := self._pose(message)) is not None]
+        if not placed:
+            return
+        later = waiting[waiting.index(placed[-1][0]) + 1 :]
+        self._waiting.clear()
+        self._waiting.extend(later)
+        for message, pose in placed if self.all_count else placed[-1:]:
+            self._observe(message, pose)
+
+    @property
+    @abstractmethod
+    def all_count(self) -> bool:
+        """Whether all messages are used, or only the newest."""
+
+    @abstractmethod
+    def _observe(self, message: Any, pose: Transform) -> None:
+        """Give the layer a message with the sensor's pose in the frame of the costmap."""
+
+    def _receive(self, message: Any) -> None:
+        self._waiting.append(message)
+
+    def _pose(self, message: Any) -> Transform | None:
+        header = message.header
+        try:
+            return self._transforms.lookup(self._frame, header.frame_id, header.stamp.nanoseconds)[0]
+        except TransformException:
+            return None
+
+
+class PointsTopic(SensorTopic):
+    """A topic of scans or clouds, for an obstacle layer.
+
+    Args:
+        node: listens.
+        topic: the name of the topic.
+        kind: ``LaserScan`` or ``PointCloud2``.
+        buffer: receives the observations.
+        transforms: the transforms of the sensors.
+        frame: the frame of the costmap.
+        sensor_frame: the frame of the sensor; empty for that of its messages.
+        inf_is_valid: whether a ray without a return clears its full length.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        topic: str,
+        kind: str,
+        buffer: ObservationBuffer,
+        transforms: BufferCore,
+        frame: str,
+        *,
+        sensor_frame: str = "",
+        inf_is_valid: bool = False,
+    ) -> None:
+        super().__init__(node, topic, kind, transforms, frame)
+        self.buffer = buffer
+        self._sensor_frame = sensor_frame
+        self._inf_is_valid = inf_is_valid
+        self._points: Callable[[Any], NDArray[np.float64] | None] = self._of_scan if kind == "LaserScan" else points_of
+
+    @property
+    def all_count(self) -> bool:
+        """Whether points persist."""
+        return bool(self.buffer.source.observation_persistence)
+
+    def _observe(self, message: Any, pose: Transform) -> None:
+        points = self._points(message)
+        if points is None:
+            return
+        points = points[:: max(1, ceil(len(points) / _MOST_POINTS))]
+        origin = np.array(pose[:3])
+        if self._sensor_frame and self._sensor_frame != message.header.frame_id:
+            stamp = message.header.stamp.nanoseconds
+            try:
+                origin = np.array(self._transforms.lookup(self._frame, self._sensor_frame, stamp)[0][:3])
+            except TransformException:
+                return
+        placed = points @ rotation_matrix(pose[3:]).T + np.array(pose[:3])
+        self.buffer.add(origin, placed, message.header.stamp.nanoseconds)
+
+    def _of_scan(self, message: Any) -> NDArray[np.float64]:
+        scan = scan_of(message)
+        if self._inf_is_valid:
+            scan.ranges[np.isposinf(scan.ranges)] = scan.range_max - _LITTLE
+        return points_of_scan(scan)[0].astype(np.float64)
+
+
+class RangeTopic(SensorTopic):
+    """A topic of ranges, for a range layer."""
+
+    def __init__(self, node: Node, topic: str, layer: RangeLayer, transforms: BufferCore, frame: str) -> None:
+        super().__init__(node, topic, "Range", transforms, frame)
+        self._layer = layer
+
+    @property
+    def all_count(self) -> bool:
+        """True: every message updates the probabilities."""
+        return True
+
+    def _observe(self, message: Any, pose: Transform) -> None:
+        least, most, distance = message.min_range, message.max_range, message.range
+        free = self._layer.settings.clear_on_max_reading
+        if least == most:  # of a sensor that only detects presence
+            if not np.isinf(distance) or (distance > 0.0 and not free):
+                return
+            free, distance = distance > 0.0, least
+        elif not least <= distance <= most:
+            return
+        else:
+            free = free and distance >= most
+        ahead = rotation_matrix(pose[3:])[:, 0]
+        yaw = float(np.arctan2(ahead[1], ahead[0]))
+        flat = float(np.hypot(ahead[0], ahead[1]))
+        stamp_ns = message.header.stamp.nanoseconds
+        self._layer.add(Reading(pose[0], pose[1], yaw, distance * flat, message.field_of_view, free, stamp_ns))
+
+
+class MapTopic:
+    """The topic of a map, for a static layer.
+
+    Args:
+        node: listens.
+        topic: its name.
+        layer: receives the map.
+        transient_local: whether to receive a map that was sent earlier.
+        updates: whether to subscribe to changed parts of the map, on the same topic with the suffix ``_updates``.
+        on_map: called with each full map and its frame.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        topic: str,
+        layer: StaticLayer,
+        *,
+        transient_local: bool,
+        updates: bool,
+        on_map: Callable[[Grid, str], None],
+    ) -> None:
+        self.frame: str | None = None
+        self._node, self._layer, self._on_map = node, layer, on_map
+        qos = DESCRIPTION_QOS if transient_local else QoSProfile(10, durability=DurabilityPolicy.VOLATILE)
+        message = get_message("nav_msgs/msg/OccupancyGrid")
+        self._subscriptions = [node.create_subscription(message, topic, self._receive, qos)]
+        if updates:
+            message = get_message("map_msgs/msg/OccupancyGridUpdate")
+            self._subscriptions.append(node.create_subscription(message, f"{topic}_updates", self._receive_part, 10))
+
+    def destroy(self) -> None:
+        """Remove the subscriptions."""
+        for subscription in self._subscriptions:
+            subscription.destroy()
+
+    def _receive(self, message: Any) -> None:
+        try:
+            grid = grid_of(message)
+        except BadGridError as error:
+            self._node.get_logger().error(f"Received map message is malformed. Rejecting: {error}")
+            return
+        self.frame = message.header.frame_id
+        self._layer.set_map(grid)
+        self._on_map(grid, message.header.frame_id)
+
+    def _receive_part(self, message: Any) -> None:
+        cells = np.frombuffer(message.data, np.uint8)
+        if cells.size != message.width * message.height or not self._layer.update_map(
+            message.y, message.x, cells.reshape(message.height, message.width)
+        ):
+            self._node.get_logger().warning("an update of the map does not fit into it and is left out")

@@ -1,0 +1,142 @@
+"""Action servers with one goal at a time: a new goal replaces the one before, as in nav2's servers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.graph import ActionServer
+from linkwright.graph.actions.goal import CancelResponse, GoalEvent, GoalResponse, ServerGoalHandle
+from linkwright.messages import get_action
+from linkwright.navigation.nodes.managed import ManagedNode
+
+
+class GoalError(Exception):
+    """A goal cannot be reached; the text gives the reason.
+
+    Attributes:
+        code: name of nav2's error code.
+    """
+
+    def __init__(self, code: str, reason: str) -> None:
+        super().__init__(reason)
+        self.code = code
+
+
+class GoalServer:
+    """The action server of a managed node, which refuses goals while the node is not active.
+
+    Args:
+        node: the owner of the server.
+        kind: the type of the action.
+        name: the name of the action.
+        begin: called with each accepted goal, after the previous one was aborted.
+        may_begin: returns whether to accept a goal; by default every goal is accepted.
+
+    The code that works on the goal checks now and then whether it `is_canceled`, and then calls `canceled`.
+
+    Attributes:
+        current: the active goal.
+    """
+
+    def __init__(
+        self,
+        node: ManagedNode,
+        kind: str,
+        name: str,
+        begin: Callable[[ServerGoalHandle], None],
+        *,
+        may_begin: Callable[[Any], bool] | None = None,
+    ) -> None:
+        self.current: ServerGoalHandle | None = None
+        self._type = get_action(kind)
+        self._begin = begin
+        self._may_begin = may_begin
+        self._node = node
+        self._server = ActionServer(
+            node,
+            self._type,
+            name,
+            _never,
+            goal_callback=self._judge,
+            handle_accepted_callback=self._accepted,
+            cancel_callback=lambda _goal: CancelResponse.ACCEPT,
+        )
+
+    @property
+    def goal(self) -> Any:
+        """The message of the active goal."""
+        assert self.current is not None, "something is worked on"
+        return self.current.request
+
+    @property
+    def is_canceled(self) -> bool:
+        """Whether the active goal is to be canceled."""
+        return self.current is not None and self.current.is_cancel_requested
+
+    def feedback(self, **fields: Any) -> None:
+        """Publish feedback."""
+        if self.current is not None:
+            message = self._type.Feedback()
+            for name, value in fields.items():
+                setattr(message, name, value)
+            self.current.publish_feedback(message)
+
+    def succeed(self, **fields: Any) -> None:
+        """End with the status succeeded; fields of the result."""
+        if (goal := self._leave()) is not None:
+            goal.succeed(self._result("", "", fields))
+
+    def abort(self, code: str, reason: str, **fields: Any) -> None:
+        """End with the status aborted.
+
+        Args:
+            code: the name of the error code, for results that have one (Jazzy).
+            reason: the error message.
+            fields: the fields of the result.
+        """
+        if (goal := self._leave()) is not None:
+            goal.abort(self._result(code, reason, fields))
+
+    def canceled(self, **fields: Any) -> None:
+        """End with the status canceled."""
+        if (goal := self._leave()) is not None:
+            if goal.is_cancel_requested:
+                goal.canceled(self._result("", "", fields))
+            else:
+                goal.abort(self._result("", "", fields))
+
+    def destroy(self) -> None:
+        """Remove it from the graph; an active goal is aborted."""
+        self.abort("UNKNOWN", "the server ends")
+        self._server.destroy()
+
+    def _leave(self) -> ServerGoalHandle | None:
+        goal, self.current = self.current, None
+        return goal if goal is not None and goal.is_active else None
+
+    def _judge(self, goal: Any) -> GoalResponse:
+        if not self._node.is_active:
+            self._node.get_logger().warning("Action server is inactive. Rejecting the goal.")
+            return GoalResponse.REJECT
+        accepts = self._may_begin is None or self._may_begin(goal)
+        return GoalResponse.ACCEPT if accepts else GoalResponse.REJECT
+
+    def _accepted(self, goal: ServerGoalHandle) -> None:
+        self.abort("UNKNOWN", "another goal took its place")
+        goal.update(GoalEvent.EXECUTE)
+        self.current = goal
+        self._begin(goal)
+
+    def _result(self, code: str, reason: str, fields: dict[str, Any]) -> Any:
+        result = self._type.Result()
+        if code and hasattr(result, "error_code"):
+            result.error_code = getattr(result, code, 0)
+            result.error_msg = reason
+        for name, value in fields.items():
+            setattr(result, name, value)
+        return result
+
+
+def _never(_goal: ServerGoalHandle) -> None:
+    """Never called: goals are worked on by timers."""

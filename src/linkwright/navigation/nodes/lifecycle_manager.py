@@ -1,0 +1,362 @@
+"""lifecycle_manager of nav2: configures and activates managed nodes in order, and takes all down when one dies.
+
+Services, parameters, order and log lines are those of nav2. Deliberate differences: the manager waits for an answer as
+long as the node exists, with a log line each ``service_timeout``, so that a slow machine does not cause a failure; and
+when a node dies the others are brought down without waiting for it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Coroutine, Sequence
+from enum import Enum, auto
+from typing import Any
+
+from linkwright.graph import Graph, Node, Parameter, ParameterType
+from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
+from linkwright.graph.loop.callback_groups import ReentrantCallbackGroup
+from linkwright.messages import get_service
+from linkwright.navigation.nodes.bond import TIMEOUT, Bond
+from linkwright.nodes.answers import answered, is_served
+from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import bad_value, log_unknown
+
+_ONE_SECOND = 1.0
+
+
+class _Step(Enum):
+    """A transition: its number, the log line before it, and the state that it leads to."""
+
+    CONFIGURE = (1, "Configuring", INACTIVE)
+    CLEANUP = (2, "Cleaning up", UNCONFIGURED)
+    ACTIVATE = (3, "Activating", ACTIVE)
+    DEACTIVATE = (4, "Deactivating", INACTIVE)
+    SHUTDOWN = (5, "Shutting down", FINALIZED)
+
+    def __init__(self, number: int, line: str, goal: LifecycleState) -> None:
+        self.number, self.line, self.goal = number, line, goal
+
+
+class _State(Enum):
+    """The common state of the managed nodes."""
+
+    UNCONFIGURED = auto()
+    INACTIVE = auto()
+    ACTIVE = auto()
+    FINALIZED = auto()
+    UNKNOWN = auto()
+
+
+_HEALTH = {
+    _State.UNCONFIGURED: Health(Level.OK, "Managed nodes are unconfigured"),
+    _State.INACTIVE: Health(Level.OK, "Managed nodes are inactive"),
+    _State.ACTIVE: Health(Level.OK, "Managed nodes are active"),
+    _State.FINALIZED: Health(Level.WARN, "Managed nodes have been shut down"),
+    _State.UNKNOWN: Health(Level.ERROR, "An error has occurred during a node state transition"),
+}
+"""The diagnostics of states, in the words of Jazzy; Humble has active and inactive only."""
+
+
+class _ManagedNodeClient:
+    """A client of one managed node.
+
+    Args:
+        node: the node that asks.
+        name: the name of the managed node, relative to the namespace of `node`.
+    """
+
+    def __init__(self, node: Node, name: str) -> None:
+        self.name = name
+        self.bond: Bond | None = None
+        self._node = node
+        self._change, self._get = (
+            get_service("lifecycle_msgs/srv/ChangeState"),
+            get_service("lifecycle_msgs/srv/GetState"),
+        )
+        self._changing = node.create_client(self._change, f"{name}/change_state")
+        self._asking = node.create_client(self._get, f"{name}/get_state")
+
+    def is_there(self) -> bool:
+        """Whether its services exist."""
+        return bool(self._changing.service_is_ready() and self._asking.service_is_ready())
+
+    async def wait(self, look_again: float) -> None:
+        """Wait until its services exist, with a log line every few seconds."""
+        for client in (self._changing, self._asking):
+            while not await is_served(self._node, client, look_again):
+                self._node.get_logger().info(f"Waiting for service {client.service_name}...")
+
+    async def change(self, step: _Step, word_each: float) -> bool:
+        """Run a transition; whether it succeeded. A node that leaves meanwhile fails."""
+        request = self._change.Request()
+        request.transition.id = step.number
+        answer = await self._answer(self._changing, request, word_each)
+        return bool(answer is not None and answer.success) and await self.state(word_each) == step.goal.state_id
+
+    async def state(self, word_each: float) -> int | None:
+        """The number of its state; None if it is missing."""
+        answer = await self._answer(self._asking, self._get.Request(), word_each)
+        return None if answer is None else int(answer.current_state.id)
+
+    async def answers(self, seconds: float) -> bool:
+        """Whether it answers within a number of seconds that it is unconfigured."""
+        if not self.is_there():
+            return False
+        future = self._asking.call_async(self._get.Request())
+        if await answered(self._node, future, seconds):
+            answer: Any = future.result()
+            return bool(answer.current_state.id == UNCONFIGURED.state_id)
+        self._asking.remove_pending_request(future)
+        return False
+
+    def end_bond(self) -> None:
+        """Break the bond."""
+        if self.bond is not None:
+            self.bond.end()
+            self.bond = None
+
+    async def _answer(self, client: Any, request: Any, word_each: float) -> Any:
+        if not client.service_is_ready():
+            return None
+        future = client.call_async(request)
+        while not await answered(self._node, future, word_each):
+            if not client.service_is_ready():
+                client.remove_pending_request(future)
+                return None
+            self._node.get_logger().warning(f"{client.service_name} has not answered for {word_each:g} s more")
+        return future.result()
+
+
+class LifecycleManager(SingleNode):
+    """The running node.
+
+    Raises:
+        LinkwrightError: NODE433, ``node_names`` is not a list of names.
+    """
+
+    DEFAULT_NAME = "lifecycle_manager"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        self._logger = self._node.get_logger()
+        self._logger.info("Creating")
+        with starting(self._node):
+            self._declare()
+            log_unknown(self._node)
+        self._state = _State.UNCONFIGURED
+        self._busy = asyncio.Lock()
+        self._tasks: set[asyncio.Task[Any]] = set()
+        self._logger.info("Creating and initializing lifecycle service clients")
+        self._managed = [_ManagedNodeClient(self._node, name) for name in self._names]
+        group = ReentrantCallbackGroup()  # a command takes long, and whether it is active can be asked meanwhile
+        name = self._node.get_name()
+        for kind, service, answer in (
+            ("nav2_msgs/srv/ManageLifecycleNodes", "manage_nodes", self._on_manage),
+            ("std_srvs/srv/Trigger", "is_active", self._on_is_active),
+        ):
+            self._node.create_service(get_service(kind), f"{name}/{service}", answer, callback_group=group)
+        DiagnosticUpdater(self._node, "Nav2 Health", lambda: _HEALTH[self._state], hardware_id="Nav2")
+        if self._autostart:
+            self._begin(self._alone(self._startup))
+
+    def close(self) -> None:
+        """Close it; the managed nodes stay as they are."""
+        for task in self._tasks:
+            task.cancel()
+        for managed in self._managed:
+            managed.end_bond()
+        super().close()
+
+    def _declare(self) -> None:
+        node = self._node
+        node.declare_parameter("node_names", ParameterType.STRING_ARRAY)
+        names = node.get_parameter_or("node_names", Parameter("node_names")).value
+        self._names: list[str] = list(names or [])
+        twice = [name for name in self._names if self._names.count(name) > 1]
+        if not self._names or twice or "" in self._names:
+            raise bad_value("node_names", self._names, node.get_name())
+        declare = node.declare_parameter
+        self._autostart: bool = declare("autostart", False).value
+        self._bond_timeout: float = declare("bond_timeout", TIMEOUT).value
+        self._word_each: float = declare("service_timeout", 5.0).value
+        self._respawn_most: float = declare("bond_respawn_max_duration", 10.0).value
+        self._respawns: bool = declare("attempt_respawn_reconnection", True).value
+
+    # --- commands ----------------------------------------------------------------------------------------------------
+
+    async def _on_manage(self, request: Any, response: Any) -> Any:
+        commands: Sequence[Callable[[], Coroutine[Any, Any, bool]]] = (
+            self._startup,
+            self._pause,
+            self._resume,
+            self._reset,
+            self._shutdown,
+            self._configure,
+            self._cleanup,
+        )
+        if request.command < len(commands):
+            response.success = await self._alone(commands[request.command])
+        else:
+            self._logger.error(f"{request.command} is not a command of ManageLifecycleNodes")
+        return response
+
+    def _on_is_active(self, _request: Any, response: Any) -> Any:
+        response.success = self._state is _State.ACTIVE
+        return response
+
+    async def _alone(self, command: Callable[[], Coroutine[Any, Any, bool]]) -> bool:
+        """Run commands one after the other."""
+        async with self._busy:
+            return await command()
+
+    async def _startup(self) -> bool:
+        self._logger.info("Starting managed nodes bringup...")
+        if not await self._all(_Step.CONFIGURE) or not await self._all(_Step.ACTIVATE):
+            return self._failed("Failed to bring up all requested nodes. Aborting bringup.")
+        return self._reached(_State.ACTIVE, "Managed nodes are active")
+
+    async def _configure(self) -> bool:
+        self._logger.info("Configuring managed nodes...")
+        if not await self._all(_Step.CONFIGURE):
+            return self._failed("Failed to configure all requested nodes. Aborting bringup.")
+        return self._reached(_State.INACTIVE, "Managed nodes are now configured")
+
+    async def _cleanup(self) -> bool:
+        self._logger.info("Cleaning up managed nodes...")
+        if not await self._all(_Step.CLEANUP):
+            return self._failed("Failed to cleanup all requested nodes. Aborting cleanup.")
+        return self._reached(_State.UNCONFIGURED, "Managed nodes have been cleaned up")
+
+    async def _pause(self) -> bool:
+        self._logger.info("Pausing managed nodes...")
+        if not await self._all(_Step.DEACTIVATE):
+            return self._failed("Failed to pause nodes: aborting pause")
+        return self._reached(_State.INACTIVE, "Managed nodes have been paused")
+
+    async def _resume(self) -> bool:
+        self._logger.info("Resuming managed nodes...")
+        if not await self._all(_Step.ACTIVATE):
+            return self._failed("Failed to resume nodes: aborting resume")
+        return self._reached(_State.ACTIVE, "Managed nodes are active")
+
+    async def _reset(self) -> bool:
+        self._logger.info("Resetting managed nodes...")
+        if not await self._all(_Step.DEACTIVATE) or not await self._all(_Step.CLEANUP):
+            return self._failed("Failed to reset nodes: aborting reset")
+        return self._reached(_State.UNCONFIGURED, "Managed nodes have been reset")
+
+    async def _shutdown(self) -> bool:
+        self._logger.info("Shutting down managed nodes...")
+        self._logger.info("Deactivate, cleanup, and shutdown nodes")
+        self._state = _State.FINALIZED
+        for step in (_Step.DEACTIVATE, _Step.CLEANUP, _Step.SHUTDOWN):
+            await self._all(step, whatever_happens=True)
+        return self._reached(_State.FINALIZED, "Managed nodes have been shut down")
+
+    def _failed(self, line: str) -> bool:
+        self._logger.error(line)
+        self._state = _State.UNKNOWN
+        return False
+
+    def _reached(self, state: _State, line: str) -> bool:
+        self._logger.info(line)
+        self._state = state
+        return True
+
+    async def _all(
+        self, step: _Step, *, whatever_happens: bool = False, without: _ManagedNodeClient | None = None
+    ) -> bool:
+        """Run a transition of all nodes, downwards in reverse order."""
+        upwards = step in (_Step.CONFIGURE, _Step.ACTIVATE)
+        for managed in self._managed if upwards else reversed(self._managed):
+            if managed is not without and not await self._one(managed, step, wait=upwards) and not whatever_happens:
+                return False
+        return True
+
+    async def _one(self, managed: _ManagedNodeClient, step: _Step, *, wait: bool) -> bool:
+        self._logger.info(f"{step.line} {managed.name}")
+        if wait:
+            await managed.wait(self._word_each)
+        if step is not _Step.ACTIVATE:
+            managed.end_bond()  # before the node leaves it, which is not a failure
+        if not await managed.change(step, self._word_each):
+            self._logger.error(f"Failed to change state for node: {managed.name}")
+            return False
+        return step is not _Step.ACTIVATE or await self._bind(managed)
+
+    # --- bonds -------------------------------------------------------------------------------------------------------
+
+    async def _bind(self, managed: _ManagedNodeClient) -> bool:
+        if self._bond_timeout <= 0.0:
+            return True
+        formed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        managed.end_bond()
+        managed.bond = Bond(
+            self._node,
+            managed.name,
+            timeout=self._bond_timeout,
+            on_formed=lambda: _finish(formed),
+            on_broken=lambda: self._broke(managed),
+        )
+        if not await answered(self._node, formed, self._bond_timeout):
+            formed.cancel()
+            managed.end_bond()
+            self._logger.error(
+                f"Server {managed.name} was unable to be reached after {self._bond_timeout:0.2f}s by bond. "
+                "This server may be misconfigured."
+            )
+            return False
+        self._logger.info(f"Server {managed.name} connected with bond.")
+        return True
+
+    def _broke(self, managed: _ManagedNodeClient) -> None:
+        self._begin(self._alone(lambda: self._bring_down(managed)))
+
+    async def _bring_down(self, dead: _ManagedNodeClient) -> bool:
+        """Take the other nodes down after one died, and all up again when it comes back."""
+        if dead.bond is None:
+            return True  # it left with another one, or on command
+        if self._state not in (_State.ACTIVE, _State.UNKNOWN):
+            return True
+        self._logger.info(f"Have not received a heartbeat from {dead.name}.")
+        self._logger.error(
+            f"CRITICAL FAILURE: SERVER {dead.name} IS DOWN after not receiving a heartbeat for "
+            f"{self._bond_timeout * 1000.0:.0f} ms. Shutting down related nodes."
+        )
+        self._logger.info("Resetting managed nodes...")
+        dead.end_bond()
+        for step in (_Step.DEACTIVATE, _Step.CLEANUP):
+            await self._all(step, whatever_happens=True, without=dead)
+        self._reached(_State.UNCONFIGURED, "Managed nodes have been reset")
+        if self._respawns:
+            self._begin(self._reconnect())
+        return True
+
+    async def _reconnect(self) -> None:
+        """Wait until all nodes are back, and start them."""
+        waited = 0.0
+        while waited < self._respawn_most and self._stays_down():
+            await answered(self._node, asyncio.get_running_loop().create_future(), _ONE_SECOND)
+            waited += _ONE_SECOND
+            async with self._busy:
+                if self._stays_down() and all([await managed.answers(_ONE_SECOND) for managed in self._managed]):
+                    self._logger.info("Successfully re-established connections from server respawns, starting back up.")
+                    await self._startup()
+                    return
+        if self._stays_down():
+            self._logger.info("Failed to re-establish connection from a server crash after maximum timeout.")
+
+    def _stays_down(self) -> bool:
+        """Return whether no command has come since the nodes were taken down."""
+        return self._state is _State.UNCONFIGURED
+
+    def _begin(self, work: Coroutine[Any, Any, Any]) -> None:
+        task = asyncio.get_running_loop().create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+
+def _finish(future: asyncio.Future[None]) -> None:
+    if not future.done():
+        future.set_result(None)

@@ -1,0 +1,199 @@
+"""The base classes of nav2's servers: managed nodes with nav2's log lines and a bond to their manager."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar, Protocol, TypeVar
+
+from linkwright.diagnostics import LinkwrightError, render
+from linkwright.graph import Graph, Node, Timer
+from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
+from linkwright.graph.lifecycle.states import ACTIVE, LifecycleState, TransitionCallbackReturn
+from linkwright.navigation.nodes.bond import PERIOD, Bond
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node_of, starting
+from linkwright.nodes.settings import log_unknown
+
+_SUCCESS = TransitionCallbackReturn.SUCCESS
+
+
+class _Destroyable(Protocol):
+    def destroy(self) -> Any: ...
+
+
+P = TypeVar("P", bound=_Destroyable)
+
+
+class ManagedNode(LifecycleNodeMixin, Node):
+    """A server of nav2 as a managed node.
+
+    Derived classes declare their parameters in `declare` and do their work in `configure`, `activate`, `deactivate`
+    and `cleanup`. A `LinkwrightError` raised there is logged, and the transition fails. Parts passed to `register` are
+    destroyed when the node is cleaned up.
+    """
+
+    def __init__(self, *arguments: Any, **named: Any) -> None:
+        Node.__init__(self, *arguments, **named)
+        LifecycleNodeMixin.__init__(self)
+        self._parts: list[_Destroyable] = []
+        self._bond: Bond | None = None
+        self._timer: Timer | None = None
+        self._has_logged = False
+        self.get_logger().info("Creating")
+        self._beats: float = self.declare_parameter("bond_heartbeat_period", PERIOD).value
+        self._starts_itself: bool = self.declare_parameter("autostart_node", False).value
+        self.declare()
+
+    def declare(self) -> None:
+        """Declare the parameters; others may be declared in `configure`."""
+
+    def configure(self) -> None:
+        """Read the parameters, and make the topics."""
+
+    def activate(self) -> None:
+        """Start to work."""
+
+    def deactivate(self) -> None:
+        """Stop working."""
+
+    def cleanup(self) -> None:
+        """Drop the parts that `configure` created without `register`, as far as it got."""
+
+    def register(self, part: P) -> P:
+        """Register a part of the node that is destroyed when it is cleaned up, and return it."""
+        self._parts.append(part)
+        return part
+
+    @property
+    def is_active(self) -> bool:
+        """Whether it is active."""
+        return self.lifecycle_state == ACTIVE
+
+    def now_ns(self) -> int:
+        """The time of the node's clock, nanoseconds."""
+        return self.get_clock().now().nanoseconds
+
+    @property
+    def is_cycling(self) -> bool:
+        """Whether `begin_cycles` was called, and not `end_cycles`."""
+        return self._timer is not None
+
+    def begin_cycles(self, period: float, cycle: Callable[[], object]) -> None:
+        """Call a function each `period` seconds of the node's clock, in place of one that was called so."""
+        self.end_cycles()
+        self._timer = self.create_timer(period, cycle)
+
+    def end_cycles(self) -> None:
+        """End the calls of `begin_cycles`; without any nothing happens."""
+        if self._timer is not None:
+            self._timer.destroy()
+            self._timer = None
+
+    def start_itself(self) -> None:
+        """Configure and activate it if ``autostart_node`` is set."""
+        if self._starts_itself and self.trigger_configure() == _SUCCESS:
+            self.trigger_activate()
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """See `configure`; unknown parameters are logged once."""
+        self.get_logger().info("Configuring")
+        try:
+            self.configure()
+        except LinkwrightError as error:
+            self.tell(error)
+            self._let_go()
+            return TransitionCallbackReturn.FAILURE
+        if not self._has_logged:
+            self._has_logged = True
+            log_unknown(self)
+        return super().on_configure(state)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """See `activate`; the bond is formed."""
+        self.get_logger().info("Activating")
+        verdict = super().on_activate(state)
+        try:
+            self.activate()
+        except LinkwrightError as error:
+            self.tell(error)
+            super().on_deactivate(state)
+            return TransitionCallbackReturn.FAILURE
+        if self._beats > 0.0:
+            self.get_logger().info(f"Creating bond ({self.get_name()}) to lifecycle manager.")
+            self._bond = Bond(self, self.get_name(), period=self._beats)
+        return verdict
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """See `deactivate`; the bond is broken."""
+        self.get_logger().info("Deactivating")
+        self.deactivate()
+        self._end_bond()
+        return super().on_deactivate(state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """See `cleanup`."""
+        self.get_logger().info("Cleaning up")
+        self._let_go()
+        return super().on_cleanup(state)
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Deactivate it, if it is active, and clean up."""
+        self.get_logger().info("Shutting down")
+        if state == ACTIVE:
+            self.deactivate()
+        self._end_bond()
+        self._let_go()
+        return super().on_shutdown(state)
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Clean up after an error in a transition, so that the node can be configured again."""
+        self._end_bond()
+        self._let_go()
+        return super().on_error(state)
+
+    def leave(self) -> None:
+        """Stop working and notify the manager; called before the node is destroyed."""
+        if self.is_active:
+            self.deactivate()
+        self._end_bond()
+        self._let_go()
+
+    def _let_go(self) -> None:
+        self.cleanup()
+        for part in self._parts:
+            part.destroy()
+        self._parts.clear()
+
+    def _end_bond(self) -> None:
+        if self._bond is not None:
+            self.get_logger().info(f"Destroying bond ({self.get_name()}) to lifecycle manager.")
+            self._bond.end()
+            self._bond = None
+
+    def tell(self, error: LinkwrightError) -> None:
+        """Log a finding, with its place and hint."""
+        self.get_logger().error("\n".join(render(diagnostic) for diagnostic in error.diagnostics))
+
+
+class ManagedServer(SingleNode):
+    """The running node of one of nav2's servers.
+
+    Attributes:
+        NODE: the class of the node.
+    """
+
+    NODE: ClassVar[type[ManagedNode]]
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        node, _ = create_node_of(self.NODE, graph, options, self.DEFAULT_NAME)
+        self._node: ManagedNode = node
+        with starting(node):
+            self.prepare(graph, options)
+            node.start_itself()
+
+    def prepare(self, graph: Graph, options: NodeOptions) -> None:
+        """Prepare the node before it starts; does nothing by default."""
+
+    def close(self) -> None:
+        """Close the node and notify its manager."""
+        self._node.leave()
+        super().close()

@@ -1,0 +1,230 @@
+"""map_saver of nav2: saves the map of a topic, once (map_saver_cli) or by a service (map_saver_server)."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError, render
+from linkwright.graph import Graph, Logger, Node, QoSProfile
+from linkwright.graph.command_line.ros_arguments import remove_ros_arguments
+from linkwright.graph.loop.callback_groups import ReentrantCallbackGroup
+from linkwright.messages import get_message, get_service
+from linkwright.navigation.grids.occupancy import BadGridError, grid_of
+from linkwright.navigation.maps.map_files import FREE_THRESH, OCCUPIED_THRESH, SavedAs, save_map
+from linkwright.navigation.maps.map_yaml import MapMode
+from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
+from linkwright.navigation.nodes.map_server import MAP_QOS
+from linkwright.nodes.answers import answered
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import log_unknown
+
+_USAGE = """Usage:
+  map_saver_cli [arguments] [--ros-args ROS remapping args]
+
+Arguments:
+  -h/--help
+  -t <map_topic>
+  -f <mapname>
+  --occ <threshold_occupied>
+  --free <threshold_free>
+  --fmt <image_format>
+  --mode trinary(default)/scale/raw
+
+NOTE: --ros-args should be passed at the end of command line"""
+_OPTIONS = ("-t", "-f", "--occ", "--free", "--fmt", "--mode")
+_INVALID = 255
+"""The exit status of nav2's ``return -1``."""
+
+
+class _Saving:
+    """The base of both programs: waits for the map of a topic and writes it."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        declare = node.declare_parameter
+        self._timeout: float = declare("save_map_timeout", 2.0).value
+        self._free: float = declare("free_thresh_default", FREE_THRESH).value
+        self._occupied: float = declare("occupied_thresh_default", OCCUPIED_THRESH).value
+        self._latched: bool = declare("map_subscribe_transient_local", True).value
+
+    def mode(self, text: str) -> MapMode:
+        """The mode of a name; ``trinary`` for an unknown one."""
+        try:
+            return MapMode(text or MapMode.TRINARY.value)
+        except ValueError:
+            self._node.get_logger().warning(
+                f"Map mode parameter not recognized: '{text}', using default value (trinary)"
+            )
+            return MapMode.TRINARY
+
+    async def save(self, topic: str, name: str, kind: str, mode: MapMode, free: float, occupied: float) -> bool:
+        """Save the map of a topic, and return whether that succeeded. A threshold of 0 means that of the parameters."""
+        logger = self._node.get_logger()
+        logger.info(f"Saving map from '{topic}' topic to '{name}' file")
+        if not topic:
+            topic = "map"
+            logger.warning(f"Map topic unspecified. Map messages will be read from '{topic}' topic")
+        if not free:
+            free = self._free
+            logger.warning(f"Free threshold unspecified. Setting it to default value: {free:f}")
+        if not occupied:
+            occupied = self._occupied
+            logger.warning(f"Occupied threshold unspecified. Setting it to default value: {occupied:f}")
+        message = await self._map_of(topic)
+        if message is None:
+            return False
+        io = self._node.graph.get_logger("map_io")
+        if not name:
+            name = f"map_{self._node.get_clock().now().nanoseconds // 1_000_000_000}"
+            io.warning(f"Map file unspecified. Map will be saved to {name} file")
+        saved = SavedAs(name=name, occupied_thresh=occupied, free_thresh=free, image_format=kind, mode=mode)
+        problem = self._write(message, saved, io)
+        if problem is not None:
+            logger.error(f"Failed to save the map: {problem}")
+            return False
+        logger.info("Map saved successfully")
+        return True
+
+    def _write(self, message: Any, saved: SavedAs, io: Logger) -> str | None:
+        """Write a map; the reason if that failed."""
+        try:
+            grid = grid_of(message)
+            io.info(f"Received a {grid.columns} X {grid.rows} map @ {grid.resolution:g} m/pix")
+            for path in save_map(grid, saved, io.warning):
+                io.info(f"Wrote {path}")
+        except BadGridError as error:
+            return f"the message is not a map: {error}"
+        except LinkwrightError as error:
+            return "\n".join(render(diagnostic) for diagnostic in error.diagnostics)
+        return None
+
+    async def _map_of(self, topic: str) -> Any:
+        """Return the next message; None, with a log line, if none arrives in time."""
+        node = self._node
+        come: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+
+        def receive(message: Any) -> None:
+            if not come.done():
+                come.set_result(message)
+
+        qos = MAP_QOS if self._latched else QoSProfile(depth=10)
+        group = ReentrantCallbackGroup()  # the service that waits for the map holds the group of the node
+        kind = get_message("nav_msgs/msg/OccupancyGrid")
+        subscription = node.create_subscription(kind, topic, receive, qos, callback_group=group)
+        try:
+            if not await answered(node, come, self._timeout):
+                senders = node.count_publishers(topic)
+                why = (
+                    f"no node publishes on '{subscription.name}'"
+                    if not senders
+                    else f"{senders} publish on '{subscription.name}', but no map with a compatible QoS arrived"
+                )
+                node.get_logger().error(
+                    f"Failed to spin map subscription: no map arrived within {self._timeout:g} s; {why}"
+                )
+                return None
+            return come.result()
+        finally:
+            subscription.destroy()
+
+
+class MapSaver(SingleNode):
+    """map_saver_cli: it ends with status 0 if the map was saved, else 1; with 255 for an unknown word."""
+
+    DEFAULT_NAME = "map_saver"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        words = remove_ros_arguments(options.arguments)
+        self._task: asyncio.Task[None] | None = None
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        if "-h" in words or "--help" in words:
+            options.output(_USAGE)
+            self.finished.set_result(0)
+            return
+        with starting(self._node):
+            saving = _Saving(self._node)
+            log_unknown(self._node)
+        try:
+            arguments = _parsed(words)
+        except ValueError as error:
+            self._node.get_logger().error(str(error))
+            self.finished.set_result(_INVALID)
+            return
+        self._task = asyncio.get_running_loop().create_task(self._run(saving, arguments))
+
+    def close(self) -> None:
+        """End it."""
+        if self._task is not None:
+            self._task.cancel()
+        super().close()
+
+    async def _run(self, saving: _Saving, arguments: dict[str, str]) -> None:
+        free, occupied = (float(arguments.get(option, 0.0)) for option in ("--free", "--occ"))
+        mode = saving.mode(arguments.get("--mode", ""))
+        saved = await saving.save(
+            arguments.get("-t", "map"), arguments.get("-f", ""), arguments.get("--fmt", ""), mode, free, occupied
+        )
+        if not self.finished.done():
+            self.finished.set_result(0 if saved else 1)
+
+
+def _parsed(words: list[str]) -> dict[str, str]:
+    """Parse the options of a command line.
+
+    Raises:
+        ValueError: one is unknown, has no value, or not a number where one must be.
+    """
+    arguments = {}
+    rest = iter(words)
+    for word in rest:
+        if word not in _OPTIONS:
+            raise ValueError(f"Wrong argument: {word}")
+        value = next(rest, None)
+        if value is None:
+            raise ValueError(f"Wrong argument: {word} should be followed by a value.")
+        if word in ("--occ", "--free"):
+            try:
+                float(value)
+            except ValueError:
+                raise ValueError(f"Wrong argument: {word} should be followed by a number, not '{value}'") from None
+        arguments[word] = value
+    return arguments
+
+
+class MapSaverNode(ManagedNode):
+    """map_saver_server as a managed node."""
+
+    def declare(self) -> None:
+        """Declare the parameters of nav2."""
+        self._saving = _Saving(self)
+
+    def configure(self) -> None:
+        """Offer the service."""
+        name = f"{self.get_name()}/save_map"
+        self.register(self.create_service(get_service("nav2_msgs/srv/SaveMap"), name, self._on_save))
+
+    async def _on_save(self, request: Any, response: Any) -> Any:
+        mode = self._saving.mode(request.map_mode)
+        response.result = await self._saving.save(
+            request.map_topic,
+            request.map_url,
+            request.image_format,
+            mode,
+            _decimal(request.free_thresh),
+            _decimal(request.occupied_thresh),
+        )
+        return response
+
+
+def _decimal(value: float) -> float:
+    """Return the decimal number of a float32: 0.65 arrives as 0.649999976."""
+    return round(value, 6)
+
+
+class MapSaverServer(ManagedServer):
+    """The running node map_saver_server."""
+
+    NODE = MapSaverNode
+    DEFAULT_NAME = "map_saver"

@@ -1,0 +1,101 @@
+"""map_server of nav2: publishes a map of files, and returns it by a service.
+
+As nav2's, with one difference: without ``yaml_filename`` it is configured all the same (as Jazzy does) and serves a map
+when one is loaded.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import DurabilityPolicy, Parameter, ParameterType, QoSProfile, ReliabilityPolicy
+from linkwright.messages import get_message, get_service
+from linkwright.navigation.grids.occupancy import occupancy_message
+from linkwright.navigation.maps.map_files import load_map
+from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
+
+MAP_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""The QoS profile of a map, which is published once, also for late subscriptions."""
+
+
+class MapServerNode(ManagedNode):
+    """map_server as a managed node."""
+
+    def declare(self) -> None:
+        """Declare the parameters of nav2."""
+        self.declare_parameter("yaml_filename", ParameterType.STRING)
+        self.declare_parameter("topic_name", "map")
+        self.declare_parameter("frame_id", "map")
+        self._map: Any = None
+
+    def configure(self) -> None:
+        """Read the map, and make topic and services.
+
+        Raises:
+            LinkwrightError: NAV201 to NAV204, the map cannot be read.
+        """
+        self._map = None
+        path = self.get_parameter_or("yaml_filename", Parameter("yaml_filename")).value
+        if path:
+            self._load(path)
+        else:
+            self.get_logger().info("yaml-filename parameter is empty, set map through '/load_map'-service")
+        name = self.get_name()
+        self.register(self.create_service(get_service("nav_msgs/srv/GetMap"), f"{name}/map", self._on_get))
+        self.register(self.create_service(get_service("nav2_msgs/srv/LoadMap"), f"{name}/load_map", self._on_load))
+        kind = get_message("nav_msgs/msg/OccupancyGrid")
+        self._publisher = self.register(self.create_publisher(kind, self.get_parameter("topic_name").value, MAP_QOS))
+
+    def activate(self) -> None:
+        """Publish the map."""
+        if self._map is not None:
+            self._publisher.publish(self._map)
+
+    def _load(self, path: str) -> None:
+        logger = self.graph.get_logger("map_io")
+        logger.info(f"Loading yaml file: {path}")
+        grid = load_map(path)
+        logger.info(f"Read map {path}: {grid.columns} X {grid.rows} map @ {grid.resolution:g} m/cell")
+        self._map = occupancy_message(grid, self.get_parameter("frame_id").value, self.get_clock().now().to_msg())
+
+    def _on_get(self, _request: Any, response: Any) -> Any:
+        if not self.is_active:
+            self.get_logger().warning("Received GetMap request but not in ACTIVE state, ignoring!")
+            return response
+        self.get_logger().info("Handling GetMap request")
+        if self._map is not None:
+            response.map = self._map
+        return response
+
+    def _on_load(self, request: Any, response: Any) -> Any:
+        if not self.is_active:
+            self.get_logger().warning("Received LoadMap request but not in ACTIVE state, ignoring!")
+            response.result = response.RESULT_UNDEFINED_FAILURE
+            return response
+        self.get_logger().info("Handling LoadMap request")
+        try:
+            self._load(request.map_url)
+        except LinkwrightError as error:
+            self.tell(error)
+            response.result = _result(error, response)
+            return response
+        self._publisher.publish(self._map)
+        response.map, response.result = self._map, response.RESULT_SUCCESS
+        return response
+
+
+def _result(error: LinkwrightError, response: Any) -> int:
+    """nav2's result code for an error."""
+    results: dict[str, int] = {
+        "NAV201": response.RESULT_MAP_DOES_NOT_EXIST,
+        "NAV202": response.RESULT_INVALID_MAP_METADATA,
+    }
+    return int(results.get(error.diagnostics[0].code, response.RESULT_INVALID_MAP_DATA))
+
+
+class MapServer(ManagedServer):
+    """The running node."""
+
+    NODE = MapServerNode
+    DEFAULT_NAME = "map_server"

@@ -1,0 +1,288 @@
+"""The parameters of ekf_node and ukf_node, as robot_localization declares them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.graph import Node, Parameter, ParameterType
+from linkwright.navigation.estimation.estimator import Timing
+from linkwright.navigation.estimation.kalman import Control, Settings
+from linkwright.navigation.estimation.motion_model import SIZE, Matrix
+from linkwright.navigation.estimation.readings import GRAVITY, Used
+from linkwright.nodes.settings import bad_value, positive
+
+KINDS = ("odom", "pose", "twist", "imu")
+"""The sensors, in the order in which they are asked for: ``odom0``, ``odom1``, ..., ``pose0``, ..."""
+
+_GIVES = {
+    "odom": (True, True, False),
+    "pose": (True, False, False),
+    "twist": (False, True, False),
+    "imu": (True, True, True),
+}
+"""Whether a kind of sensor gives a pose, a twist and an acceleration."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frames:
+    """The names of the frames; `world` is `map` or `odom`, and `output` is the body in messages."""
+
+    map: str
+    odom: str
+    base: str
+    output: str
+    world: str
+
+
+@dataclass(frozen=True, slots=True)
+class SensorSettings:
+    """The settings of one sensor.
+
+    Attributes:
+        name: such as ``odom0``.
+        kind: one of `KINDS`.
+        topic: the topic of its messages.
+        used: which of the 15 values of the state it gives.
+        differential: whether its pose counts as a velocity.
+        relative: whether its poses count from the first one.
+        queue_size: depth of the subscription.
+        pose_threshold: standard deviations after which a pose is left out; so are the other two.
+        twist_threshold: of twists.
+        acceleration_threshold: of accelerations.
+        remove_gravity: whether accelerations have gravity in them.
+    """
+
+    name: str
+    kind: str
+    topic: str
+    used: Used
+    differential: bool
+    relative: bool
+    queue_size: int
+    pose_threshold: float
+    twist_threshold: float
+    acceleration_threshold: float
+    remove_gravity: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """The parameters as one object; times are in nanoseconds where the name ends in ``_ns``, else in seconds."""
+
+    frequency: float
+    two_d: bool
+    frames: Frames
+    publish_tf: bool
+    publish_acceleration: bool
+    permit_corrected: bool
+    transform_offset_ns: int
+    reset_on_time_jump: bool
+    gravity: float
+    diagnostics: bool
+    enabled: bool
+    timing: Timing
+    filter: Settings
+    sensors: tuple[SensorSettings, ...]
+
+
+def configuration_of(node: Node) -> Configuration:
+    """Declare the parameters of a node and read them.
+
+    Raises:
+        LinkwrightError: NODE433 for a value that means nothing, NODE441 for a list of the wrong length, NODE442 for
+            frames that are not different.
+    """
+    declare = node.declare_parameter
+    frequency = positive(node, "frequency", declare("frequency", 30.0).value)
+    timeout: float = declare("sensor_timeout", 1.0 / frequency).value
+    smooth: bool = declare("smooth_lagged_data", False).value
+    history: float = declare("history_length", 0.0).value
+    for name, default in (("debug", False), ("debug_out_file", "robot_localization_debug.txt")):
+        declare(name, default)
+    declare("transform_timeout", 0.0)  # lookups here never wait
+    sensors = tuple(_sensors(node))
+    return Configuration(
+        frequency=frequency,
+        two_d=declare("two_d_mode", False).value,
+        frames=_frames(node),
+        publish_tf=declare("publish_tf", True).value,
+        publish_acceleration=declare("publish_acceleration", False).value,
+        permit_corrected=declare("permit_corrected_publication", False).value,
+        transform_offset_ns=_nanoseconds(declare("transform_time_offset", 0.0).value),
+        reset_on_time_jump=declare("reset_on_time_jump", False).value,
+        gravity=declare("gravitational_acceleration", GRAVITY).value,
+        diagnostics=declare("print_diagnostics", False).value,
+        enabled=not declare("disabled_at_startup", False).value,
+        timing=Timing(
+            sensor_timeout_ns=_nanoseconds(timeout),
+            predict_to_now=declare("predict_to_current_time", False).value,
+            history_ns=_nanoseconds(abs(history)) if smooth else None,
+        ),
+        filter=Settings(
+            noise=_covariance(node, "process_noise_covariance", Settings().noise),
+            initial_covariance=_covariance(node, "initial_estimate_covariance", Settings().initial_covariance),
+            initial_state=np.array(_numbers(node, "initial_state", (SIZE,)) or [0.0] * SIZE),
+            dynamic_noise=declare("dynamic_process_noise_covariance", False).value,
+            control=_control(node, sensors),
+        ),
+        sensors=sensors,
+    )
+
+
+def _frames(node: Node) -> Frames:
+    def name(parameter: str, default: str) -> str:
+        value: str = node.declare_parameter(parameter, default).value
+        return value.removeprefix("/")
+
+    world_map, odom, base = name("map_frame", "map"), name("odom_frame", "odom"), name("base_link_frame", "base_link")
+    frames = Frames(world_map, odom, base, name("base_link_frame_output", base), name("world_frame", odom))
+    if len({frames.map, frames.odom, frames.base}) < 3 or frames.output in (frames.map, frames.odom):
+        raise LinkwrightError(
+            Diagnostic(
+                "NODE442",
+                phrase(
+                    "map_frame '{map}', odom_frame '{odom}' and base_link_frame '{base}' must differ",
+                    map=frames.map,
+                    odom=frames.odom,
+                    base=frames.base,
+                ),
+                hint=phrase("see REP 105; they are map, odom and base_link unless they are given"),
+            )
+        )
+    if frames.world not in (frames.map, frames.odom):
+        raise bad_value("world_frame", frames.world, node.get_name(), (frames.map, frames.odom))
+    return frames
+
+
+def _sensors(node: Node) -> Iterator[SensorSettings]:
+    for kind in KINDS:
+        number = 0
+        while True:
+            name = f"{kind}{number}"
+            node.declare_parameter(name, ParameterType.STRING)
+            topic = node.get_parameter_or(name, Parameter(name)).value
+            if topic is None:
+                node.undeclare_parameter(name)
+                break
+            yield _sensor(node, kind, name, topic)
+            number += 1
+
+
+def _sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings:
+    pose, twist, acceleration = _GIVES[kind]
+
+    def declare(suffix: str, default: bool | float) -> bool | float:
+        value: bool | float = node.declare_parameter(f"{name}_{suffix}", default).value
+        return value
+
+    used = _flags(node, f"{name}_config", SIZE) or (False,) * SIZE
+    gives = (*[pose] * 6, *[twist] * 6, *[acceleration] * 3)
+    if kind == "imu":
+        gives = (*[False] * 3, *[True] * 3, *[False] * 3, *[True] * 6)
+    differential = bool(declare("differential", False)) if pose else False
+    relative = bool(declare("relative", False)) if pose else False
+    if differential and relative:
+        node.get_logger().warning(
+            f"Both {name}_differential and {name}_relative were set to true. Using differential mode."
+        )
+        relative = False
+    names = ("rejection_threshold",) * 2 if kind in ("pose", "twist") else _THRESHOLDS
+    sensor = SensorSettings(
+        name=name,
+        kind=kind,
+        topic=topic,
+        used=tuple(bool(flag and can) for flag, can in zip(used, gives, strict=True)),
+        differential=differential,
+        relative=relative,
+        queue_size=int(declare("queue_size", 10)),
+        pose_threshold=declare(names[0], inf) if pose else inf,
+        twist_threshold=declare(names[1], inf) if twist else inf,
+        acceleration_threshold=declare("linear_acceleration_rejection_threshold", inf) if acceleration else inf,
+        remove_gravity=bool(declare("remove_gravitational_acceleration", False)) if acceleration else False,
+    )
+    declare("nodelay", False)  # of ROS 1; files still have it
+    if not any(sensor.used):
+        node.get_logger().warning(
+            f"{topic} is listed as an input topic ({name}), but nothing that it gives is true in {name}_config"
+        )
+    return sensor
+
+
+_CONTROL_TIMEOUT = 0.2
+"""Seconds, as documented; the code of robot_localization has 0, which ignores every command."""
+_THRESHOLDS = ("pose_rejection_threshold", "twist_rejection_threshold")
+
+
+def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
+    """The settings of commanded velocities. All are declared, so that unused ones are known."""
+    use: bool = node.declare_parameter("use_control", False).value
+    timeout: float = node.declare_parameter("control_timeout", _CONTROL_TIMEOUT).value
+    node.declare_parameter("stamped_control", False)
+    used = _flags(node, "control_config", 6)
+    limits = _numbers(node, "acceleration_limits", (6,)) or [1.0] * 6
+    gains = _numbers(node, "acceleration_gains", (6,)) or [1.0] * 6
+    slower = _numbers(node, "deceleration_limits", (6,)) or limits
+    slower_gains = _numbers(node, "deceleration_gains", (6,)) or gains
+    if not use:
+        return None
+    for index, axis in enumerate("XYZ"):
+        if used is not None and used[index] and any(sensor.used[12 + index] for sensor in sensors):
+            node.get_logger().warning(
+                f"{axis} acceleration is being measured from IMU; {axis} velocity control input is disabled"
+            )
+            used = (*used[:index], False, *used[index + 1 :])
+    if used is None or not any(used):
+        node.get_logger().warning(
+            "use_control is set to true, but control_config has no true value. No control term will be used."
+        )
+        return None
+    return Control(used, _nanoseconds(timeout), tuple(limits), tuple(gains), tuple(slower), tuple(slower_gains))
+
+
+def _covariance(node: Node, name: str, default: Matrix) -> Matrix:
+    """A covariance of the state, from 225 numbers or the 15 of the diagonal."""
+    numbers = _numbers(node, name, (SIZE * SIZE, SIZE))
+    if numbers is None:
+        return default
+    return np.diag(numbers) if len(numbers) == SIZE else np.array(numbers).reshape(SIZE, SIZE)
+
+
+def _numbers(node: Node, name: str, lengths: tuple[int, ...]) -> list[float] | None:
+    node.declare_parameter(name, ParameterType.DOUBLE_ARRAY)
+    given = node.get_parameter_or(name, Parameter(name)).value
+    if given is None:
+        return None
+    check_length(name, len(given), lengths)
+    return [float(number) for number in given]
+
+
+def _flags(node: Node, name: str, length: int) -> Used | None:
+    node.declare_parameter(name, ParameterType.BOOL_ARRAY)
+    given = node.get_parameter_or(name, Parameter(name)).value
+    if given is None:
+        return None
+    check_length(name, len(given), (length,))
+    return tuple(bool(flag) for flag in given)
+
+
+def check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
+    """Check the number of a parameter's values.
+
+    Raises:
+        LinkwrightError: NODE441, it has not.
+    """
+    if length not in lengths:
+        known = " / ".join(str(length) for length in lengths)
+        message = phrase(
+            "parameter '{name}' must have {known} values and has {length}", name=name, known=known, length=length
+        )
+        raise LinkwrightError(Diagnostic("NODE441", message))
+
+
+def _nanoseconds(seconds: float) -> int:
+    return round(seconds * 1e9)

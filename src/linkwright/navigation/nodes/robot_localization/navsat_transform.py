@@ -1,0 +1,336 @@
+"""navsat_transform_node of robot_localization: fixes of a satellite receiver to odometry, and odometry to fixes.
+
+It follows robot_localization 3.5 (ROS 2 Humble). The origin of the map on the earth, and how it is turned, come from
+the first fix with the first odometry and the heading of an IMU (0 in the east), or from a datum. Deliberate
+differences: the place of the receiver on the robot is taken away with the orientation of the odometry and not by a
+lookup; ``delay`` does not block.
+"""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.geometry.single import (
+    IDENTITY,
+    Quaternion,
+    Transform,
+    compose,
+    invert,
+    normalized,
+    quaternion_from_rpy,
+    quaternion_inverse,
+    quaternion_multiply,
+    rotate,
+    rpy_from_quaternion,
+)
+from linkwright.geometry.vectors import Vector3
+from linkwright.graph import SENSOR_DATA_QOS, STATIC_TF_PUBLISHER_QOS, Graph, Parameter, ParameterType
+from linkwright.messages import TFMessage, TransformBatch, get_message, get_service
+from linkwright.navigation.estimation.geodesy import TangentPlane, Zone, convergence, degrees_of_utm, utm_of, zone_of
+from linkwright.navigation.nodes.robot_localization.configuration import check_length
+from linkwright.nodes.frame_poses import FramePoses
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import bad_value, log_unknown, positive
+
+_KNOWN_COVARIANCE, _GBAS_FIX, _NO_FIX = 3, 2, -1
+_ZONE_LETTERS = "CDEFGHJKLMNPQRSTUVWXX"
+"""The letters of UTM's bands of latitude, 8 degrees each from -80 on."""
+
+
+class NavsatTransformNode(SingleNode):
+    """The running node.
+
+    Raises:
+        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201), or a datum has another number of values
+            than three (NODE441).
+    """
+
+    DEFAULT_NAME = "navsat_transform_node"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        with starting(self._node):
+            datum = self._declare()
+            log_unknown(self._node)
+        self._poses = FramePoses(self._node, "Could not obtain transform:")
+        self._zone: Zone | None = None
+        self._plane: TangentPlane | None = None
+        self._map: Transform | None = None
+        """The pose of the earth's grid in the map; None until it is known."""
+        self._first_fix: Vector3 | None = None
+        self._first_pose: Transform | None = None
+        self._heading: Quaternion | None = None
+        self._fix: Any = None
+        self._odometry: Any = None
+        self._new_fix = self._new_odometry = False
+        self._world_frame, self._base_frame = "odom", "base_link"
+        self._open()
+        if self._manual and datum is not None:
+            self._set_datum(datum[0], datum[1], 0.0, quaternion_from_rpy((0.0, 0.0, datum[2])))
+
+    def _declare(self) -> list[float] | None:
+        node, declare = self._node, self._node.declare_parameter
+        self._yaw_offset: float = declare("magnetic_declination_radians", 0.0).value + declare("yaw_offset", 0.0).value
+        old: bool = declare("broadcast_utm_transform", False).value
+        old_parent: bool = declare("broadcast_utm_transform_as_parent_frame", False).value
+        self._broadcast: bool = declare("broadcast_cartesian_transform", old).value
+        self._as_parent: bool = declare("broadcast_cartesian_transform_as_parent_frame", old_parent).value
+        self._flat: bool = declare("zero_altitude", False).value
+        self._publish_fixes: bool = declare("publish_filtered_gps", True).value
+        self._odometry_yaw: bool = declare("use_odometry_yaw", False).value
+        self._local: bool = declare("use_local_cartesian", False).value
+        self._manual: bool = declare("wait_for_datum", False).value
+        self._frequency = positive(node, "frequency", declare("frequency", 10.0).value)
+        for name in ("delay", "transform_timeout"):
+            declare(name, 0.0)
+        node.declare_parameter("datum", ParameterType.DOUBLE_ARRAY)
+        datum = node.get_parameter_or("datum", Parameter("datum")).value
+        if datum is None:
+            return None
+        check_length("datum", len(datum), (3,))
+        if not (abs(datum[0]) <= 90.0 and abs(datum[1]) <= 360.0):
+            raise bad_value("datum", list(datum), node.get_name())
+        return [float(number) for number in datum]
+
+    def _open(self) -> None:
+        node = self._node
+        self._publisher = node.create_publisher(get_message("nav_msgs/msg/Odometry"), "odometry/gps", 10)
+        if self._publish_fixes:
+            kind = get_message("sensor_msgs/msg/NavSatFix")
+            self._fix_publisher = node.create_publisher(kind, "gps/filtered", 10)
+        if self._broadcast:
+            self._tf_publisher = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
+        node.create_subscription(get_message("nav_msgs/msg/Odometry"), "odometry/filtered", self._receive_odometry, 10)
+        node.create_subscription(
+            get_message("sensor_msgs/msg/NavSatFix"), "gps/fix", self._receive_fix, SENSOR_DATA_QOS
+        )
+        if not self._odometry_yaw and not self._manual:
+            node.create_subscription(get_message("sensor_msgs/msg/Imu"), "imu", self._receive_imu, SENSOR_DATA_QOS)
+        for name, service, answer in (
+            ("datum", "SetDatum", self._on_datum),
+            ("fromLL", "FromLL", self._on_from_ll),
+            ("fromLLArray", "FromLLArray", self._on_from_ll_array),
+            ("toLL", "ToLL", self._on_to_ll),
+            ("setUTMZone", "SetUTMZone", self._on_zone),
+        ):
+            node.create_service(get_service(f"robot_localization/srv/{service}"), name, answer)
+        node.create_timer(1.0 / self._frequency, self._update)
+
+    # --- input -------------------------------------------------------------------------------------------------------
+
+    def _receive_odometry(self, message: Any) -> None:
+        self._world_frame = message.header.frame_id or self._world_frame
+        self._base_frame = message.child_frame_id or self._base_frame
+        self._odometry, self._new_odometry = message, True
+        if self._map is None and not self._manual:
+            self._first_pose = _pose(message)
+            if self._odometry_yaw:
+                self._heading = self._first_pose[3:]
+
+    def _receive_fix(self, message: Any) -> None:
+        place = (message.latitude, message.longitude, message.altitude)
+        if message.status.status == _NO_FIX or not all(isfinite(number) for number in place):
+            return
+        if not message.header.frame_id:
+            self._node.get_logger().error(
+                "NavSatFix message has empty frame_id. Will assume navsat device is mounted at robot's origin.",
+                once=True,
+            )
+        self._fix, self._new_fix = message, True
+        if self._map is None and not self._manual:
+            self._first_fix = place
+
+    def _receive_imu(self, message: Any) -> None:
+        if self._map is not None or self._odometry is None:  # the odometry carries the frame of the body
+            return
+        mounting = self._poses.pose(
+            self._base_frame, message.header.frame_id or self._base_frame, message.header.stamp.nanoseconds
+        )
+        if mounting is not None:
+            self._heading = quaternion_multiply(_orientation(message.orientation), quaternion_inverse(mounting[3:]))
+
+    # --- the map on the earth ----------------------------------------------------------------------------------------
+
+    def _set_datum(self, latitude: float, longitude: float, altitude: float, heading: Quaternion) -> None:
+        self._manual = True
+        self._map = None
+        self._first_fix, self._first_pose, self._heading = (latitude, longitude, altitude), IDENTITY, heading
+        self._place_map()
+
+    def _place_map(self) -> None:
+        """Compute the transform of the map once all inputs have arrived."""
+        if self._first_fix is None or self._first_pose is None or self._heading is None:
+            return
+        latitude, longitude, altitude = self._first_fix
+        turned = self._yaw_offset
+        if self._local:
+            self._plane = TangentPlane(latitude, longitude, altitude)
+        else:
+            self._zone = self._zone or zone_of(latitude, longitude)
+            turned += convergence(latitude, longitude, self._zone)
+        x, y, z = self._grid(self._first_fix)
+        roll, pitch, yaw = rpy_from_quaternion(self._heading)
+        if not self._manual:
+            ox, oy, oz = rotate(quaternion_from_rpy((roll, pitch, yaw + turned)), self._receiver())
+            x, y, z = x - ox, y - oy, z - oz
+        base_in_grid: Transform = (x, y, z, *quaternion_from_rpy((0.0, 0.0, yaw + turned)))
+        self._map = compose(self._first_pose, invert(base_in_grid))
+        self._node.get_logger().info(
+            f"Datum (latitude, longitude, altitude) is ({latitude:.6f}, {longitude:.6f}, {altitude:.2f}); "
+            f"the heading is {yaw + turned:.4f} rad from the east"
+        )
+        if self._broadcast:
+            self._send_transform()
+
+    def _send_transform(self) -> None:
+        assert self._map is not None, "it was placed"
+        parent, child, pose = self._world_frame, "local_enu" if self._local else "utm", self._map
+        if self._as_parent:
+            parent, child, pose = child, parent, invert(pose)
+        x, y, z, *turn = pose
+        row = np.array([[x, y, 0.0 if self._flat else z, *turn]])
+        batch = TransformBatch((parent,), (child,), self._node.get_clock().now_ns(), row)
+        self._tf_publisher.publish(TFMessage(batch=batch))
+
+    def _receiver(self) -> Vector3:
+        """The pose of the receiver on the robot."""
+        frame = self._fix.header.frame_id if self._fix is not None else ""
+        if not frame:
+            return 0.0, 0.0, 0.0
+        pose = self._poses.pose(self._base_frame, frame, self._fix.header.stamp.nanoseconds)
+        return (0.0, 0.0, 0.0) if pose is None else pose[:3]
+
+    def _grid(self, place: Vector3) -> Vector3:
+        """A position on earth (degrees, degrees, metres) in the grid, metres."""
+        if self._plane is not None:
+            return self._plane.point_of(*place)
+        assert self._zone is not None, "it comes with the first place"
+        easting, northing = utm_of(place[0], place[1], self._zone)
+        return easting, northing, place[2]
+
+    def _place(self, point: Vector3) -> Vector3:
+        """A point of the grid as a position on earth."""
+        if self._plane is not None:
+            return self._plane.place_of(point)
+        assert self._zone is not None, "it comes with the first place"
+        latitude, longitude = degrees_of_utm(point[0], point[1], self._zone)
+        return latitude, longitude, point[2]
+
+    def _in_map(self, place: Vector3) -> Vector3:
+        assert self._map is not None, "it was placed"
+        return compose(self._map, (*self._grid(place), 0.0, 0.0, 0.0, 1.0))[:3]
+
+    def _on_earth(self, point: Vector3) -> Vector3:
+        assert self._map is not None, "it was placed"
+        return self._place(compose(invert(self._map), (*point, 0.0, 0.0, 0.0, 1.0))[:3])
+
+    # --- output ------------------------------------------------------------------------------------------------------
+
+    def _update(self) -> None:
+        if self._map is None:
+            self._place_map()
+            return
+        if self._new_fix and self._new_odometry:
+            self._publisher.publish(self._fix_as_odometry(self._map))
+        if self._publish_fixes and self._new_odometry:
+            self._fix_publisher.publish(self._odometry_as_fix(self._map))
+            self._new_odometry = False
+        self._new_fix = False
+
+    def _fix_as_odometry(self, grid_in_map: Transform) -> Any:
+        fix = self._fix
+        x, y, z = self._in_map((fix.latitude, fix.longitude, fix.altitude))
+        ox, oy, oz = rotate(_pose(self._odometry)[3:], self._receiver())
+        message = get_message("nav_msgs/msg/Odometry")()
+        message.header.stamp, message.header.frame_id = fix.header.stamp, self._world_frame
+        position = message.pose.pose.position
+        position.x, position.y, position.z = x - ox, y - oy, 0.0 if self._flat else z - oz
+        message.pose.pose.orientation.w = 1.0
+        covariance = np.zeros((6, 6))
+        covariance[:3, :3] = _turned(grid_in_map, np.asarray(fix.position_covariance, dtype=np.float64).reshape(3, 3))
+        message.pose.covariance = covariance.reshape(36)
+        return message
+
+    def _odometry_as_fix(self, grid_in_map: Transform) -> Any:
+        odometry = self._odometry
+        message = get_message("sensor_msgs/msg/NavSatFix")()
+        message.header.stamp, message.header.frame_id = odometry.header.stamp, self._base_frame
+        message.latitude, message.longitude, message.altitude = self._on_earth(_pose(odometry)[:3])
+        covariance = np.asarray(odometry.pose.covariance, dtype=np.float64).reshape(6, 6)[:3, :3]
+        message.position_covariance = _turned(invert(grid_in_map), covariance).reshape(9)
+        message.position_covariance_type = _KNOWN_COVARIANCE
+        message.status.status = _GBAS_FIX
+        return message
+
+    # --- services ----------------------------------------------------------------------------------------------------
+
+    def _on_datum(self, request: Any, response: Any) -> Any:
+        position = request.geo_pose.position
+        self._zone = None
+        heading = _orientation(request.geo_pose.orientation)
+        self._set_datum(position.latitude, position.longitude, position.altitude, heading)
+        return response
+
+    def _on_from_ll(self, request: Any, response: Any) -> Any:
+        response.map_point = self._point(request.ll_point)
+        return response
+
+    def _on_from_ll_array(self, request: Any, response: Any) -> Any:
+        response.map_points = [self._point(ll_point) for ll_point in request.ll_points]
+        return response
+
+    def _point(self, place: Any) -> Any:
+        point = get_message("geometry_msgs/msg/Point")()
+        if self._ready():
+            point.x, point.y, point.z = self._in_map((place.latitude, place.longitude, place.altitude))
+        return point
+
+    def _on_to_ll(self, request: Any, response: Any) -> Any:
+        if self._ready():
+            point, place = request.map_point, response.ll_point
+            place.latitude, place.longitude, place.altitude = self._on_earth((point.x, point.y, point.z))
+        return response
+
+    def _on_zone(self, request: Any, response: Any) -> Any:
+        zone = _zone_of_text(request.utm_zone)
+        response.status = zone is not None
+        if zone is not None:
+            self._zone = zone
+            if self._map is not None:
+                self._map = None
+                self._place_map()
+        else:
+            self._node.get_logger().error(f"'{request.utm_zone}' is not a UTM zone, such as 31U")
+        return response
+
+    def _ready(self) -> bool:
+        if self._map is None:
+            self._node.get_logger().error("No transform available (yet)", throttle_duration_sec=5.0)
+        return self._map is not None
+
+
+def _zone_of_text(text: str) -> Zone | None:
+    number, letter = text[:-1], text[-1:].upper()
+    if not number.isdecimal() or not 1 <= int(number) <= 60 or letter not in _ZONE_LETTERS or not letter:
+        return None
+    return Zone(int(number), letter >= "N")
+
+
+def _pose(odometry: Any) -> Transform:
+    position = odometry.pose.pose.position
+    return (position.x, position.y, position.z, *_orientation(odometry.pose.pose.orientation))
+
+
+def _orientation(message: Any) -> Quaternion:
+    return normalized(message.x, message.y, message.z, message.w)
+
+
+def _turned(pose: Transform, covariance: NDArray[np.float64]) -> NDArray[np.float64]:
+    turn = rotation_matrix(pose[3:])
+    turned: NDArray[np.float64] = turn @ covariance @ turn.T
+    return turned

@@ -1,0 +1,232 @@
+"""Sensors of ekf_node: converting their messages to measurements in the filter's frames."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.single import (
+    Quaternion,
+    Transform,
+    normalized,
+    quaternion_from_rpy,
+    quaternion_multiply,
+)
+from linkwright.graph import Node, QoSProfile, ReliabilityPolicy
+from linkwright.messages import get_message
+from linkwright.navigation.estimation.estimator import Estimator
+from linkwright.navigation.estimation.kalman import KalmanFilter, Measurement
+from linkwright.navigation.estimation.motion_model import ANGLES, POSE, RATES, TWIST
+from linkwright.navigation.estimation.readings import (
+    PoseReader,
+    Reading,
+    read_acceleration,
+    read_twist,
+    without_gravity,
+)
+from linkwright.navigation.nodes.robot_localization.configuration import Configuration, SensorSettings
+from linkwright.nodes.frame_poses import FramePoses
+
+_TYPES = {
+    "odom": "nav_msgs/msg/Odometry",
+    "pose": "geometry_msgs/msg/PoseWithCovarianceStamped",
+    "twist": "geometry_msgs/msg/TwistWithCovarianceStamped",
+    "imu": "sensor_msgs/msg/Imu",
+}
+_NOT_MEASURED = -1.0
+"""The first number of a covariance of an IMU that does not measure the quantity."""
+
+
+class Surroundings:
+    """The data that sensors share.
+
+    Args:
+        node: of the filter.
+        configuration: its parameters.
+        estimator: receives their measurements.
+        jumped_back: called when a message is older than the one before it.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        configuration: Configuration,
+        estimator: Estimator,
+        jumped_back: Callable[[], None],
+    ) -> None:
+        self.node = node
+        self.configuration = configuration
+        self.estimator = estimator
+        self.jumped_back = jumped_back
+        self.poses = FramePoses(node, "Could not obtain transform:")
+        self.ignored_until_ns = -1
+        """Messages up to this stamp belong to the time before the pose was set."""
+
+    @property
+    def filter(self) -> KalmanFilter:
+        """The filter, whose estimate some measurements need."""
+        return self.estimator.filter
+
+
+class Source:
+    """One sensor: its subscription, and its state.
+
+    Args:
+        settings: see there.
+        surroundings: see there.
+    """
+
+    def __init__(self, settings: SensorSettings, surroundings: Surroundings) -> None:
+        self._settings = settings
+        self._around = surroundings
+        two_d = surroundings.configuration.two_d
+        self._pose = PoseReader(settings.used, settings.differential, settings.relative, two_d)
+        self._two_d = two_d
+        self._frames = surroundings.configuration.frames
+        self._last_ns = -1
+        if any(settings.used):
+            hear = {"odom": self._odometry, "pose": self._pose_message, "twist": self._twist_message, "imu": self._imu}
+            surroundings.node.create_subscription(
+                get_message(_TYPES[settings.kind]),
+                settings.topic,
+                lambda message: self._receive(message, hear[settings.kind]),
+                QoSProfile(settings.queue_size, ReliabilityPolicy.BEST_EFFORT),
+            )
+
+    def forget(self, *, time: bool) -> None:
+        """Take the next pose as the first one; and, with `time`, messages of any stamp."""
+        self._pose.forget()
+        if time:
+            self._last_ns = -1
+
+    def _receive(self, message: Any, read: Callable[[Any, int], None]) -> None:
+        stamp_ns: int = message.header.stamp.nanoseconds
+        if stamp_ns <= self._around.ignored_until_ns:
+            return
+        if stamp_ns < self._last_ns:
+            self._around.jumped_back()
+            if stamp_ns < self._last_ns:
+                self._around.node.get_logger().warning(
+                    f"The {self._settings.name} message has a timestamp before that of the previous message received, "
+                    "this message will be ignored. This may indicate a bad timestamp.",
+                    throttle_duration_sec=5.0,
+                )
+                return
+        self._last_ns = stamp_ns
+        read(message, stamp_ns)
+
+    def _odometry(self, message: Any, stamp_ns: int) -> None:
+        self._read_pose(message.pose, message.header.frame_id, stamp_ns)
+        self._read_twist(message.twist, message.child_frame_id, stamp_ns)
+
+    def _pose_message(self, message: Any, stamp_ns: int) -> None:
+        self._read_pose(message.pose, message.header.frame_id, stamp_ns)
+
+    def _twist_message(self, message: Any, stamp_ns: int) -> None:
+        self._read_twist(message.twist, message.header.frame_id, stamp_ns)
+
+    def _read_pose(self, message: Any, frame: str, stamp_ns: int) -> None:
+        if not any(self._settings.used[POSE]):
+            return
+        world = self._frames.world
+        sensor = self._around.poses.pose(world, world if self._settings.differential or not frame else frame, stamp_ns)
+        if sensor is None:
+            return
+        position = message.pose.position
+        pose: Transform = (position.x, position.y, position.z, *_orientation(message.pose.orientation))
+        reading = self._pose.read(pose, _matrix(message.covariance, 6), sensor, stamp_ns)
+        self._add(reading, "pose", stamp_ns, self._settings.pose_threshold)
+
+    def _read_twist(self, message: Any, frame: str, stamp_ns: int) -> None:
+        if any(self._settings.used[TWIST]):
+            linear, angular = message.twist.linear, message.twist.angular
+            self._twist(_vector(linear), _vector(angular), _matrix(message.covariance, 6), frame, stamp_ns)
+
+    def _twist(
+        self,
+        linear: NDArray[np.float64],
+        angular: NDArray[np.float64],
+        covariance: NDArray[np.float64],
+        frame: str,
+        stamp_ns: int,
+    ) -> None:
+        mounting = self._mounting(frame, stamp_ns)
+        if mounting is not None:
+            rates, used = self._around.filter.state[RATES], self._settings.used
+            reading = read_twist(linear, angular, covariance, mounting, rates, used, two_d=self._two_d)
+            self._add(reading, "twist", stamp_ns, self._settings.twist_threshold)
+
+    def _imu(self, message: Any, stamp_ns: int) -> None:
+        used, frame = self._settings.used, message.header.frame_id
+        if any(used[ANGLES]) and _is_measured(message.orientation_covariance):
+            mounting = self._mounting(frame, stamp_ns)
+            if mounting is not None:
+                covariance = np.zeros((6, 6))
+                covariance[3:, 3:] = _matrix(message.orientation_covariance, 3)
+                orientation = _orientation(message.orientation)
+                reading = self._pose.read_orientation(orientation, covariance, mounting, stamp_ns)
+                self._add(reading, "pose", stamp_ns, self._settings.pose_threshold)
+        if any(used[RATES]) and _is_measured(message.angular_velocity_covariance):
+            covariance = np.zeros((6, 6))
+            covariance[3:, 3:] = _matrix(message.angular_velocity_covariance, 3)
+            self._twist(np.zeros(3), _vector(message.angular_velocity), covariance, frame, stamp_ns)
+        if any(used[12:]) and _is_measured(message.linear_acceleration_covariance):
+            self._acceleration(message, stamp_ns)
+
+    def _acceleration(self, message: Any, stamp_ns: int) -> None:
+        mounting = self._mounting(message.header.frame_id, stamp_ns)
+        if mounting is None:
+            return
+        acceleration = _vector(message.linear_acceleration)
+        if self._settings.remove_gravity:
+            attitude = self._attitude(message, mounting)
+            acceleration = without_gravity(acceleration, attitude, self._around.configuration.gravity)
+        covariance = _matrix(message.linear_acceleration_covariance, 3)
+        reading = read_acceleration(acceleration, covariance, mounting, self._settings.used, two_d=self._two_d)
+        self._add(reading, "acceleration", stamp_ns, self._settings.acceleration_threshold)
+
+    def _attitude(self, message: Any, mounting: Transform) -> Quaternion:
+        """The orientation of an IMU: measured, or else that of the filter."""
+        if _is_measured(message.orientation_covariance):
+            return _orientation(message.orientation)
+        roll, pitch, yaw = (float(angle) for angle in self._around.filter.state[ANGLES])
+        return quaternion_multiply(quaternion_from_rpy((roll, pitch, yaw)), mounting[3:])
+
+    def _mounting(self, frame: str, stamp_ns: int) -> Transform | None:
+        base = self._frames.base
+        return self._around.poses.pose(base, frame or base, stamp_ns)
+
+    def _add(self, reading: Reading | None, what: str, stamp_ns: int, threshold: float) -> None:
+        if reading is None or not any(reading.used):
+            return
+        kalman = self._around.filter
+        self._around.estimator.add(
+            Measurement(
+                f"{self._settings.name}_{what}",
+                stamp_ns,
+                reading.values,
+                reading.covariance,
+                reading.used,
+                threshold,
+                None if kalman.settings.control is None else kalman.command,
+            )
+        )
+
+
+def _is_measured(covariance: Any) -> bool:
+    return abs(float(covariance[0]) - _NOT_MEASURED) >= 1e-9
+
+
+def _orientation(message: Any) -> Quaternion:
+    return normalized(message.x, message.y, message.z, message.w)
+
+
+def _vector(message: Any) -> NDArray[np.float64]:
+    return np.array((message.x, message.y, message.z))
+
+
+def _matrix(numbers: Any, size: int) -> NDArray[np.float64]:
+    return np.asarray(numbers, dtype=np.float64).reshape(size, size)

@@ -1,0 +1,123 @@
+"""The executables of slam_toolbox: async, sync, localization, and map_and_localization.
+
+They follow slam_toolbox 2.6 (Humble), whose nodes work as soon as they start, and 2.8 (Jazzy), whose nodes are managed;
+``ROS_DISTRO`` selects one. Jazzy's activate themselves if ``autostart_node`` is true, as in our launch files. The
+mapper is Linkwright's own (`linkwright.navigation.slam`). Differences:
+
+- All solver plugins are one: Gauss-Newton on sparse matrices. Least squares refine each match, so
+  ``fine_search_angle_offset`` has no effect; nor has ``use_scan_barycenter``.
+- A turn by ``minimum_travel_heading`` is enough to process a scan, as the parameter's name suggests.
+- Scans are not moved by hand (``enable_interactive_mode``), maps are not merged, and nothing is forgotten: there is no
+  ``lifelong_slam_toolbox_node``. The motion of the robot during a scan is ignored.
+- A graph is saved in a format of our own, in one file; files of slam_toolbox cannot be read.
+- When simulated time jumps back, as on the reset of a world, the map starts from scratch.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from linkwright.graph import Graph, Node
+from linkwright.messages.distribution import is_before_iron
+from linkwright.navigation.nodes.managed import ManagedNode
+from linkwright.navigation.nodes.slam_toolbox.parameters import settings_of
+from linkwright.navigation.nodes.slam_toolbox.services import ToolboxServices
+from linkwright.navigation.nodes.slam_toolbox.toolbox import Toolbox
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, create_node_of, starting
+from linkwright.nodes.settings import log_unknown
+
+
+class _Managed(ManagedNode):
+    """The node of Jazzy, which is managed."""
+
+    kind: type[AsyncSlamToolbox]
+
+    def declare(self) -> None:
+        """Declare ``use_lifecycle_manager``: only with one a bond is formed."""
+        if not self.declare_parameter("use_lifecycle_manager", False).value:
+            self._beats = 0.0
+
+    def configure(self) -> None:
+        """Read the parameters and start the mapper.
+
+        Raises:
+            LinkwrightError: see `AsyncSlamToolbox`.
+        """
+        self._toolbox, self._services = self.kind.open(self)
+
+    def activate(self) -> None:
+        """Start mapping."""
+        self._toolbox.start()
+
+    def deactivate(self) -> None:
+        """Stop mapping."""
+        self._toolbox.stop()
+
+    def cleanup(self) -> None:
+        """Drop the map."""
+        if hasattr(self, "_toolbox"):
+            self._services.close()
+            self._toolbox.close()
+            del self._services, self._toolbox
+
+
+class AsyncSlamToolbox(SingleNode):
+    """The running node, which skips scans that it has no time for.
+
+    Raises:
+        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201), SciPy is not installed (NAV101), or the
+            map to begin with cannot be read (NAV501).
+    """
+
+    DEFAULT_NAME: ClassVar[str] = "slam_toolbox"
+    KEEPS_ALL: ClassVar[bool] = False
+    LOCALIZES: ClassVar[bool] = False
+    SWITCHES: ClassVar[bool] = False
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._work: tuple[Toolbox, ToolboxServices] | None = None
+        if not is_before_iron():
+            kind = type("Managed", (_Managed,), {"kind": type(self)})
+            node, _ = create_node_of(kind, graph, options, self.DEFAULT_NAME)
+            self._node = node
+            node.start_itself()
+            return
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        with starting(self._node):
+            for name in ("use_lifecycle_manager", "autostart_node"):  # of Jazzy's
+                self._node.declare_parameter(name, False)
+            self._work = self.open(self._node)
+            log_unknown(self._node)
+        self._work[0].start()
+
+    @classmethod
+    def open(cls, node: Node) -> tuple[Toolbox, ToolboxServices]:
+        """Read the parameters of a node, and make its toolbox."""
+        toolbox = Toolbox(node, settings_of(node), keeps_all=cls.KEEPS_ALL, localizes=cls.LOCALIZES)
+        return toolbox, ToolboxServices(toolbox, has_queue=cls.KEEPS_ALL, switches=cls.SWITCHES)
+
+    def close(self) -> None:
+        """End it."""
+        if self._work is not None:
+            self._work[0].stop()
+        elif isinstance(self._node, ManagedNode):
+            self._node.leave()
+        super().close()
+
+
+class SyncSlamToolbox(AsyncSlamToolbox):
+    """The running node, which processes all scans, however long that takes."""
+
+    KEEPS_ALL = True
+
+
+class LocalizationSlamToolbox(AsyncSlamToolbox):
+    """The running node, which localizes the robot in a saved map."""
+
+    LOCALIZES = True
+
+
+class MapAndLocalizationSlamToolbox(AsyncSlamToolbox):
+    """The running node, which maps until a service switches it to localization."""
+
+    SWITCHES = True

@@ -1,0 +1,349 @@
+"""The work of slam_toolbox's nodes: processes scans; publishes the map, the pose, and the transform of odometry.
+
+Work that takes long is done in steps of some milliseconds, between which other callbacks run. A scan that comes
+meanwhile is dropped, unless the node is the synchronous one.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.single import Transform, quaternion_from_rpy, rotation_matrix, rpy_from_quaternion
+from linkwright.graph import (
+    SENSOR_DATA_QOS,
+    TF_QOS,
+    DurabilityPolicy,
+    Duration,
+    JumpThreshold,
+    Node,
+    Parameter,
+    QoSProfile,
+    ReliabilityPolicy,
+    TransformException,
+)
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.graph.transforms.listener import TransformListener
+from linkwright.messages import TFMessage, Time, TransformBatch, get_message
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.grids.library import load_scipy
+from linkwright.navigation.grids.occupancy import occupancy_message
+from linkwright.navigation.nodes.slam_toolbox.markers import graph_markers
+from linkwright.navigation.nodes.slam_toolbox.parameters import Settings
+from linkwright.navigation.slam.mapper import Mapper, Outcome
+from linkwright.navigation.slam.occupancy import OccupancyMap
+from linkwright.navigation.slam.poses import Floats, compose, inverse
+from linkwright.navigation.slam.scan import PlanarScan, planar_scan
+from linkwright.navigation.slam.steps import Steps
+from linkwright.navigation.slam.storage import load_graph, path_of
+
+_MAP_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_LOOK_PERIOD = 0.05
+"""Seconds between looks for a transform that a scan waits for, where no transforms are published."""
+_LONG_QUEUE = 10
+_COMPLAINTS = 5.0
+
+
+class Toolbox:
+    """The work of a node while it is configured.
+
+    Args:
+        node: the node.
+        settings: the parameters.
+        keeps_all: whether scans are queued instead of dropped.
+        localizes: whether the map stays as it is, and the robot is only localized in it.
+
+    Attributes:
+        node: the node.
+        settings: the parameters.
+        mapper: the map and the robot in it.
+        localizes: see above.
+        queue: the queued scans, with the poses of odometry.
+
+    Raises:
+        LinkwrightError: NAV101, SciPy is not installed; NAV501, the map to begin with cannot be read.
+    """
+
+    def __init__(self, node: Node, settings: Settings, *, keeps_all: bool, localizes: bool) -> None:
+        for part in ("ndimage", "sparse", "sparse.linalg", "spatial"):
+            load_scipy(part)  # now, and not with the first scan
+        self.node, self.settings, self.localizes = node, settings, localizes
+        self.mapper = self._new_mapper()
+        self.queue: deque[tuple[PlanarScan, Floats]] = deque()
+        self._keeps_all = keeps_all
+        self._pending: tuple[Any, int] | None = None
+        self._work: Steps[Outcome | None] | None = None
+        self._taken: Floats | None = None
+        self._map_to_odom: Floats = np.zeros(3)
+        self._stamp_ns: int | None = None
+        self._seen = 0
+        self._active: list[Any] = []
+        self._published = False
+        if settings.map_file_name:
+            self.load(settings.map_file_name, settings.start)
+        self._buffer = BufferCore(
+            Duration(nanoseconds=settings.tf_buffer_ns), logger=node.get_logger().get_child("tf2")
+        )
+        self._listener = TransformListener(self._buffer, node)
+        message, name = get_message, settings.map_name
+        self._poses = node.create_publisher(message("geometry_msgs/msg/PoseWithCovarianceStamped"), "pose", 10)
+        self._maps = node.create_publisher(message("nav_msgs/msg/OccupancyGrid"), name, _MAP_QOS)
+        self._sizes = node.create_publisher(message("nav_msgs/msg/MapMetaData"), f"{name}_metadata", _MAP_QOS)
+        kind = message("visualization_msgs/msg/MarkerArray")
+        self._graphs = node.create_publisher(kind, "slam_toolbox/graph_visualization", 1)
+        self._transforms = node.create_publisher(TFMessage, "/tf", TF_QOS)
+        self._next_step = node.create_guard_condition(self._step)
+        self._jumped = node.create_guard_condition(self._time_jumped)
+
+    def start(self) -> None:
+        """Subscribe to scans, and publish."""
+        node, settings = self.node, self.settings
+        scans = get_message("sensor_msgs/msg/LaserScan")
+        self._active = [
+            node.create_subscription(scans, settings.scan_topic, self._on_scan, SENSOR_DATA_QOS),
+            node.create_timer(settings.transform_period or _LOOK_PERIOD, self._tick),
+            node.create_timer(settings.map_update_interval, self.publish_map),
+        ]
+        backwards = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
+        # Clocks are set in the thread in which /clock arrives.
+        self._jumps = node.get_clock().create_jump_callback(backwards, post_callback=lambda _: self._jumped.trigger())
+        if self.mapper.scans and self._work is None:
+            self._begin(self._drawn())
+
+    def stop(self) -> None:
+        """Stop; the map stays."""
+        if self._active:
+            self._jumps.unregister()
+        for part in self._active:
+            part.destroy()
+        self._active = []
+        self._pending = None
+        self.queue.clear()
+
+    def close(self) -> None:
+        """Remove everything that was made."""
+        self.stop()
+        self._drop_work()
+        self._listener.unregister()
+        parts = (self._poses, self._maps, self._sizes, self._graphs, self._transforms, self._next_step, self._jumped)
+        for part in parts:
+            part.destroy()
+
+    def _new_mapper(self) -> Mapper:
+        settings = self.settings
+        occupancy = OccupancyMap(settings.resolution, settings.min_pass_through, settings.occupancy_threshold)
+        return Mapper(settings.mapper, occupancy)
+
+    # --- requests of services and topics ------------------------------------------------------------------------------
+
+    def reset(self) -> None:
+        """Start a new map; when localizing, restart in the same map."""
+        self._drop_work()
+        self._pending = None
+        self.queue.clear()
+        if self.localizes:
+            self.mapper.begin_session(self.settings.start)
+        else:
+            self.mapper = self._new_mapper()
+        self._map_to_odom = np.zeros(3)
+        self._published = False
+
+    def load(self, name: str, start: Floats | None) -> None:
+        """Load a saved graph, at a pose of shape (3,), or where its first scan was taken.
+
+        Raises:
+            LinkwrightError: NAV501, it cannot be read.
+        """
+        mapper = self._new_mapper()
+        load_graph(mapper, path_of(name))
+        mapper.begin_session(start)
+        self._drop_work()
+        self.queue.clear()
+        self.mapper, self._published = mapper, False
+        if self._active:
+            self._begin(self._drawn())
+
+    def place(self, pose: Floats) -> None:
+        """Search the robot around a pose of the map, of shape (3,)."""
+        self._drop_work()
+        self.queue.clear()
+        self.mapper.begin_session(pose)
+
+    def grid(self) -> Grid | None:
+        """The current map; None if there is none."""
+        return self.mapper.occupancy.grid()
+
+    def map_message(self) -> Any | None:
+        """The map as nav_msgs/OccupancyGrid; None if there is none."""
+        grid = self.grid()
+        if grid is None:
+            return None
+        stamp = (
+            Time.from_nanoseconds(self._stamp_ns)
+            if self._stamp_ns is not None
+            else self.node.get_clock().now().to_msg()
+        )
+        return occupancy_message(grid, self.settings.map_frame, stamp)
+
+    # --- scans -------------------------------------------------------------------------------------------------------
+
+    def _on_scan(self, message: Any) -> None:
+        self._seen += 1
+        self._stamp_ns = message.header.stamp.nanoseconds
+        if self._seen % self.settings.throttle_scans == 0 and self._pending is None:
+            self._pending = (message, self.node.get_clock().now_ns())
+            self._look()
+
+    def _look(self) -> None:
+        """Take the waiting scan once its transform is known."""
+        if self._pending is None:
+            return
+        message, since_ns = self._pending
+        settings, stamp_ns = self.settings, message.header.stamp.nanoseconds
+        try:
+            base, _ = self._buffer.lookup(settings.odom_frame, settings.base_frame, stamp_ns)
+            laser, _ = self._buffer.lookup(settings.base_frame, message.header.frame_id, 0)
+        except TransformException as error:
+            if self.node.get_clock().now_ns() - since_ns >= settings.transform_timeout_ns:
+                self._pending = None
+                self.node.get_logger().warning(
+                    f"Failed to compute odom pose, scans are dropped: {error}", throttle_duration_sec=_COMPLAINTS
+                )
+            return
+        self._pending = None
+        self._queue_scan(message, _planar(base), laser)
+
+    def _queue_scan(self, message: Any, odometry: Floats, laser: Transform) -> None:
+        if self._taken is not None and self.node.get_parameter("paused_new_measurements").value:
+            return
+        busy = self._work is not None
+        if busy and not self._keeps_all:
+            return
+        since = (self.queue[-1][1], self.queue[-1][0].stamp_ns) if self.queue else None
+        if not self.mapper.wants(odometry, message.header.stamp.nanoseconds, since):
+            return
+        self.queue.append((self._scan_of(message, laser), odometry))
+        if len(self.queue) > _LONG_QUEUE:
+            self.node.get_logger().warning(
+                f"Queue size has grown to: {len(self.queue)}. Recommend stopping until message is gone if online "
+                "mapping.",
+                throttle_duration_sec=_COMPLAINTS,
+            )
+        if not busy:
+            self._begin_next()
+
+    def _scan_of(self, message: Any, laser: Transform) -> PlanarScan:
+        ranges = np.array(message.ranges, dtype=np.float64)
+        angles = message.angle_min + np.arange(len(ranges)) * message.angle_increment
+        mounting = np.array(rotation_matrix(laser[3:])), np.array(laser[:3])
+        limits = (message.range_min, message.range_max)
+        stamp_ns = message.header.stamp.nanoseconds
+        return planar_scan(ranges, angles, limits, self.settings.ranges, mounting, stamp_ns)
+
+    # --- work in steps -----------------------------------------------------------------------------------------------
+
+    def _begin_next(self) -> None:
+        if not self.queue:
+            return
+        scan, odometry = self.queue.popleft()
+        if self.localizes and not self.mapper.scans:
+            self.node.get_logger().error(
+                "There is no map to localise in: give map_file_name, or call slam_toolbox/deserialize_map",
+                throttle_duration_sec=_COMPLAINTS,
+            )
+            return
+        self._taken = odometry
+        self._begin(self.mapper.localize(scan, odometry) if self.localizes else self.mapper.process(scan, odometry))
+
+    def _begin(self, work: Steps[Any]) -> None:
+        self._work = work
+        self._next_step.trigger()
+
+    def _drop_work(self) -> None:
+        if self._work is not None:
+            self._work.close()
+            self._work = None
+
+    def _step(self) -> None:
+        if self._work is None:
+            return
+        try:
+            next(self._work)
+        except StopIteration as done:
+            self._work = None
+            if done.value is not None:
+                self._done(done.value)
+            elif not self._published:
+                self.publish_map()
+            if self._work is None:
+                self._begin_next()
+            return
+        self._next_step.trigger()
+
+    def _drawn(self) -> Steps[None]:
+        yield from self.mapper.redraw()
+
+    def _done(self, outcome: Outcome) -> None:
+        assert self._taken is not None, "a scan was taken"
+        self._map_to_odom = compose(outcome.pose, inverse(self._taken))
+        if outcome.loops:
+            self.node.get_logger().info(
+                f"closed a loop after {len(self.mapper.scans)} scans", throttle_duration_sec=_COMPLAINTS
+            )
+        message = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()
+        message.header.frame_id = self.settings.map_frame
+        message.header.stamp = Time.from_nanoseconds(self.mapper.latest_ns)
+        position, orientation = message.pose.pose.position, message.pose.pose.orientation
+        position.x, position.y = float(outcome.pose[0]), float(outcome.pose[1])
+        turn = quaternion_from_rpy((0.0, 0.0, float(outcome.pose[2])))
+        orientation.x, orientation.y, orientation.z, orientation.w = turn
+        cos, sin = np.cos(outcome.pose[2]), np.sin(outcome.pose[2])
+        axes = np.array(((cos, -sin), (sin, cos)))
+        covariance = np.zeros((6, 6))
+        covariance[:2, :2] = axes @ outcome.covariance[:2, :2] @ axes.T * self.settings.position_covariance_scale
+        covariance[5, 5] = outcome.covariance[2, 2] * self.settings.yaw_covariance_scale
+        message.pose.covariance = covariance.reshape(36)
+        self._poses.publish(message)
+        if not self._published:
+            self.publish_map()
+
+    # --- periodic publishing ------------------------------------------------------------------------------------------
+
+    def publish_map(self) -> None:
+        """Publish the map, its metadata, and the graph, if there is a map."""
+        message = self.map_message()
+        if message is None:
+            return
+        self._published = True
+        self._maps.publish(message)
+        self._sizes.publish(message.info)
+        if self._graphs.get_subscription_count():
+            self._graphs.publish(graph_markers(self.mapper.graph, self.settings.map_frame, message.header.stamp))
+
+    def _tick(self) -> None:
+        self._look()
+        if self._stamp_ns is None or not self.settings.transform_period:
+            return
+        x, y, yaw = (float(each) for each in self._map_to_odom)
+        pose: Transform = (x, y, 0.0, *quaternion_from_rpy((0.0, 0.0, yaw)))
+        settings, stamp_ns = self.settings, self._stamp_ns + self.settings.transform_timeout_ns
+        batch = TransformBatch((settings.map_frame,), (settings.odom_frame,), stamp_ns, np.array([pose]))
+        self._transforms.publish(TFMessage(batch=batch))
+
+    def _time_jumped(self) -> None:
+        if self._stamp_ns is not None:
+            self.node.get_logger().warning("Time has jumped back: the map starts from scratch.")
+        self._buffer.clear()
+        self._stamp_ns, self._taken = None, None
+        self.reset()
+
+    def pause(self, paused: bool) -> None:
+        """Pause taking scans, or resume."""
+        self.node.set_parameters([Parameter("paused_new_measurements", value=paused)])
+
+
+def _planar(pose: Transform) -> Floats:
+    """The planar pose of a pose in space."""
+    return np.array((pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]))

@@ -1,0 +1,112 @@
+"""smoother_server of nav2: smooths paths for the action ``smooth_path``.
+
+Parameters, topics and results are those of nav2, Humble and Jazzy. All types of smoothers are recognised, and all work
+as nav2's simple smoother does; a line is logged if the type has another method.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any, Final
+
+import numpy as np
+
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.graph.actions.goal import ServerGoalHandle
+from linkwright.graph.time.values import Duration
+from linkwright.messages import get_message
+from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, Costmap
+from linkwright.navigation.grids.library import load_scipy
+from linkwright.navigation.nodes.costmap_reading import costmap_of
+from linkwright.navigation.nodes.goals import GoalServer
+from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
+from linkwright.navigation.nodes.paths import path_message, poses_of
+from linkwright.navigation.nodes.plugins import declare_unread, declared, texts_of, type_of
+from linkwright.navigation.planning.smoothing import Smoothing, directions, smoothed
+
+_SIMPLE: Final = "nav2_smoother/SimpleSmoother"
+_USUAL: Final = {"simple_smoother": _SIMPLE}
+
+
+class SmootherNode(ManagedNode):
+    """smoother_server as a managed node."""
+
+    def declare(self) -> None:
+        """Declare the parameters of nav2 that do not belong to a smoother."""
+        self.declare_parameter("costmap_topic", "global_costmap/costmap_raw")
+        self.declare_parameter("footprint_topic", "global_costmap/published_footprint")
+        self.declare_parameter("robot_base_frame", "base_link")
+        self.declare_parameter("transform_tolerance", 0.1)
+        self.declare_parameter("action_server_result_timeout", 10.0)
+
+    def configure(self) -> None:
+        """Make the smoothers, the topics and the action server.
+
+        Raises:
+            LinkwrightError: NODE431, a smoother has no type; NAV101, SciPy is not installed.
+        """
+        load_scipy("linalg")
+        self._costmap: Costmap | None = None
+        names = texts_of(self, "smoother_plugins", ["simple_smoother"])
+        for name in names:
+            self._make(name)
+        self._smoothers = names
+        self.get_logger().info(f"Smoother Server has {' '.join(names)}  smoothers available.")
+        raw, path = get_message("nav2_msgs/msg/Costmap"), get_message("nav_msgs/msg/Path")
+        topic = self.get_parameter("costmap_topic").value
+        self.register(self.create_subscription(raw, topic, self._on_costmap, DESCRIPTION_QOS))
+        self._output = self.register(self.create_publisher(path, "plan_smoothed", 1))
+        self._goals = self.register(GoalServer(self, "nav2_msgs/action/SmoothPath", "smooth_path", self._smooth))
+
+    def _make(self, name: str) -> None:
+        kind = type_of(self, name, _USUAL)
+        declared(self, name, Smoothing)
+        declare_unread(self, name)
+        if kind != _SIMPLE:
+            self.get_logger().warning(f"there is no {kind} here: '{name}' smooths as {_SIMPLE} does")
+        self.get_logger().info(f"Created smoother : {name} of type {kind}")
+
+    def _on_costmap(self, message: Any) -> None:
+        self._costmap = costmap_of(message)
+
+    def _smooth(self, goal: ServerGoalHandle) -> None:
+        request, began_ns = goal.request, self.get_clock().now().nanoseconds
+        self.get_logger().info("Received a path to smooth.")
+        name = request.smoother_id or (self._smoothers[0] if len(self._smoothers) == 1 else "")
+        if name not in self._smoothers:
+            self._fail("INVALID_SMOOTHER", f"Invalid Smoother: {name}")
+        elif not len(request.path.poses):
+            self._fail("INVALID_PATH", "Requested path to smooth is invalid")
+        elif self._costmap is None:
+            self._fail("FAILED_TO_SMOOTH_PATH", "Costmap is not available")
+        else:
+            values = {field.name: self.get_parameter(f"{name}.{field.name}").value for field in fields(Smoothing)}
+            poses = poses_of(request.path.poses)
+            points, _ = smoothed(poses[:, :2], Smoothing(**values), self._costmap)
+            poses = np.column_stack((points, directions(points, poses[-1, 2])))
+            path = path_message(poses, request.path.header.frame_id, request.path.header.stamp)
+            self._output.publish(path)
+            self._hand_over(request, path, poses, began_ns)
+
+    def _hand_over(self, request: Any, path: Any, poses: Any, began_ns: int) -> None:
+        assert self._costmap is not None, "a path is smoothed on a costmap"
+        took = Duration(nanoseconds=self.get_clock().now().nanoseconds - began_ns).to_msg()
+        if request.check_for_collisions:
+            costs = self._costmap.cost_at(poses[:, :2], outside=LETHAL)
+            touching = np.flatnonzero((costs == LETHAL) | (costs == INSCRIBED))
+            if len(touching):
+                x, y, yaw = poses[touching[0]]
+                self._fail("SMOOTHED_PATH_IN_COLLISION", f"Smoothed Path collided at X: {x:f} Y: {y:f} Theta: {yaw:f}")
+                return
+        self._goals.succeed(path=path, smoothing_duration=took, was_completed=True)
+
+    def _fail(self, code: str, reason: str) -> None:
+        self.get_logger().error(reason)
+        self._goals.abort(code, reason)
+
+
+class SmootherServer(ManagedServer):
+    """The running node."""
+
+    NODE = SmootherNode
+    DEFAULT_NAME = "smoother_server"

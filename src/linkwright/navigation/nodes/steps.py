@@ -1,0 +1,179 @@
+"""Managed nodes that execute goals in steps, most of which are goals of other servers.
+
+The work is a generator: it runs once each cycle, and ``yield`` waits for the next. It returns when the goal is reached,
+raises `StepError` when it cannot be, and is closed when the goal is canceled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from typing import Any
+
+from linkwright.graph import ActionClient
+from linkwright.graph.actions.goal import GoalStatus
+from linkwright.navigation.nodes.goals import GoalError, GoalServer
+from linkwright.navigation.nodes.managed import ManagedNode
+
+Step = Generator[None, None, Any]
+"""A generator of work in steps, one each cycle."""
+
+_PERIOD = 0.05
+_SERVER_SECONDS = 5.0
+"""Seconds to wait for a response of another server."""
+
+
+class StepError(GoalError):
+    """A step failed.
+
+    Attributes:
+        is_final: whether it would fail again however often it is tried.
+    """
+
+    def __init__(self, code: str, reason: str, *, is_final: bool = False) -> None:
+        super().__init__(code, reason)
+        self.is_final = is_final
+
+
+class StepNode(ManagedNode):
+    """A node that works on one goal at a time, in steps."""
+
+    _work: Step | None = None
+    _server: GoalServer | None = None
+
+    def work_on(self, server: GoalServer, work: Step) -> None:
+        """Start with the goal of a server, and end the work on another one."""
+        self._stop()
+        if self._server is not None and self._server is not server:
+            self._server.abort("UNKNOWN", "another goal took its place")
+        self._server, self._work = server, work
+        self.begin_cycles(_PERIOD, self._cycle)
+
+    def publish_feedback(self, server: GoalServer) -> None:
+        """Publish the feedback of the goal; called each cycle."""
+
+    def result(self) -> dict[str, Any]:
+        """The fields of the result."""
+        return {}
+
+    def deactivate(self) -> None:
+        """End the work, and refuse goals."""
+        self._stop()
+        if self._server is not None:
+            self._server.abort("UNKNOWN", "the server was deactivated", **self.result())
+
+    def cleanup(self) -> None:
+        """End the work."""
+        self._stop()
+        self._server = None
+
+    def asked(self, client: ActionClient, goal: Any, complaint: str) -> Step:
+        """Send a goal to another server and wait for its result; the goal is canceled when this is closed.
+
+        Raises:
+            StepError: there is no such server, or it did not reach the goal.
+        """
+        if not client.server_is_ready():
+            raise StepError("UNKNOWN", f"{complaint}: there is no action {client.action_name}")
+        sent = Sent(client, goal)
+        try:
+            while not sent.is_over:
+                yield
+        finally:
+            sent.cancel()
+        if sent.has_failed:
+            raise StepError("UNKNOWN", sent.reason(complaint))
+        return sent.result
+
+    def until(self, is_done: Callable[[], bool], what: str) -> Step:
+        """Wait for a response.
+
+        Raises:
+            StepError: it does not arrive.
+        """
+        limit_ns = self.now_ns() + round(_SERVER_SECONDS * 1e9)
+        while not is_done():
+            if self.now_ns() > limit_ns:
+                raise StepError("UNKNOWN", f"{what} does not answer")
+            yield
+
+    def _cycle(self) -> None:
+        """Run the next step."""
+        server, work = self._server, self._work
+        if server is None or work is None:
+            self._stop()
+            return
+        if server.is_canceled:
+            self.get_logger().info("Goal canceled")
+            self._stop()
+            server.canceled(**self.result())
+            return
+        try:
+            next(work)
+        except StopIteration:
+            self.get_logger().info("Goal succeeded")
+            self._stop()
+            server.succeed(**self.result())
+        except StepError as failure:
+            self.get_logger().error(f"Goal failed: {failure}")
+            self._stop()
+            server.abort(failure.code, str(failure), **self.result())
+        else:
+            self.publish_feedback(server)
+
+    def _stop(self) -> None:
+        """End the work; goals at other servers are canceled."""
+        work, self._work = self._work, None
+        if work is not None:
+            work.close()
+        self.end_cycles()
+
+
+class Sent:
+    """A goal at another server."""
+
+    def __init__(self, client: ActionClient, goal: Any) -> None:
+        self._handle: Any = None
+        self._answer: Any = None
+        self._dropped = False
+        self.result: Any = None
+        client.send_goal_async(goal).add_done_callback(self._accepted)
+
+    def _accepted(self, future: Any) -> None:
+        self._handle = future.result()
+        if not self._handle.accepted:
+            return
+        if self._dropped:
+            self._handle.cancel_goal_async()
+            return
+        self._handle.get_result_async().add_done_callback(self._ended)
+
+    def _ended(self, future: Any) -> None:
+        self._answer = future.result()
+        self.result = self._answer.result
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it was rejected or has ended."""
+        return self._answer is not None or (self._handle is not None and not self._handle.accepted)
+
+    @property
+    def has_succeeded(self) -> bool:
+        """Whether it succeeded."""
+        return self._answer is not None and self._answer.status == GoalStatus.SUCCEEDED
+
+    @property
+    def has_failed(self) -> bool:
+        """Whether it has ended without success."""
+        return self.is_over and not self.has_succeeded
+
+    def reason(self, usual: str) -> str:
+        """The reason of its failure from the server (Jazzy), else a usual one."""
+        message = getattr(self.result, "error_msg", "")
+        return f"{usual}: {message}" if message else usual
+
+    def cancel(self) -> None:
+        """Cancel it, unless it has ended."""
+        if not self.is_over:
+            self._dropped = True
+            if self._handle is not None:
+                self._handle.cancel_goal_async()

@@ -1,0 +1,228 @@
+"""velocity_smoother of nav2: forwards ``cmd_vel`` within limits to ``cmd_vel_smoothed``.
+
+A managed node; parameters, defaults and rules are those of nav2. Deliberate differences: unless
+``enable_stamped_cmd_vel`` is set it accepts Twist and TwistStamped, and publishes the type that subscribers expect; and
+it stops the robot, with a log line, when it is deactivated or the commanding publisher is lost.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from typing import Any
+
+from linkwright.diagnostics import Phrase, joined, phrase
+from linkwright.graph import Parameter, ParameterType, SetParametersResult, Subscription
+from linkwright.graph.endpoints.commander import Commander, who_was_lost
+from linkwright.graph.endpoints.drivers import DriverWatch
+from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
+from linkwright.messages import get_message
+from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
+from linkwright.navigation.nodes.velocity_smoothing import Limits, smoothed
+from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
+
+_DEPTH = 10
+_NANOSECONDS = 1e9
+_AXES = tuple((part, axis) for part in ("linear", "angular") for axis in "xyz")
+_PLANAR = (0, 1, 5)
+"""The axes of limits with three entries: x, y and yaw."""
+_LIMITS = {
+    "max_velocity": [0.5, 0.0, 2.5],
+    "min_velocity": [-0.5, 0.0, -2.5],
+    "max_accel": [2.5, 0.0, 3.2],
+    "max_decel": [-2.5, 0.0, -3.2],
+    "deadband_velocity": [0.0, 0.0, 0.0],
+}
+
+
+class _ManagedSmoother(ManagedNode):
+    """velocity_smoother as a managed node."""
+
+    def declare(self) -> None:
+        """Declare the parameters of nav2."""
+        self._output: VelocityTopic | None = None
+        self._command: list[float] | None = None
+        self._commanded_ns = 0
+        self._last = [0.0] * len(_AXES)
+        self._stopped = False
+        self._measured: deque[tuple[int, list[float]]] = deque()
+        self.declare_parameter("smoothing_frequency", 20.0)
+        self.declare_parameter("feedback", "OPEN_LOOP")
+        self.declare_parameter("scale_velocities", False)
+        for name, value in _LIMITS.items():
+            self.declare_parameter(name, value)
+        self.declare_parameter("odom_topic", "odom")
+        self.declare_parameter("odom_duration", 0.1)
+        self.declare_parameter("velocity_timeout", 1.0)
+        self.declare_parameter("use_realtime_priority", False)
+        self._stamped: bool | None = self.declare_parameter("enable_stamped_cmd_vel", ParameterType.BOOL).value
+        self.add_on_set_parameters_callback(self._check)
+        self.add_post_set_parameters_callback(lambda _: self._follow())
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Configure it unless its parameters contradict each other."""
+        problem = self._problem({})
+        if problem is not None:
+            self.get_logger().error(str(problem))
+            return TransitionCallbackReturn.FAILURE
+        return super().on_configure(state)
+
+    def configure(self) -> None:
+        """Read the parameters and make the topics."""
+        self._read()
+        stamped = self._stamped
+        self._output = VelocityTopic(self, "cmd_vel_smoothed", stamped)
+        commander = Commander(self._lose, DriverWatch.of(self))
+        for kind in velocity_types(self, "cmd_vel", stamped):
+            heard: Subscription[Any] = self.create_subscription(
+                kind, "cmd_vel", commander.taking(self._receive), _DEPTH
+            )
+            commander.watch(self.register(heard))
+        if self._value("feedback") == "CLOSED_LOOP":
+            odometry = get_message("nav_msgs/msg/Odometry")
+            self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
+
+    def activate(self) -> None:
+        """Start to publish."""
+        self.begin_cycles(1.0 / self._frequency, self._smooth)
+
+    def deactivate(self) -> None:
+        """Stop, and publish nothing more."""
+        self.end_cycles()
+        if self._output is not None and any(self._last):
+            self._output.stop()
+        self._last, self._command = [0.0] * len(_AXES), None
+
+    def cleanup(self) -> None:
+        """Remove the topics."""
+        self.end_cycles()
+        if self._output is not None:
+            self._output.close()
+            self._output = None
+
+    def _value(self, name: str) -> Any:
+        return self.get_parameter(name).value
+
+    def _read(self) -> None:
+        self._frequency: float = self._value("smoothing_frequency")
+        self._scaled: bool = self._value("scale_velocities")
+        self._closed: bool = self._value("feedback") == "CLOSED_LOOP"
+        self._timeout: float = self._value("velocity_timeout")
+        self._duration: float = self._value("odom_duration")
+        columns = [list(self._value(name)) for name in _LIMITS]
+        if len(columns[0]) == len(_PLANAR):  # x, y and yaw
+            columns = [_spread(column) for column in columns]
+        self._limits = [Limits(least, most, *rest) for most, least, *rest in zip(*columns, strict=True)]
+
+    def _check(self, parameters: list[Parameter]) -> SetParametersResult:
+        problem = self._problem({parameter.name: parameter.value for parameter in parameters})
+        return SetParametersResult(successful=problem is None, reason="" if problem is None else str(problem))
+
+    def _follow(self) -> None:
+        """Apply changed parameters while it is active; the topics stay as configured."""
+        if self._output is not None:
+            before = self._frequency
+            self._read()
+            if self.is_cycling and before != self._frequency:
+                self.begin_cycles(1.0 / self._frequency, self._smooth)
+
+    def _problem(self, changed: Mapping[str, Any]) -> Phrase | None:
+        """The problem of the parameters after a change."""
+
+        def value(name: str) -> Any:
+            return changed.get(name, self._value(name))
+
+        if not value("smoothing_frequency") > 0.0:
+            return phrase("smoothing_frequency must be more than 0")
+        if value("feedback") not in ("OPEN_LOOP", "CLOSED_LOOP"):
+            return phrase(
+                "feedback must be OPEN_LOOP or CLOSED_LOOP, and it is '{feedback}'", feedback=value("feedback")
+            )
+        lengths = {len(value(name)) for name in _LIMITS}
+        if lengths not in ({len(_PLANAR)}, {len(_AXES)}):
+            return phrase("{names} must all have 3 entries (x, y, yaw) or all 6", names=joined(list(_LIMITS)))
+        for name, sign in (("max_velocity", 1), ("min_velocity", -1), ("max_accel", 1), ("max_decel", -1)):
+            if any(each * sign < 0.0 for each in value(name)):
+                return (
+                    phrase("{name} must not be negative", name=name)
+                    if sign > 0
+                    else phrase("{name} must not be positive", name=name)
+                )
+        return None
+
+    def _receive(self, message: Any) -> None:
+        stamped = hasattr(message, "twist")
+        twist = message.twist if stamped else message
+        values = _values(twist)
+        if not all(map(isfinite, values)):
+            self.get_logger().error("Velocity message contains NaNs or Infs! Ignoring as invalid!")
+            return
+        assert self._output is not None, "it is configured"
+        if not any(self._last):
+            self._output.review()
+        self._output.frame_id = message.header.frame_id if stamped else ""
+        self._command = values
+        self._commanded_ns = self.get_clock().now().nanoseconds
+
+    def _rest(self) -> None:
+        """Decelerate to zero when commands time out."""
+        if self._command is not None and any(self._command):
+            self._command = [0.0] * len(_AXES)
+            self.get_logger().info(
+                phrase(
+                    "no command for {seconds:g} s (velocity_timeout), and the last one was not a stop: the "
+                    "robot is stopped",
+                    seconds=self._timeout,
+                )
+            )
+
+    def _lose(self, publisher: EndpointInfo) -> None:
+        """Decelerate to zero when the publisher of commands is lost."""
+        if self._command is not None and any(self._command):
+            self._command = [0.0] * len(_AXES)
+            self.get_logger().warning(phrase("{who}: the robot is stopped", who=who_was_lost(publisher)))
+
+    def _on_odometry(self, message: Any) -> None:
+        now = self.get_clock().now().nanoseconds
+        self._measured.append((now, _values(message.twist.twist)))
+        while now - self._measured[0][0] > self._duration * _NANOSECONDS:
+            self._measured.popleft()
+
+    def _smooth(self) -> None:
+        if self._command is None:
+            return
+        if (self.get_clock().now().nanoseconds - self._commanded_ns) / _NANOSECONDS > self._timeout:
+            if self._stopped or not any(self._last):
+                self._stopped = True
+                return
+            self._rest()
+        self._stopped = False
+        now = self._last
+        if self._closed:
+            seen = [values for _, values in self._measured] or [[0.0] * len(_AXES)]
+            now = [sum(column) / len(seen) for column in zip(*seen, strict=True)]
+        self._last = smoothed(self._limits, now, self._command, 1.0 / self._frequency, scaled=self._scaled)
+        quiet = [axis.quiet(speed) for axis, speed in zip(self._limits, self._last, strict=True)]
+        assert self._output is not None, "it is configured"
+        self._output.publish(quiet[:3], quiet[3:])
+
+
+class VelocitySmoother(ManagedServer):
+    """The running node; ``autostart_node`` has it configure and activate itself, where no lifecycle manager does."""
+
+    NODE = _ManagedSmoother
+    DEFAULT_NAME = "velocity_smoother"
+
+
+def _values(twist: Any) -> list[float]:
+    return [float(getattr(getattr(twist, part), axis)) for part, axis in _AXES]
+
+
+def _spread(column: Sequence[float]) -> list[float]:
+    """Limits of x, y and yaw as those of all six axes; the other three are 0."""
+    spread = [0.0] * len(_AXES)
+    for axis, value in zip(_PLANAR, column, strict=True):
+        spread[axis] = value
+    return spread

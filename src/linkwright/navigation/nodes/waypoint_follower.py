@@ -1,0 +1,100 @@
+"""waypoint_follower of nav2: navigates to poses one after the other and waits at each (``follow_waypoints``).
+
+Deliberate differences: of the tasks at waypoints there is the waiting; others are left out with a line.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.graph import ActionClient
+from linkwright.graph.actions.goal import ServerGoalHandle
+from linkwright.messages import get_action, get_message, is_before_iron
+from linkwright.navigation.nodes.goals import GoalServer
+from linkwright.navigation.nodes.managed import ManagedServer
+from linkwright.navigation.nodes.plugins import type_of, value_of
+from linkwright.navigation.nodes.steps import Step, StepError, StepNode
+
+_WAITING = "nav2_waypoint_follower/WaitAtWaypoint"
+
+
+class WaypointNode(StepNode):
+    """waypoint_follower as a managed node."""
+
+    def declare(self) -> None:
+        """Declare the parameters of nav2."""
+        self.declare_parameter("stop_on_failure", True)
+        self.declare_parameter("loop_rate", 20)
+        self.declare_parameter("global_frame_id", "map")
+        self.declare_parameter("action_server_result_timeout", 900.0)
+        self.declare_parameter("waypoint_task_executor_plugin", "wait_at_waypoint")
+        self._missed: list[Any] = []
+        self._index = 0
+
+    def configure(self) -> None:
+        """Offer the action.
+
+        Raises:
+            LinkwrightError: a parameter has another type.
+        """
+        task = str(self.get_parameter("waypoint_task_executor_plugin").value)
+        kind = type_of(self, task, {"wait_at_waypoint": _WAITING})
+        self._pause = 0.0
+        if kind == _WAITING:
+            is_on = bool(value_of(self, f"{task}.enabled", True))
+            self._pause = int(value_of(self, f"{task}.waypoint_pause_duration", 0)) / 1000.0 if is_on else 0.0
+        else:
+            self.get_logger().warning(f"{task}: there is no {kind} here; nothing is done at waypoints")
+        self._navigation = self.register(ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose"))
+        kind = "nav2_msgs/action/FollowWaypoints"
+        self._waypoints = self.register(GoalServer(self, kind, "follow_waypoints", self._start))
+
+    def publish_feedback(self, server: GoalServer) -> None:
+        """Publish the feedback of the goal."""
+        server.feedback(current_waypoint=self._index)
+
+    def result(self) -> dict[str, Any]:
+        """The missed waypoints."""
+        return {"missed_waypoints": self._missed}
+
+    def _start(self, goal: ServerGoalHandle) -> None:
+        self._missed, self._index = [], 0
+        self.get_logger().info(f"Received follow waypoint request with {len(goal.request.poses)} waypoints.")
+        self.work_on(self._waypoints, self._follow(goal.request))
+
+    def _follow(self, goal: Any) -> Step:
+        if not goal.poses:
+            raise StepError("UNKNOWN", "there are no waypoints")
+        first = getattr(goal, "goal_index", 0)
+        for turn in range(getattr(goal, "number_of_loops", 0) + 1):
+            for index in range(first if turn == 0 else 0, len(goal.poses)):
+                self._index = index
+                yield from self._go_to(goal.poses[index])
+        self.get_logger().info(f"Completed all {len(goal.poses)} waypoints requested.")
+
+    def _go_to(self, pose: Any) -> Step:
+        goal = get_action("nav2_msgs/action/NavigateToPose").Goal(pose=pose)
+        try:
+            yield from self.asked(self._navigation, goal, f"waypoint {self._index} was not reached")
+        except StepError as failure:
+            self._missed.append(self._miss(pose, str(failure)))
+            if self.get_parameter("stop_on_failure").value:
+                raise
+            self.get_logger().warning(f"{failure}; moving to next")
+            return
+        until_ns = self.now_ns() + round(self._pause * 1e9)
+        while self.now_ns() < until_ns:
+            yield
+
+    def _miss(self, pose: Any, reason: str) -> Any:
+        """A missed waypoint as results have it: Humble's by its index."""
+        if is_before_iron():
+            return self._index
+        return get_message("nav2_msgs/msg/MissedWaypoint")(index=self._index, goal=pose, error_msg=reason)
+
+
+class WaypointFollower(ManagedServer):
+    """The running node."""
+
+    DEFAULT_NAME = "waypoint_follower"
+    NODE = WaypointNode

@@ -1,5 +1,0 @@
-"""foxglove_bridge: the graph over a WebSocket, by the protocol of Foxglove and Lichtblick."""
-
-from linkwright.nodes.foxglove.bridge import FoxgloveBridge
-
-__all__ = ["FoxgloveBridge"]

@@ -1,0 +1,112 @@
+"""depthimage_to_laserscan_node: a laser scan from the middle rows of a depth image.
+
+Source: depthimage_to_laserscan 2.5 (ROS 2 Humble).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.graph import SENSOR_DATA_QOS, Graph
+from linkwright.messages import get_message
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import log_unknown, positive
+from linkwright.perception.nodes.lazy import LazySubscriptions
+from linkwright.perception.scans.projection import Pinhole, scan_of_depths
+
+_METRES_OF_16UC1 = 0.001
+_SECONDS_BETWEEN_COMPLAINTS = 5.0
+
+
+class DepthImageToLaserScan(SingleNode):
+    """The running node.
+
+    Raises:
+        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+    """
+
+    DEFAULT_NAME = "depthimage_to_laserscan"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        node = self._node
+        self._camera: Pinhole | None = None
+        with starting(node):
+            self._scan_time: float = node.declare_parameter("scan_time", 0.033).value
+            self._range_min: float = node.declare_parameter("range_min", 0.45).value
+            self._range_max: float = node.declare_parameter("range_max", 10.0).value
+            self._height = int(positive(node, "scan_height", node.declare_parameter("scan_height", 1).value))
+            self._frame: str = node.declare_parameter("output_frame", "camera_depth_frame").value
+            log_unknown(node)
+        self._publisher = node.create_publisher(get_message("sensor_msgs/msg/LaserScan"), "scan", 10)
+        self._lazy = LazySubscriptions(
+            graph,
+            node,
+            [self._publisher],
+            lambda: [
+                node.create_subscription(
+                    get_message("sensor_msgs/msg/CameraInfo"), "depth_camera_info", self._see_camera, SENSOR_DATA_QOS
+                ),
+                node.create_subscription(get_message("sensor_msgs/msg/Image"), "depth", self._receive, SENSOR_DATA_QOS),
+            ],
+        )
+
+    def close(self) -> None:
+        """End it."""
+        self._lazy.close()
+        super().close()
+
+    def _see_camera(self, message: Any) -> None:
+        focal_length, centre_column, centre_row = message.p[0], message.p[2], message.p[6]
+        if not focal_length:
+            focal_length, centre_column, centre_row = message.k[0], message.k[2], message.k[5]
+        if focal_length:
+            self._camera = Pinhole(float(focal_length), float(centre_column), float(centre_row))
+
+    def _receive(self, image: Any) -> None:
+        if self._camera is None:
+            self._complain("no camera_info with a focal length has arrived")
+            return
+        try:
+            depths = depths_of(image)
+            ranges, rays = scan_of_depths(depths, self._camera, self._height, self._range_min, self._range_max)
+        except ValueError as error:
+            self._complain(str(error))
+            return
+        scan = get_message("sensor_msgs/msg/LaserScan")()
+        scan.header.stamp = image.header.stamp
+        scan.header.frame_id = self._frame or image.header.frame_id
+        scan.angle_min, scan.angle_max, scan.angle_increment = rays.angle_min, rays.angle_max, rays.angle_increment
+        scan.range_min, scan.range_max, scan.scan_time = rays.range_min, rays.range_max, self._scan_time
+        scan.ranges = ranges
+        self._publisher.publish(scan)
+
+    def _complain(self, reason: str) -> None:
+        self._node.get_logger().error(
+            f"Could not convert depth image to laserscan: {reason}", throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS
+        )
+
+
+def depths_of(image: Any) -> NDArray[np.float64]:
+    """Return the depths of a sensor_msgs/msg/Image, shape (rows, columns), metres; NaN for pixels without one.
+
+    Raises:
+        ValueError: it is not a depth image, or has too little data.
+    """
+    kinds = {"16UC1": "u2", "mono16": "u2", "32FC1": "f4"}
+    kind = kinds.get(image.encoding)
+    if kind is None:
+        raise ValueError(f"Depth image has unsupported encoding: {image.encoding}")
+    order = ">" if image.is_bigendian else "<"
+    data = np.frombuffer(bytes(image.data), np.uint8)
+    width = np.dtype(kind).itemsize * image.width
+    if image.step < width or len(data) < image.step * image.height:
+        raise ValueError(f"the image has {len(data)} bytes, not {image.height} rows of {width}")
+    rows = data[: image.step * image.height].reshape(image.height, image.step)[:, :width]
+    numbers = np.ascontiguousarray(rows).view(order + kind).reshape(image.height, image.width)
+    if kind == "u2":
+        return np.where(numbers > 0, numbers * _METRES_OF_16UC1, np.nan)
+    return numbers.astype(np.float64)

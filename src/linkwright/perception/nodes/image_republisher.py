@@ -1,0 +1,126 @@
+"""republish of image_transport: converts images between the transports raw, compressed and compressedDepth.
+
+Sources: image_transport 3.1 (ROS 2 Humble) and later, compressed_image_transport, compressed_depth_image_transport. The
+transport of the input comes from the first word or the parameter ``in_transport``, that of the output likewise; without
+one there are all. The topics are ``in`` and ``out`` with the name of the transport behind them, and remappings of
+either form count: ``in:=/camera/image_raw``, as Jazzy takes them, and ``in/compressed:=...``, as Humble does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+from linkwright.diagnostics import install_hint
+from linkwright.graph import DEFAULT_QOS, Graph, Node, Publisher, Subscription
+from linkwright.messages import get_message
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import bad_value, log_unknown, options_from_words, words_of
+from linkwright.perception.nodes.image_transports import (
+    BadImageError,
+    compressed_depth,
+    compressed_image,
+    plain_depth,
+    plain_image,
+)
+from linkwright.perception.nodes.lazy import LazySubscriptions
+
+_IMAGE, _COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
+_TRANSPORTS = ("raw", "compressed", "compressedDepth")
+_SECONDS_BETWEEN_COMPLAINTS = 5.0
+
+
+def _as_it_is(image: Any) -> Any:
+    return image
+
+
+_UNPACKED: dict[str, Callable[[Any], Any]] = {
+    "raw": _as_it_is,
+    "compressed": plain_image,
+    "compressedDepth": plain_depth,
+}
+_PACKED: dict[str, Callable[[Any], Any]] = {
+    "raw": _as_it_is,
+    "compressed": compressed_image,
+    "compressedDepth": compressed_depth,
+}
+
+
+class ImageRepublisher(SingleNode):
+    """The running republish.
+
+    Raises:
+        LinkwrightError: there is no such transport (NODE433), or more words than two (NODE432).
+    """
+
+    DEFAULT_NAME = "image_republisher"
+    USAGE = "republish IN_TRANSPORT [OUT_TRANSPORT] --ros-args -r in:=... -r out:=..."
+    WORDS: ClassVar[dict[str, Callable[[str], Any]]] = {"in_transport": str, "out_transport": str}
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        options = options_from_words(options, words_of(options), self.WORDS, self.USAGE)
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        with starting(self._node):
+            self._source = self._transport("in_transport", "raw")
+            result = self._transport("out_transport", "")
+            log_unknown(self._node)
+        self._publishers: dict[str, Publisher[Any]] = {}
+        for transport in [result] if result else _TRANSPORTS:
+            topic = topic_of(self._node, "out", transport)
+            self._publishers[transport] = self._node.create_publisher(_type_of(transport), topic, DEFAULT_QOS)
+        self._lazy = LazySubscriptions(graph, self._node, list(self._publishers.values()), self._subscribe)
+
+    def close(self) -> None:
+        """End it."""
+        self._lazy.close()
+        super().close()
+
+    def _transport(self, parameter: str, default: str) -> str:
+        name: str = self._node.declare_parameter(parameter, default).value
+        if name not in (*_TRANSPORTS, default):
+            raise bad_value(parameter, name, self._node.get_name(), _TRANSPORTS)
+        return name
+
+    def _subscribe(self) -> list[Subscription[Any]]:
+        topic = topic_of(self._node, "in", self._source)
+        return [self._node.create_subscription(_type_of(self._source), topic, self._receive, DEFAULT_QOS)]
+
+    def _receive(self, message: Any) -> None:
+        wanted = [name for name, publisher in self._publishers.items() if publisher.get_subscription_count()]
+        if wanted == [self._source]:
+            self._publishers[self._source].publish(message)
+            return
+        try:
+            image = _UNPACKED[self._source](message)
+            for transport in wanted:
+                self._send(transport, image)
+        except ModuleNotFoundError:
+            self._complain(f"images are packed and unpacked by Pillow; {install_hint('image')}")
+        except BadImageError as error:
+            self._complain(str(error))
+
+    def _send(self, transport: str, image: Any) -> None:
+        made = _PACKED[transport](image)
+        if made is not None:
+            self._publishers[transport].publish(made)
+        elif len(self._publishers) == 1:
+            self._complain(f"{transport} has no images of {image.encoding}")
+
+    def _complain(self, reason: str) -> None:
+        self._node.get_logger().error(
+            f"An image cannot be republished: {reason}", throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS
+        )
+
+
+def topic_of(node: Node, base: str, transport: str) -> str:
+    """The name of a transport's topic: the remapped base with the transport behind it."""
+    if transport == "raw":
+        return base
+    resolved = node.resolve_topic_name(base)
+    if resolved != node.resolve_topic_name(base, only_expand=True):
+        return f"{resolved}/{transport}"
+    return f"{base}/{transport}"
+
+
+def _type_of(transport: str) -> Any:
+    return get_message(_IMAGE if transport == "raw" else _COMPRESSED)

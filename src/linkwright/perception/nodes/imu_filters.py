@@ -1,0 +1,226 @@
+"""imu_filter_madgwick_node and complementary_filter_node of imu_tools: orientation from rates and accelerations.
+
+Sources: imu_filter_madgwick and imu_complementary_filter 2.1 (ROS 2 Humble): topics, parameters, defaults. Each IMU
+message is paired with the latest magnetometer message; the originals match stamps.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from math import isfinite
+from typing import Any, Protocol
+
+import numpy as np
+
+from linkwright.geometry.single import (
+    Quaternion,
+    quaternion_from_rpy,
+    quaternion_inverse,
+    quaternion_multiply,
+    rotate,
+    rpy_from_quaternion,
+)
+from linkwright.geometry.vectors import Vector3
+from linkwright.graph import SENSOR_DATA_QOS, TF_QOS, Graph
+from linkwright.messages import TFMessage, TransformBatch, get_message
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import bad_value, log_unknown
+from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, World, attitude
+
+_DEPTH = 5
+
+
+class _Filter(Protocol):
+    orientation: Quaternion
+
+    def update(self, rates: Vector3, acceleration: Vector3, magnetic: Vector3 | None, seconds: float) -> None: ...
+
+
+class _ImuFilter(SingleNode, ABC):
+    """The base of both: topics, transform, and the time between measurements."""
+
+    _USES_MAGNETOMETER: bool
+    _PUBLISHES_TF: bool
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        node = self._node
+        self._last_ns: int | None = None
+        self._magnetic: Vector3 | None = None
+        with starting(node):
+            declare = node.declare_parameter
+            self._use_mag: bool = declare("use_mag", self._USES_MAGNETOMETER).value
+            self._publish_tf: bool = declare("publish_tf", self._PUBLISHES_TF).value
+            self._reverse_tf: bool = declare("reverse_tf", False).value
+            self._fixed_frame: str = declare("fixed_frame", "odom").value
+            self._constant_s: float = declare("constant_dt", 0.0).value
+            self._debug: bool = declare("publish_debug_topics", False).value
+            deviation: float = declare("orientation_stddev", 0.0).value
+            self._covariance = np.eye(3).reshape(9) * deviation**2
+            if not self._constant_s >= 0.0:
+                raise bad_value("constant_dt", self._constant_s, node.get_name())
+            self._filter = self._make()
+            log_unknown(node)
+        kind, vector = get_message("sensor_msgs/msg/Imu"), get_message("geometry_msgs/msg/Vector3Stamped")
+        self._publisher = node.create_publisher(kind, "imu/data", _DEPTH)
+        self._tf_publisher = node.create_publisher(TFMessage, "/tf", TF_QOS) if self._publish_tf else None
+        self._rpy_publisher = node.create_publisher(vector, "imu/rpy/filtered", _DEPTH) if self._debug else None
+        node.create_subscription(kind, "imu/data_raw", self._receive, SENSOR_DATA_QOS)
+        if self._use_mag:
+            node.create_subscription(
+                get_message("sensor_msgs/msg/MagneticField"), "imu/mag", self._receive_magnetic, SENSOR_DATA_QOS
+            )
+
+    @abstractmethod
+    def _make(self) -> _Filter:
+        """Make the filter from the rest of the parameters."""
+
+    def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
+        """Initialise the orientation; whether that succeeded."""
+        return True
+
+    def _published(self, orientation: Quaternion) -> Quaternion:
+        return orientation
+
+    def _felt(self, acceleration: Vector3) -> Vector3:
+        """The acceleration to be published."""
+        return acceleration
+
+    def _receive_magnetic(self, message: Any) -> None:
+        field = message.magnetic_field
+        if all(isfinite(component) for component in (field.x, field.y, field.z)):
+            self._magnetic = self._compensated((field.x, field.y, field.z))
+
+    def _compensated(self, magnetic: Vector3) -> Vector3:
+        return magnetic
+
+    def _receive(self, message: Any) -> None:
+        if self._use_mag and self._magnetic is None:
+            return
+        rates, felt = message.angular_velocity, message.linear_acceleration
+        turn, acceleration = (rates.x, rates.y, rates.z), (felt.x, felt.y, felt.z)
+        if not all(isfinite(component) for component in (*turn, *acceleration)):
+            return
+        stamp_ns: int = message.header.stamp.nanoseconds
+        if self._last_ns is None and not self._begin(acceleration, self._magnetic):
+            self._node.get_logger().warning(
+                "The IMU seems to be in free fall, cannot determine gravity direction!", throttle_duration_sec=5.0
+            )
+            return
+        seconds = self._constant_s or (0.0 if self._last_ns is None else (stamp_ns - self._last_ns) / 1e9)
+        self._last_ns = stamp_ns
+        if seconds >= 0.0:  # less after a jump of simulated time
+            self._filter.update(turn, acceleration, self._magnetic, seconds)
+        self._publish(message, acceleration)
+
+    def _publish(self, message: Any, acceleration: Vector3) -> None:
+        result = get_message("sensor_msgs/msg/Imu")(header=message.header)
+        result.angular_velocity = message.angular_velocity
+        result.angular_velocity_covariance = message.angular_velocity_covariance
+        result.linear_acceleration_covariance = message.linear_acceleration_covariance
+        felt = result.linear_acceleration
+        felt.x, felt.y, felt.z = self._felt(acceleration)
+        turned = self._published(self._filter.orientation)
+        quaternion = result.orientation
+        quaternion.x, quaternion.y, quaternion.z, quaternion.w = turned
+        result.orientation_covariance = self._covariance
+        self._publisher.publish(result)
+        if self._tf_publisher is not None:
+            self._tf_publisher.publish(TFMessage(batch=self._transform(message.header)))
+        if self._rpy_publisher is not None:
+            angles = get_message("geometry_msgs/msg/Vector3Stamped")(header=message.header)
+            angles.vector.x, angles.vector.y, angles.vector.z = rpy_from_quaternion(turned)
+            self._rpy_publisher.publish(angles)
+
+    def _transform(self, header: Any) -> TransformBatch:
+        parent, child, turn = self._fixed_frame, header.frame_id, self._filter.orientation
+        if self._reverse_tf:
+            parent, child, turn = child, parent, quaternion_inverse(turn)
+        return TransformBatch((parent,), (child,), header.stamp.nanoseconds, np.array([[0.0, 0.0, 0.0, *turn]]))
+
+
+class MadgwickNode(_ImuFilter):
+    """The running imu_filter_madgwick_node.
+
+    Raises:
+        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+    """
+
+    DEFAULT_NAME = "imu_filter_madgwick"
+    _USES_MAGNETOMETER = True
+    _PUBLISHES_TF = True
+
+    def _make(self) -> MadgwickFilter:
+        declare = self._node.declare_parameter
+        name: str = declare("world_frame", "enu").value
+        if name not in [world.value for world in World]:
+            raise bad_value("world_frame", name, self._node.get_name(), [world.value for world in World])
+        self._world = World(name)
+        self._stateless: bool = declare("stateless", False).value
+        self._remove_gravity: bool = declare("remove_gravity_vector", False).value
+        offset: float = declare("yaw_offset", 0.0).value - declare("declination", 0.0).value
+        self._offset = quaternion_from_rpy((0.0, 0.0, offset))
+        bias = [float(declare(f"mag_bias_{axis}", 0.0).value) for axis in "xyz"]
+        self._bias = (bias[0], bias[1], bias[2])
+        return MadgwickFilter(declare("gain", 0.1).value, declare("zeta", 0.0).value, self._world)
+
+    def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
+        first = attitude(acceleration, magnetic, self._world)
+        if first is None:
+            return False
+        self._filter.orientation = first
+        return True
+
+    def _receive(self, message: Any) -> None:
+        if self._stateless:
+            self._last_ns = None  # each measurement is a first one
+        super()._receive(message)
+
+    def _compensated(self, magnetic: Vector3) -> Vector3:
+        x, y, z = (seen - bias for seen, bias in zip(magnetic, self._bias, strict=True))
+        return x, y, z
+
+    def _published(self, orientation: Quaternion) -> Quaternion:
+        return quaternion_multiply(self._offset, orientation)
+
+    def _felt(self, acceleration: Vector3) -> Vector3:
+        if not self._remove_gravity:
+            return acceleration
+        rest = rotate(quaternion_inverse(self._filter.orientation), (0.0, 0.0, GRAVITY * self._world.up))
+        x, y, z = (felt - gravity for felt, gravity in zip(acceleration, rest, strict=True))
+        return x, y, z
+
+
+class ComplementaryNode(_ImuFilter):
+    """The running complementary_filter_node.
+
+    Raises:
+        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+    """
+
+    DEFAULT_NAME = "complementary_filter_gain_node"
+    _USES_MAGNETOMETER = False
+    _PUBLISHES_TF = False
+
+    def _make(self) -> ComplementaryFilter:
+        declare = self._node.declare_parameter
+
+        def share(name: str) -> float:
+            value: float = declare(name, 0.01).value
+            if not 0.0 <= value <= 1.0:
+                raise bad_value(name, value, self._node.get_name())
+            return value
+
+        return ComplementaryFilter(
+            gain_acc=share("gain_acc"),
+            gain_mag=share("gain_mag"),
+            bias_alpha=share("bias_alpha"),
+            do_bias_estimation=declare("do_bias_estimation", True).value,
+            do_adaptive_gain=declare("do_adaptive_gain", True).value,
+        )
+
+    def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
+        first = attitude(acceleration, magnetic, World.NWU)
+        if first is not None:
+            self._filter.orientation = first
+        return first is not None

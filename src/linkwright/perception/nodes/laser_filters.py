@@ -1,0 +1,190 @@
+"""scan_to_scan_filter_chain of laser_filters: passes laser scans through a chain of filters.
+
+Source: laser_filters 2.0 (ROS 2 Humble): the topics, the qualities of service and the parameters ``filterN.name``,
+``filterN.type`` and ``filterN.params``. With ``tf_message_filter_target_frame`` a scan whose place in that frame is not
+known is dropped; it does not wait, so ``tf_message_filter_tolerance`` changes nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import MISSING, fields
+from typing import Any, get_type_hints
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
+from linkwright.extensions import extensions
+from linkwright.graph import SENSOR_DATA_QOS, Graph, Node, ParameterDescriptor, Subscription
+from linkwright.messages import Time, get_message
+from linkwright.nodes.frame_poses import FramePoses
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import log_unknown
+from linkwright.perception.nodes.lazy import LazySubscriptions
+from linkwright.perception.scans.scan import Scan, ScanFilter
+
+GROUP = "linkwright.laser_filters"
+"""The entry points of filters; a name is that of the type in a parameter file."""
+
+_PACKAGE = "laser_filters/"
+_FILTER = re.compile(r"filter(\d+)\.")
+_DEPTH = 1000
+
+
+class ScanToScanFilterChain(SingleNode):
+    """The running node.
+
+    Raises:
+        LinkwrightError: the chain names a filter that is not there (NODE451), which lacks a parameter (NODE452) or
+            cannot have its value (NODE433).
+    """
+
+    DEFAULT_NAME = "scan_to_scan_filter_chain"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        node = self._node
+        with starting(node):
+            self._chain = read_chain(node)
+            self._target: str = node.declare_parameter("tf_message_filter_target_frame", "").value
+            node.declare_parameter("tf_message_filter_tolerance", 0.03)  # of waiting, which is not done
+            is_lazy = node.declare_parameter("lazy_subscription", False).value
+            log_unknown(node)
+        self._poses = FramePoses(node, "Dropping Scan: Transform unavailable")
+        kind = get_message("sensor_msgs/msg/LaserScan")
+        self._publisher = node.create_publisher(kind, "scan_filtered", _DEPTH)
+
+        def subscribe() -> Sequence[Subscription[Any]]:
+            return (node.create_subscription(kind, "scan", self._receive, SENSOR_DATA_QOS),)
+
+        self._lazy = LazySubscriptions(graph, node, (self._publisher,), subscribe) if is_lazy else None
+        if not is_lazy:
+            subscribe()
+
+    def close(self) -> None:
+        """End it."""
+        if self._lazy is not None:
+            self._lazy.close()
+        super().close()
+
+    def _receive(self, message: Any) -> None:
+        scan: Scan | None = scan_of(message)
+        header = message.header
+        if self._target and self._poses.pose(self._target, header.frame_id, header.stamp.nanoseconds) is None:
+            return
+        for scan_filter in self._chain:
+            assert scan is not None, "the loop ends where a scan is dropped"
+            scan = scan_filter.apply(scan, self._poses.pose)
+            if scan is None:
+                return
+        if scan is not None:
+            self._publisher.publish(message_of(scan, message.scan_time))
+
+
+def scan_of(message: Any) -> Scan:
+    """Convert a sensor_msgs/msg/LaserScan to a scan with arrays of its own."""
+    return Scan(
+        ranges=np.array(message.ranges, dtype=np.float32),
+        intensities=np.array(message.intensities, dtype=np.float32),
+        angle_min=message.angle_min,
+        angle_max=message.angle_max,
+        angle_increment=message.angle_increment,
+        range_min=message.range_min,
+        range_max=message.range_max,
+        time_increment=message.time_increment,
+        stamp_ns=message.header.stamp.nanoseconds,
+        frame=message.header.frame_id,
+    )
+
+
+def message_of(scan: Scan, scan_time: float) -> Any:
+    """Convert a scan to a sensor_msgs/msg/LaserScan; `scan_time` is the time between scans in seconds."""
+    message = get_message("sensor_msgs/msg/LaserScan")()
+    message.header.stamp, message.header.frame_id = Time.from_nanoseconds(scan.stamp_ns), scan.frame
+    message.angle_min, message.angle_max, message.angle_increment = scan.angle_min, scan.angle_max, scan.angle_increment
+    message.range_min, message.range_max = scan.range_min, scan.range_max
+    message.time_increment, message.scan_time = scan.time_increment, scan_time
+    message.ranges, message.intensities = scan.ranges, scan.intensities
+    return message
+
+
+def read_chain(node: Node) -> list[ScanFilter]:
+    """Declare the parameters of a chain, ``filter1.type`` and so on up to the first missing number.
+
+    Raises:
+        LinkwrightError: see `ScanToScanFilterChain`.
+    """
+    numbers = {int(match[1]) for name in node.undeclared_overrides() if (match := _FILTER.match(name))}
+    count = next(number for number in range(1, len(numbers) + 2) if number not in numbers) - 1
+    for number in sorted(number for number in numbers if number > count):
+        node.get_logger().warning(f"'filter{number}' is not used: the chain ends before 'filter{count + 1}'")
+    chain = []
+    for number in range(1, count + 1):
+        prefix = f"filter{number}."
+        for name in node.undeclared_overrides():
+            if name.startswith(prefix):
+                node.declare_parameter(name, None, ParameterDescriptor(dynamic_typing=True))
+        tree = _nested(
+            {name: parameter.value for name, parameter in node.get_parameters_by_prefix(prefix[:-1]).items()}
+        )
+        chain.append(_filter(node, prefix, tree))
+    return chain
+
+
+def _filter(node: Node, prefix: str, tree: dict[str, Any]) -> ScanFilter:
+    known = extensions(GROUP)
+    kind = tree.get("type")
+    if not isinstance(kind, str):
+        raise _wrong("NODE452", phrase("'{name}' is not given", name=f"{prefix}type"), None)
+    entry = known.get(kind) or known.get(_PACKAGE + kind)
+    if entry is None:
+        hint = did_you_mean(kind, known) or phrase("there are {known}", known=", ".join(sorted(known)))
+        raise _wrong("NODE451", phrase("there is no filter '{kind}' ({name})", kind=kind, name=f"{prefix}type"), hint)
+    table = entry.load()
+    hints = get_type_hints(table)
+    given = tree.get("params") or {}
+    parameters = {field.name: field for field in fields(table) if field.init}
+    values = {
+        name: _converted(f"{prefix}params.{name}", value, hints[name])
+        for name, value in given.items()
+        if name in parameters
+    }
+    for name in given:
+        if name not in parameters:
+            meant = did_you_mean(name, parameters)
+            message = f"'{prefix}params.{name}' is not a parameter of {kind}" + (f"; {meant}" if meant else "")
+            node.get_logger().warning(message)
+    for name, parameter_field in parameters.items():
+        if name not in values and parameter_field.default is MISSING and parameter_field.default_factory is MISSING:
+            raise _wrong("NODE452", phrase("'{name}' is not given", name=f"{prefix}params.{name}"), None)
+    made: ScanFilter = table(**values)
+    return made
+
+
+def _converted(name: str, value: Any, kind: Any) -> Any:
+    """Return a value in the type of its field. An integer is accepted as a float, and 0 and 1 as booleans."""
+    if kind is float and isinstance(value, int | float) and not isinstance(value, bool):
+        return float(value)
+    if kind is bool and value in (True, False):
+        return bool(value)
+    if kind in (int, str) and isinstance(value, kind) and not isinstance(value, bool):
+        return value
+    if kind not in (float, bool, int, str) and isinstance(value, dict):
+        return value
+    raise _wrong("NODE433", phrase("parameter '{name}' cannot be '{value}'", name=name, value=value), None)
+
+
+def _wrong(code: str, message: Phrase, hint: Phrase | None) -> LinkwrightError:
+    return LinkwrightError(Diagnostic(code, message, hint=hint))
+
+
+def _nested(values: dict[str, Any]) -> dict[str, Any]:
+    tree: dict[str, Any] = {}
+    for name, value in values.items():
+        *path, last = name.split(".")
+        branch = tree
+        for step in path:
+            branch = branch.setdefault(step, {})
+        branch[last] = value
+    return tree

@@ -1,0 +1,332 @@
+"""parameter_bridge and static_bridge of ros_gz_bridge, and image_bridge of ros_gz_image.
+
+Topics of gz are topics of the graph here, with the names and types that they have after a bridge. So a bridge has work
+to do only where the two sides have different names or types: it forwards messages from one to the other. It only
+announces the other topics, because programs look for them before the simulation has started or the robot is spawned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import yaml
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, install_hint, phrase
+from linkwright.graph import Graph, MessageInfo, Node, Publisher, QoSProfile, ReliabilityPolicy, Subscription
+from linkwright.graph.endpoints.commander import Commander
+from linkwright.graph.endpoints.drivers import DriverWatch
+from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, QoSMatchedInfo
+from linkwright.graph.names.rules import join
+from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions
+from linkwright.graph.qos.profile import QoSPolicyKind
+from linkwright.input_files import read_text
+from linkwright.messages import get_message
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.standstill import VELOCITIES, send_stop
+from linkwright.perception.nodes.compressed import compressed
+from linkwright.simulation.nodes.conversions import TYPES_OF_GZ, conversion
+from linkwright.simulation.plugins.bridged import gz_side
+
+_DIRECTIONS = {"[": "GZ_TO_ROS", "]": "ROS_TO_GZ", "@": "BIDIRECTIONAL"}
+_IMAGE = ("sensor_msgs/msg/Image", "gz.msgs.Image")
+_CLOCK = "rosgraph_msgs/msg/Clock"
+_COMPRESSED = "sensor_msgs/msg/CompressedImage"
+_Side = tuple[Node, str, str]
+"""A node, a topic and its type."""
+_OVERRIDABLE = QoSOverridingOptions(
+    (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
+)
+_QUEUE = 10
+
+
+@dataclass(frozen=True)
+class BridgedTopic:
+    """A bridged topic with its name on each side.
+
+    Attributes:
+        ros_topic: its name in ROS, which remappings of the bridge apply to.
+        gz_topic: its name in gz.
+        ros_type: such as ``sensor_msgs/msg/Imu``.
+        gz_type: such as ``gz.msgs.IMU``.
+        direction: ``GZ_TO_ROS``, ``ROS_TO_GZ`` or ``BIDIRECTIONAL``.
+        publisher_queue, subscriber_queue: the depths of the queues.
+        lazy: whether to subscribe only while the other side has a subscriber; None for the node's setting.
+    """
+
+    ros_topic: str
+    gz_topic: str
+    ros_type: str
+    gz_type: str
+    direction: str = "BIDIRECTIONAL"
+    publisher_queue: int = _QUEUE
+    subscriber_queue: int = _QUEUE
+    lazy: bool | None = None
+
+
+class _Way:
+    """One direction of a bridge: messages from a topic of one node to that of another.
+
+    Args:
+        listen: creates the subscription.
+        lazy: whether to subscribe only while the output has a subscriber.
+    """
+
+    def __init__(self, listen: Callable[[], Subscription[Any]], *, lazy: bool) -> None:
+        self._listen = listen
+        self._subscription = None if lazy else listen()
+
+    def matched(self, info: QoSMatchedInfo) -> None:
+        """Subscribe while the other side has subscriptions."""
+        if info.current_count and self._subscription is None:
+            self._subscription = self._listen()
+        elif not info.current_count and self._subscription is not None:
+            self._subscription.destroy()
+            self._subscription = None
+
+
+class _Bridge(SingleNode):
+    _lazy = False
+    _expands = False
+
+    def _connect(self, graph: Graph, topics: Sequence[BridgedTopic]) -> None:
+        # Names of gz are not remapped: that side is a node of its own, hidden.
+        self._gz_node = graph.create_node(f"_{self._node.get_name()}_gz", namespace=self._node.get_namespace())
+        self._publishers: list[Publisher[Any]] = []
+        for topic in topics:
+            self._join(topic)
+
+    def close(self) -> None:
+        """End it."""
+        self._gz_node.destroy_node()
+        super().close()
+
+    def _join(self, topic: BridgedTopic) -> None:
+        try:
+            get_message(topic.ros_type)
+        except LinkwrightError:
+            self._node.get_logger().warning(f"{topic.ros_topic} is not bridged: there is no type {topic.ros_type}")
+            return
+        gz_type = TYPES_OF_GZ.get(topic.gz_type, topic.ros_type)
+        gz_topic = "/" + self._gz_name(topic.gz_topic).lstrip("/")
+        same_name = self._node.resolve_topic_name(topic.ros_topic) == gz_topic
+        if topic.ros_type == _CLOCK:  # the simulation publishes it
+            return
+        to_ros, to_gz = (topic.direction in (way, "BIDIRECTIONAL") for way in ("GZ_TO_ROS", "ROS_TO_GZ"))
+        if same_name and topic.ros_type == gz_type:
+            self._announce(topic, to_ros=to_ros, to_gz=to_gz)
+            return
+        if same_name and to_gz:  # in ROS the name is the bridge's, with its type
+            gz_topic = gz_side(gz_topic)
+        ros, gz = (self._node, topic.ros_topic, topic.ros_type), (self._gz_node, gz_topic, gz_type)
+        if to_ros and not (same_name and to_gz):
+            self._hand_on(topic, gz, ros)
+        if to_gz:
+            self._hand_on(topic, ros, gz)
+
+    def _announce(self, topic: BridgedTopic, *, to_ros: bool, to_gz: bool) -> None:
+        """Have a topic in the graph before the simulation has it, as with a bridge of gz; nothing is handed on."""
+        if to_ros:
+            self._node.create_publisher(topic.ros_type, topic.ros_topic, topic.publisher_queue)
+        if to_gz:
+            profile = QoSProfile(topic.subscriber_queue, reliability=ReliabilityPolicy.BEST_EFFORT)
+            self._node.create_subscription(topic.ros_type, topic.ros_topic, lambda _: None, profile, raw=True)
+
+    def _gz_name(self, name: str) -> str:
+        """The name of a topic of gz, in the node's namespace if that is configured."""
+        return join(self._node.get_namespace(), name) if self._expands and not name.startswith("/") else name
+
+    def _hand_on(self, topic: BridgedTopic, source: _Side, target: _Side) -> None:
+        """Bridge a topic in one direction."""
+        (listening, source_topic, source_type), (sending, target_topic, target_type) = source, target
+        convert = conversion(source_type, target_type)
+        if convert is None:
+            text = f"{topic.ros_topic} is not bridged: {source_type} does not become {target_type}"
+            self._node.get_logger().warning(text)
+            return
+        lazy = self._lazy if topic.lazy is None else topic.lazy
+        publishers: list[Publisher[Any]] = []
+        commander = drivers = None
+        if target_type in VELOCITIES:
+            commander = Commander(lambda lost: send_stop(self._node, publishers[0], lost))
+            drivers = DriverWatch.of(self._node)
+
+        def forward(message: Any, info: MessageInfo) -> None:
+            # A bidirectional bridge receives its own messages.
+            if all(info.publisher_gid != publisher.gid for publisher in self._publishers):
+                if commander is not None and drivers is not None:
+                    commander.obey(info)
+                    drivers.hear(message, info)
+                publishers[0].publish(convert(message))
+
+        def listen() -> Subscription[Any]:
+            profile = QoSProfile(topic.subscriber_queue, reliability=ReliabilityPolicy.BEST_EFFORT)
+            subscription: Subscription[Any] = listening.create_subscription(source_type, source_topic, forward, profile)
+            if commander is not None:
+                commander.watch(subscription)
+            return subscription
+
+        way = _Way(listen, lazy=lazy)
+        events = PublisherEventCallbacks(matched=way.matched) if lazy else None
+        publisher: Publisher[Any] = sending.create_publisher(
+            target_type,
+            target_topic,
+            topic.publisher_queue,
+            event_callbacks=events,
+            qos_overriding_options=_OVERRIDABLE if sending is self._node else None,
+        )
+        publishers.append(publisher)
+        self._publishers.append(publisher)
+
+
+class ParameterBridge(_Bridge):
+    """The running bridge: its arguments, or the file of its parameter ``config_file``, name the topics.
+
+    Raises:
+        LinkwrightError: NODE820, an argument or the file is invalid; NODE821, the file cannot be read.
+    """
+
+    DEFAULT_NAME = "ros_gz_bridge"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        with starting(self._node):
+            path = str(self._node.declare_parameter("config_file", "").value)
+            self._lazy = bool(self._node.declare_parameter("lazy", False).value)
+            self._expands = bool(self._node.declare_parameter("expand_gz_topic_names", False).value)
+            topics = [topic_of_word(word) for word in words if not self._is_service(word)]
+            topics += topics_of_file(path) if path else []
+            self._connect(graph, topics)
+
+    def _is_service(self, word: str) -> bool:
+        """Whether an argument is a service, ``SERVICE@ROS_TYPE``; that it is not bridged is logged."""
+        name, _, types = word.partition("@")
+        is_service = "/srv/" in types.partition("@")[0]
+        if is_service:
+            self._node.get_logger().warning(f"{name} is not bridged: services of gz are not here")
+        return is_service
+
+
+class StaticBridge(_Bridge):
+    """The running bridge of ``chatter``, the topic of texts in examples."""
+
+    DEFAULT_NAME = "ros_gz_bridge"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        self._connect(graph, [BridgedTopic("chatter", "chatter", "std_msgs/msg/String", "gz.msgs.StringMsg")])
+
+
+class ImageBridge(_Bridge):
+    """The running bridge of image topics, its arguments; also publishes JPEG while a node subscribes to it."""
+
+    DEFAULT_NAME = "ros_gz_image"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        self._connect(graph, [BridgedTopic(word, word, *_IMAGE, "GZ_TO_ROS") for word in words])
+        for word in words:
+            self._compress(word)
+
+    def _compress(self, topic: str) -> None:
+        """Publish images as JPEG too while a node subscribes to them."""
+        name = f"{self._node.resolve_topic_name(topic)}/compressed"
+
+        def forward(image: Any) -> None:
+            try:
+                message = compressed(image)
+            except ModuleNotFoundError as error:
+                text = phrase(
+                    "images are not compressed: {name} is missing; {hint}",
+                    name=error.name,
+                    hint=install_hint("image"),
+                )
+                self._node.get_logger().warning(text, once=True)
+                return
+            if message is not None:
+                publisher.publish(message)
+
+        def listen() -> Subscription[Any]:
+            profile = QoSProfile(1, reliability=ReliabilityPolicy.BEST_EFFORT)
+            return self._gz_node.create_subscription(_IMAGE[0], "/" + topic.lstrip("/"), forward, profile)
+
+        events = PublisherEventCallbacks(matched=_Way(listen, lazy=True).matched)
+        publisher: Publisher[Any] = self._node.create_publisher(_COMPRESSED, name, _QUEUE, event_callbacks=events)
+
+
+def topic_of_word(word: str) -> BridgedTopic:
+    """Parse an argument, ``TOPIC@ROS_TYPE@GZ_TYPE``, with ``[`` or ``]`` for one direction.
+
+    Raises:
+        LinkwrightError: NODE820, it has another form.
+    """
+    name, at, types = word.partition("@")
+    mark = next((part for part in types if part in _DIRECTIONS), "")
+    ros_type, _, gz_type = types.partition(mark or "@")
+    if not (name and at and mark and ros_type and gz_type):
+        hint = phrase("write it as {form}", form="/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan")
+        raise LinkwrightError(
+            Diagnostic("NODE820", phrase("'{word}' does not describe a topic to bridge", word=word), hint=hint)
+        )
+    return BridgedTopic(name, name, _full(ros_type), _modern(gz_type), _DIRECTIONS[mark])
+
+
+def topics_of_file(path: str) -> list[BridgedTopic]:
+    """Read the topics of a YAML file.
+
+    Raises:
+        LinkwrightError: NODE821, it cannot be read; NODE820, it is not a list of topics with their types.
+    """
+    try:
+        entries = yaml.safe_load(read_text(path))
+    except (OSError, UnicodeDecodeError) as error:
+        reason = foreign(getattr(error, "strerror", None) or error)
+        message = phrase("cannot read '{path}': {reason}", path=path, reason=reason)
+        raise LinkwrightError(Diagnostic("NODE821", message)) from error
+    except yaml.YAMLError as error:
+        message = phrase("'{path}' is not YAML: {reason}", path=path, reason=foreign(" ".join(str(error).split())))
+        raise LinkwrightError(Diagnostic("NODE821", message)) from error
+    if not isinstance(entries, list):
+        raise _no_topics(path, phrase("it is not a list"))
+    return [_topic_of(entry, number, path) for number, entry in enumerate(entries, start=1)]
+
+
+def _topic_of(entry: Any, number: int, path: str) -> BridgedTopic:
+    if not isinstance(entry, dict):
+        raise _no_topics(path, phrase("entry {number} is not a mapping", number=number))
+    both = entry.get("topic_name", "")
+    ros_topic = entry.get("ros_topic_name") or both or entry.get("gz_topic_name", "")
+    gz_topic = entry.get("gz_topic_name") or both or ros_topic
+    ros_type, gz_type = entry.get("ros_type_name", ""), entry.get("gz_type_name", "")
+    for key, value in (("ros_topic_name", ros_topic), ("ros_type_name", ros_type), ("gz_type_name", gz_type)):
+        if not isinstance(value, str) or not value:
+            raise _no_topics(path, phrase("entry {number} has no '{key}'", number=number, key=key))
+    direction = entry.get("direction", "BIDIRECTIONAL")
+    if direction not in _DIRECTIONS.values():
+        reason = phrase("entry {number} has no such direction as '{value}'", number=number, value=str(direction))
+        raise _no_topics(path, reason)
+    queues = [entry.get(f"{side}_queue", _QUEUE) for side in ("publisher", "subscriber")]
+    for side, value in zip(("publisher", "subscriber"), queues, strict=True):
+        if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+            raise _no_topics(
+                path, phrase("entry {number}: '{key}' is not a number", number=number, key=f"{side}_queue")
+            )
+    lazy = entry.get("lazy")
+    if lazy is not None and not isinstance(lazy, bool):
+        raise _no_topics(path, phrase("entry {number}: '{key}' is neither true nor false", number=number, key="lazy"))
+    return BridgedTopic(ros_topic, gz_topic, _full(ros_type), _modern(gz_type), direction, queues[0], queues[1], lazy)
+
+
+def _no_topics(path: str, reason: Any) -> LinkwrightError:
+    message = phrase("'{path}' does not list topics to bridge: {reason}", path=path, reason=reason)
+    hint = phrase("each entry needs ros_topic_name, gz_topic_name, ros_type_name, gz_type_name and direction")
+    return LinkwrightError(Diagnostic("NODE820", message, hint=hint))
+
+
+def _full(ros_type: str) -> str:
+    return ros_type if ros_type.count("/") == 2 else ros_type.replace("/", "/msg/", 1)
+
+
+def _modern(gz_type: str) -> str:
+    return gz_type.replace("ignition.msgs.", "gz.msgs.")

@@ -1,0 +1,126 @@
+"""remove, delete_entity and set_entity_pose of ros_gz_sim: remove and move models of a world.
+
+Source: ros_gz_sim (parameters, options). There models are also known by numbers, which none has here.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.geometry.single import quaternion_from_rpy
+from linkwright.graph import Graph
+from linkwright.messages import get_message, get_service
+from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.simulation.nodes.spawner import SimulatorClient
+
+_DELETE, _SET_STATE = "gazebo_msgs/srv/DeleteEntity", "gazebo_msgs/srv/SetEntityState"
+_MODEL, _LINK = "6", "2"
+"""Types of ros_gz_interfaces/msg/Entity that may be named here."""
+
+
+class Remove(SimulatorClient):
+    """remove: removes the model that its parameter ``entity_name`` names, and ends.
+
+    Raises:
+        LinkwrightError: NODE812, it names none.
+    """
+
+    DEFAULT_NAME = "ros_gz_sim_remove_entity"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        with starting(self._node):
+            self._connect(self._node)
+            self._node.declare_parameter("world", "")
+            name = str(self._node.declare_parameter("entity_name", "").value)
+            if not name:
+                hint = phrase("give it the parameter 'entity_name'")
+                raise LinkwrightError(
+                    Diagnostic("NODE812", phrase("{program} is not told which model", program="remove"), hint=hint)
+                )
+            self._remove(name)
+
+    def _remove(self, name: str) -> None:
+        self._ask(_DELETE, "delete_entity", get_service(_DELETE).Request(name=name), self._answered)
+
+    def _answered(self, response: Any) -> None:
+        """End with the status of a response with ``success`` and ``status_message``."""
+        if response.success:
+            self._log("Result: true")
+            self._end(0)
+        else:
+            self._fail(f"Result: false, {getattr(response, 'status_message', '') or 'there is no such entity'}")
+
+
+class DeleteEntity(Remove):
+    """delete_entity: removes the model that ``--name`` names, and ends.
+
+    Raises:
+        LinkwrightError: NODE812, its command line is none.
+    """
+
+    DEFAULT_NAME = "entity_deleter"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        with starting(self._node):
+            self._connect(self._node)
+            self._remove(_read(_parser("delete_entity"), words).name)
+
+
+class SetEntityPose(Remove):
+    """set_entity_pose: sets the pose of the model or link that ``--name`` names, and ends.
+
+    Raises:
+        LinkwrightError: NODE812, its command line is none.
+    """
+
+    DEFAULT_NAME = "entity_pose_setter"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        with starting(self._node):
+            self._connect(self._node)
+            parser = _parser("set_entity_pose")
+            parser.add_argument("--pos", nargs=3, type=float, default=(0.0, 0.0, 0.0))
+            turn = parser.add_mutually_exclusive_group()
+            turn.add_argument("--quat", nargs=4, type=float)
+            turn.add_argument("--euler", nargs=3, type=float, default=(0.0, 0.0, 0.0))
+            arguments = _read(parser, words)
+            state = get_message("gazebo_msgs/msg/EntityState")(name=arguments.name)
+            position, orientation = state.pose.position, state.pose.orientation
+            position.x, position.y, position.z = arguments.pos
+            rotation = arguments.quat or quaternion_from_rpy(tuple(arguments.euler))
+            orientation.x, orientation.y, orientation.z, orientation.w = rotation
+            request = get_service(_SET_STATE).Request(state=state)
+            self._ask(_SET_STATE, "set_entity_state", request, self._answered)
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise LinkwrightError(Diagnostic("NODE812", foreign(message), hint=foreign(self.format_usage().strip())))
+
+
+def _parser(program: str) -> _Parser:
+    parser = _Parser(prog=program, add_help=False, allow_abbrev=False)
+    parser.add_argument("--name")
+    parser.add_argument("--id")
+    parser.add_argument("--type", choices=(_MODEL, _LINK), default=_MODEL)
+    return parser
+
+
+def _read(parser: _Parser, words: Sequence[str]) -> argparse.Namespace:
+    """Parse a command line that names an entity.
+
+    Raises:
+        LinkwrightError: NODE812, the command line is invalid.
+    """
+    arguments = parser.parse_args(words)
+    if not arguments.name:
+        message = phrase("{program} is not told which model", program=parser.prog)
+        hint = phrase("name it by --name; models have no numbers here")
+        raise LinkwrightError(Diagnostic("NODE812", message, hint=hint))
+    return arguments

@@ -1,0 +1,205 @@
+"""gzserver: the node ``gazebo``, a simulated world with its plugins, topics and services.
+
+It follows gzserver of Gazebo classic with the libraries of gazebo_ros; for gz it is the server. Its world is simulated
+in a thread of its own, see `linkwright.simulation.server`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
+from linkwright.geometry.single import Transform, quaternion_from_rpy
+from linkwright.graph import Graph, Parameter, SetParametersResult
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+
+if TYPE_CHECKING:
+    from linkwright.sdf.plugins import Plugin
+
+_EMPTY, _DESCRIPTION = "empty", "robot_description"
+_LEFT_OUT = frozenset({"SDF150", "SDF160", "SDF161"})
+"""The codes for elements and files that are unknown or missing."""
+_PARAMETERS: dict[str, Any] = {
+    "world": _EMPTY,
+    "world_sdf_file": "",
+    "world_sdf_string": "",
+    "publish_rate": 10.0,
+    "real_time_factor": 0.0,
+    "step": 0.0,
+    "seed": 0,
+    "pause": False,
+    "gui": False,
+    "seconds": 0.0,
+    "usual_names": False,
+    "gazebo_mistakes": False,
+    _DESCRIPTION: "",
+    "robot_name": "",
+    "robot_pose": [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    "robot_namespace": "",
+}
+
+_PAUSED = (
+    "The simulation is paused, and nothing moves or measures: resume it in the page, or call /unpause_physics. "
+    "'gz sim' begins at once with -r"
+)
+
+
+class Simulator(SingleNode):
+    """The running node.
+
+    Its parameters:
+
+    ``world``
+        the file, also the only argument of the command line besides ROS arguments. ``empty``: a plane.
+    ``world_sdf_file``, ``world_sdf_string``
+        as gzserver of ros_gz_sim has them: the file, or the text of the world.
+    ``publish_rate``
+        the rate of ``/clock`` in simulated time, in Hz.
+    ``real_time_factor``
+        the simulated seconds in a real one; 0 for the world's own, negative for as fast as possible.
+    ``step``
+        the time step in s; 0 for that of the world.
+    ``seed``, ``pause``, ``seconds``
+        the random seed; whether it starts paused; after how many simulated seconds it ends, 0 for never.
+    ``gui``
+        whether to open a page with the world; the host of the node does that.
+    ``usual_names``
+        whether gz topics also have their usual names.
+    ``gazebo_mistakes``
+        whether plugins make the known mistakes of Gazebo, too: see docs/simulation.md.
+    ``robot_description``, ``robot_name``, ``robot_pose``, ``robot_namespace``
+        a robot from the start: URDF or SDF, and x, y, z in m and roll, pitch, yaw in rad. The description may be
+        replaced while it runs: the robot keeps its place and the positions of its joints.
+
+    Attributes:
+        finished: receives status 0 after the seconds, and 1 if the simulation failed.
+
+    Raises:
+        LinkwrightError: SIM150 there is no such world; SIM101 MuJoCo is missing; an error in the world or the robot.
+    """
+
+    DEFAULT_NAME = "gazebo"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        from linkwright.graph.stepped.node import SteppedNode
+        from linkwright.simulation.server.reports import Reports
+        from linkwright.simulation.server.runner import Runner
+        from linkwright.simulation.server.server import ServerOptions, SimulationServer
+        from linkwright.simulation.server.services import Services
+        from linkwright.simulation.server.worlds import load_world
+        from linkwright.simulation.simulation import Simulation
+
+        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        loop = asyncio.get_running_loop()
+        self.finished: asyncio.Future[int] = loop.create_future()
+        with starting(self._node):
+            parameters = {name: self._node.declare_parameter(name, value).value for name, value in _PARAMETERS.items()}
+            text = parameters["world_sdf_string"] or None
+            file = "world_sdf_string" if text else parameters["world_sdf_file"] or parameters["world"]
+            loaded = (
+                load_world(words[0], environment=options.environment)
+                if words
+                else load_world(file, text, options.environment)
+            )
+            remarkable = (
+                diagnostic
+                for diagnostic in loaded.diagnostics
+                if diagnostic.severity is Severity.ERROR or diagnostic.code in _LEFT_OUT
+            )
+            self._log(remarkable)
+            simulation = Simulation(loaded.world, loaded.finder, step=parameters["step"] or None)
+            how = ServerOptions(
+                parameters["seed"], parameters["usual_names"], parameters["gazebo_mistakes"], self._systems()
+            )
+            self.server = SimulationServer(simulation, self._node, how)
+            own = SteppedNode(self._node, self.server.exchange, owned=False)
+            self._reports = Reports(self.server, own, parameters["publish_rate"])
+            self.runner = Runner(
+                self.server,
+                factor=parameters["real_time_factor"] if parameters["real_time_factor"] >= 0 else inf,
+                paused=parameters["pause"],
+                seconds=parameters["seconds"] or None,
+                watch=lambda: self._reports.watch(lambda: self.runner.real_time_factor),
+                on_state=self._publish_state,
+                on_end=partial(_call_on, loop, self._finish),
+            )
+            self.services = Services(self.server, self.runner, own, loaded, options.library)
+            self.server.start()
+            if parameters[_DESCRIPTION]:
+                pose = _pose(parameters["robot_pose"])
+                robot = self.services.spawn(
+                    parameters[_DESCRIPTION], parameters["robot_name"], pose, parameters["robot_namespace"]
+                )
+                self._node.add_on_set_parameters_callback(partial(self._renew, robot))
+            self._reports.begin()
+            self._publish_state()
+            self.server.exchange.deliver()
+            if parameters["pause"]:
+                self._node.get_logger().info(_PAUSED)
+            self.runner.start()
+
+    def close(self) -> None:
+        """End it."""
+        self.runner.close()
+        self.server.close()
+        super().close()
+
+    def _systems(self) -> Sequence[Plugin]:
+        """The plugins of a world that names none."""
+        return ()
+
+    def _renew(self, robot: str, parameters: Sequence[Parameter]) -> SetParametersResult:
+        """Replace the robot by a changed description, in its present state; an invalid one is refused."""
+        from linkwright.simulation.plugins.entities import told
+
+        for parameter in parameters:
+            if parameter.name == _DESCRIPTION:
+                try:
+                    self.services.renew(parameter.value, robot)
+                except LinkwrightError as error:
+                    return SetParametersResult(successful=False, reason=told(error.diagnostics[0]))
+        return SetParametersResult(successful=True)
+
+    def _finish(self, status: int) -> None:
+        if not self.finished.done():
+            self.finished.set_result(status)
+
+    def _publish_state(self) -> None:
+        self._reports.publish_state(paused=self.runner.paused)
+
+    def _log(self, findings: Iterable[Diagnostic]) -> None:
+        """Log the findings on the world and its parts that are not simulated, each once."""
+        logger = self._node.get_logger()
+        first: dict[str, Diagnostic] = {}
+        for finding in findings:
+            first.setdefault(str(finding.message), finding)
+        for diagnostic in first.values():
+            place = f"{diagnostic.span}: " if diagnostic.span else ""
+            hint = f" ({diagnostic.hint})" if diagnostic.hint else ""
+            text = f"{place}{diagnostic.message}{hint}"
+            if diagnostic.severity is Severity.ERROR:
+                logger.error(text)
+            else:
+                logger.warning(text)
+
+
+class GzServer(Simulator):
+    """The running node in the place of gz's server: a world without plugins gets those that gz gives it."""
+
+    def _systems(self) -> Sequence[Plugin]:
+        from linkwright.simulation.plugins.registry import SYSTEMS_OF_GZ
+
+        return SYSTEMS_OF_GZ
+
+
+def _call_on(loop: asyncio.AbstractEventLoop, function: Callable[[int], None], status: int) -> None:
+    loop.call_soon_threadsafe(function, status)
+
+
+def _pose(numbers: Sequence[float]) -> Transform:
+    x, y, z, roll, pitch, yaw = numbers
+    return (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))

@@ -1,0 +1,127 @@
+"""spawn_entity.py of gazebo_ros: spawns a model by the service ``/spawn_entity``."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from typing import NoReturn
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.graph import Graph
+from linkwright.messages import get_service
+from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, text_at, text_of_stdin
+
+
+class SpawnEntity(EntitySpawner):
+    """The running node: it ends with status 0 when the entity was spawned.
+
+    Raises:
+        LinkwrightError: NODE810, the command line is invalid; NODE811, the file cannot be read.
+    """
+
+    DEFAULT_NAME = "spawn_entity"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        with starting(self._node):
+            wanted = self._arguments = parse(words)
+            self._environment = options.environment
+            namespace = self._node.get_namespace() if wanted.robot_namespace is None else wanted.robot_namespace
+            entity = Entity(
+                wanted.entity,
+                (wanted.x, wanted.y, wanted.z),
+                (wanted.R, wanted.P, wanted.Y),
+                namespace,
+                wanted.reference_frame,
+            )
+            self._prepare(self._node, entity, service_namespace=wanted.gazebo_namespace or "", timeout=wanted.timeout)
+            if wanted.wait is None:
+                self._begin()
+            else:
+                self._log(f"Waiting for entity {wanted.wait} to exist")
+                self._look_for(wanted.wait)
+
+    def close(self) -> None:
+        """Close it; with ``-b`` the entity is deleted."""
+        if self._arguments.b and self._described and not self.finished.done():
+            kind = get_service("gazebo_msgs/srv/DeleteEntity")
+            client = self._node.create_client(kind, f"{self._service_namespace}/delete_entity")
+            client.call_async(kind.Request(name=self._entity.name))
+        super().close()
+
+    def _begin(self) -> None:
+        wanted = self._arguments
+        if wanted.topic is not None:
+            self._wait_for(wanted.topic)
+        elif wanted.file is not None:
+            self._spawn(text_at(wanted.file, self._environment))
+        elif wanted.database is not None:
+            self._spawn(text_at(f"model://{wanted.database}", self._environment))
+        else:
+            self._spawn(text_of_stdin())
+
+    def _spawn(self, text: str) -> None:
+        super()._spawn(text.replace("package://", "model://") if self._arguments.package_to_model else text)
+
+    def _look_for(self, name: str) -> None:
+        def look(names: list[str]) -> None:
+            if name in names:
+                self._begin()
+                return
+
+            def again() -> None:
+                timer.cancel()
+                self._look_for(name)
+
+            timer = self._node.create_timer(0.5, again)
+
+        self._ask_for_names(look)
+
+    def _spawned(self) -> None:
+        if self._arguments.unpause:
+            kind = "std_srvs/srv/Empty"
+            self._ask(kind, "unpause_physics", get_service(kind).Request(), lambda _: self._stay_or_end())
+        else:
+            self._stay_or_end()
+
+    def _stay_or_end(self) -> None:
+        if not self._arguments.b:
+            self._end(0)
+
+
+def parse(words: Sequence[str]) -> argparse.Namespace:
+    """Parse the options of a command line, which are long ones after a single dash.
+
+    Raises:
+        LinkwrightError: NODE810, it cannot be understood.
+    """
+    parser = argparse.ArgumentParser(prog="spawn_entity.py", add_help=False, exit_on_error=False, allow_abbrev=False)
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument("-file")
+    source.add_argument("-topic")
+    source.add_argument("-database")
+    source.add_argument("-stdin", action="store_true")
+    parser.add_argument("-entity", required=True)
+    parser.add_argument("-reference_frame", default="")
+    parser.add_argument("-gazebo_namespace", default="")
+    parser.add_argument("-robot_namespace")
+    parser.add_argument("-timeout", type=float, default=30.0)
+    parser.add_argument("-unpause", action="store_true")
+    parser.add_argument("-wait")
+    for name in ("-x", "-y", "-z", "-R", "-P", "-Y"):
+        parser.add_argument(name, type=float, default=0.0)
+    parser.add_argument("-package_to_model", action="store_true")
+    parser.add_argument("-b", action="store_true")
+    # argparse ends the program where a required option is missing, in Python up to 3.12 also with exit_on_error=False.
+    parser.error = _refuse  # type: ignore[method-assign]  # on purpose, see above
+    try:
+        return parser.parse_args(words)
+    except argparse.ArgumentError as error:
+        _refuse(str(error))
+
+
+def _refuse(message: str) -> NoReturn:
+    text = phrase("spawn_entity.py: {message}", message=foreign(message))
+    hint = phrase("give it a name and a source, such as -entity robot -topic robot_description")
+    raise LinkwrightError(Diagnostic("NODE810", text, hint=hint))

@@ -1,0 +1,159 @@
+"""Hardware of simulated joints and sensors.
+
+It replaces ``gazebo_ros2_control/GazeboSystem``, ``gz_ros2_control/GazeboSimSystem``,
+``ign_ros2_control/IgnitionSystem``, and any other plugin that a description in a simulated world names.
+
+Source: gazebo_ros2_control and gz_ros2_control (interfaces, holding of joints, texts).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from math import nan
+from types import MappingProxyType
+from typing import Any, Protocol
+
+import numpy as np
+
+from linkwright.control.hardware.component import Hardware
+from linkwright.control.hardware.description import HardwareDescription
+from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
+from linkwright.control.motion.pid import Pid
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.graph.log.logger import Logger
+from linkwright.simulation.plugins.plugin import PluginPlace
+from linkwright.simulation.plugins.ros2_control.joints import SimulatedJoint
+from linkwright.simulation.plugins.ros2_control.pids import pids_of
+from linkwright.simulation.plugins.ros2_control.sensors import SimulatedSensor, sensors_of, simulated_sensor
+from linkwright.simulation.simulation import Simulation
+
+_KINDS = (POSITION, VELOCITY, EFFORT)
+
+
+class ControlledModel(Protocol):
+    """The interface of the plugin that hardware uses."""
+
+    simulation: Simulation
+    place: PluginPlace
+
+    def joint(self, name: str) -> str:
+        """The name in the simulation of a joint of its model that moves."""
+
+    def random_of(self, name: str) -> np.random.Generator:
+        """A generator of random numbers for a sensor."""
+
+
+class SimulatedSystem(Hardware):
+    """Joints and sensors of a model as hardware.
+
+    Args:
+        description: its description in the URDF.
+        logger: the logger of its events.
+        plugin: the plugin that is part of the model.
+        holds: whether joints hold their positions while they have no command.
+        gain: the fraction of a position error that joints correct with each update; NaN corrects it all at once.
+        values: parameters of the plugin's node, which may have gains of PID controllers.
+
+    Attributes:
+        has_pids: whether `push` is to be called after each step of the world.
+    """
+
+    def __init__(
+        self,
+        description: HardwareDescription,
+        logger: Logger,
+        plugin: ControlledModel,
+        *,
+        holds: bool,
+        gain: float = nan,
+        values: Mapping[str, Any] = MappingProxyType({}),
+    ) -> None:
+        description, gains = pids_of(description, values, logger)
+        super().__init__(description, logger)
+        self.has_pids = bool(gains)
+        self._joints: dict[str, SimulatedJoint] = {}
+        for each in description.joints:
+            try:
+                name = plugin.joint(each.name)
+            except LinkwrightError as error:
+                logger.warning(f"Skipping joint in the URDF named '{each.name}' which is not in the gazebo model.")
+                logger.debug(error.diagnostics[0].message)
+                self._forget(each.name)
+                continue
+            self._joints[each.name] = SimulatedJoint(
+                plugin.simulation,
+                name,
+                each,
+                {state.kind: state for state in self.states if state.component == each.name},
+                {
+                    command.kind: command
+                    for command in self.commands
+                    if command.component == each.name and command.kind in _KINDS and each.mimic is None
+                },
+                holds=holds,
+                gain=gain,
+                pids={kind: Pid(each_gains) for (joint, kind), each_gains in gains.items() if joint == each.name},
+            )
+        for joint in self._joints.values():
+            joint.begin()
+        self._sensors = self._found_sensors(plugin)
+
+    def _forget(self, component: str) -> None:
+        """Remove a component that the model lacks, and its interfaces."""
+        self.states = [state for state in self.states if state.component != component]
+        self.commands = [command for command in self.commands if command.component != component]
+
+    def _found_sensors(self, plugin: ControlledModel) -> list[SimulatedSensor]:
+        found = []
+        there = sensors_of(plugin.place)
+        for sensor in self.description.sensors:
+            placed = there.get(sensor.name)
+            if placed is None:
+                message = phrase(
+                    "sensor '{name}' of <ros2_control>: the model has no IMU and no force and torque sensor of this "
+                    "name; its states stay as they are",
+                    name=sensor.name,
+                )
+                self.logger.warning(message)
+                continue
+            states = [state for state in self.states if state.component == sensor.name]
+            found.append(simulated_sensor(plugin.simulation, placed, states, plugin.random_of(placed.name)))
+        return found
+
+    def begin(self) -> None:
+        """Restart with the world."""
+        for joint in self._joints.values():
+            mode = joint.mode
+            joint.begin()
+            joint.set_mode(mode)
+
+    def on_activate(self) -> None:
+        """Read the joints, so that controllers which start before the first update find them where they are."""
+        for joint in self._joints.values():
+            joint.read()
+
+    def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
+        """Switch the interfaces that command the joints."""
+        for name, joint in self._joints.items():
+            if f"{name}/{joint.mode}" in stop:
+                joint.set_mode("")
+            for kind in (EFFORT, POSITION, VELOCITY):  # velocity takes precedence over position, as in gz_ros2_control
+                if f"{name}/{kind}" in start:
+                    joint.set_mode(kind)
+
+    def read(self, time_ns: int, period_s: float) -> None:
+        """Read joints and sensors."""
+        for joint in self._joints.values():
+            joint.read()
+        for sensor in self._sensors:
+            sensor.read()
+
+    def write(self, time_ns: int, period_s: float) -> None:
+        """Command the joints."""
+        for joint in self._joints.values():
+            joint.write(period_s)
+
+    def push(self, period_s: float) -> None:
+        """Apply the forces of PID controllers, after each step of the world."""
+        for joint in self._joints.values():
+            joint.push(period_s)

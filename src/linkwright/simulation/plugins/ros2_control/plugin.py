@@ -1,0 +1,141 @@
+"""``libgazebo_ros2_control.so``, ``gz_ros2_control-system`` and ``ign_ros2_control-system``: controllers in a world.
+
+Controllers are updated in the thread of the world, in simulated time, at ``update_rate`` of the manager.
+
+Source: gazebo_ros2_control and gz_ros2_control (parameters, names of nodes, where the description comes from).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import nan
+from typing import Any
+
+from linkwright.control.hardware.component import Hardware
+from linkwright.control.hardware.description import HardwareDescription
+from linkwright.control.hardware.resources import Resources
+from linkwright.control.manager.manager import ControllerManager, SavedState
+from linkwright.control.manager.nodes import ProcessArguments
+from linkwright.control.manager.services import ManagerServices
+from linkwright.control.manager.starting import load_hardware
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.graph import DESCRIPTION_QOS, Logger, Node
+from linkwright.graph.names.rules import join
+from linkwright.graph.parameters.files import read_parameter_file
+from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.stepped.node import SteppedNode
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.plugins.ros2_control.hardware import SimulatedSystem
+from linkwright.simulation.plugins.ros_element import node_of
+from linkwright.simulation.simulation import NANOSECONDS
+
+_DEFAULT_RATE = 100
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """Parameters of the plugins."""
+
+    parameters: tuple[str, ...] = ()
+    controller_manager_name: str = "controller_manager"
+    hold_joints: bool = True
+    position_proportional_gain: float = nan
+
+
+class SimulatedControl(SimulatedPlugin[Parameters]):
+    """Runs the controllers of a robot in the world."""
+
+    PARAMETERS = Parameters
+    IGNORED = (
+        "robot_param",  # the description arrives on its topic
+        "robot_param_node",
+        "e_stop_topic",
+        "control_period",
+        "robot_sim_type",
+        "controller_manager_prefix_node_name",
+    )
+
+    def start(self) -> None:
+        """Make the manager, and wait for the description."""
+        namespace = self.node.name.rpartition("/")[0] or "/"
+        rules = ParameterRules()
+        for path in self.parameters.parameters:
+            rules.add(read_parameter_file(path))
+        described = node_of(self.place.name, self.place.element, namespace)
+        self._values = {**rules.for_node(self.node.name), **described.parameters}
+        name = self.parameters.controller_manager_name
+        values = {"use_sim_time": True, **rules.for_node(join(namespace, name)), **described.parameters}
+        node = Node(
+            self.node.graph_node.graph,
+            name,
+            namespace=namespace,
+            parameters=values,
+            remappings=[remapping for remapping in described.remappings if not remapping[0].startswith("__")],
+            allow_undeclared_parameters=True,
+            automatically_declare_parameters_from_overrides=True,
+        )
+        node.graph.makers[node.get_logger().name] = self.node.logger.name
+        self._manager_node = SteppedNode(node, self.node.exchange, owned=True, calls=self.node.calls)
+        rate = values.get("update_rate", _DEFAULT_RATE)
+        self._manager = ControllerManager(
+            node,
+            self.node.exchange,
+            Resources(node.get_logger()),
+            ProcessArguments(rules, described.remappings),
+            update_rate=float(rate),
+        )
+        self._gain = float(values.get("position_proportional_gain", self.parameters.position_proportional_gain))
+        self._systems: list[SimulatedSystem] = []
+        self._last = self.simulation.time
+        self._loaded = False
+        node.get_logger().info("Loading controller_manager")
+        topics = dict.fromkeys(
+            node.handle.resolve_topic_name(each) for each in ("robot_description", "~/robot_description")
+        )
+        for topic in topics:
+            self._manager_node.subscribe("std_msgs/msg/String", topic, self._on_description, DESCRIPTION_QOS)
+
+    def reset(self) -> None:
+        """Restart; controllers stay as active as they are."""
+        self._last = self.simulation.time
+        for system in self._systems:
+            system.begin()
+        for loaded in self._manager.controllers.values():
+            loaded.next_ns = 0
+
+    def stop(self) -> None:
+        """Close controllers and manager; with a changed model they are made again."""
+        if hasattr(self, "_manager"):
+            self.left[self._manager_node.name] = self._manager.saved_state()
+            self._manager.close()
+            self._manager_node.close()
+
+    def random_of(self, name: str) -> Any:
+        """A generator of random numbers for a sensor; the same for the same seed."""
+        return self._environment.random(name)
+
+    def _on_description(self, message: Any) -> None:
+        if self._loaded:
+            return
+        manager = self._manager
+        self._loaded = load_hardware(manager, message.data, DescriptionLibrary(), self._system)
+        if not self._loaded:
+            return
+        services = ManagerServices(manager, self._manager_node)
+        self.every(1.0, services.publish_diagnostics)
+        self._last = self.simulation.time
+        self.every(manager.update_rate, self._update)
+        manager.resume(self.left.pop(self._manager_node.name, SavedState()))
+
+    def _system(self, description: HardwareDescription, logger: Logger) -> Hardware:
+        holds = self.parameters.hold_joints
+        system = SimulatedSystem(description, logger, self, holds=holds, gain=self._gain, values=self._values)
+        self._systems.append(system)
+        if system.has_pids:
+            self.every(0.0, lambda: system.push(self.simulation.step / NANOSECONDS))
+        return system
+
+    def _update(self) -> None:
+        now = self.simulation.time
+        period, self._last = now - self._last, now
+        self._manager.cycle(now, period / NANOSECONDS)

@@ -1,0 +1,136 @@
+"""audio_capture: publishes sound of a WAV file or of the microphone on audio_common's topics.
+
+Topics and parameters are those of the node of ros-drivers' audio_common: ``audio``, ``audio_stamped`` and, latched,
+``audio_info``. Deliberate differences: what is published is always 16 kHz, mono, S16LE, which is that node's default,
+and never MP3.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.graph import Graph
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.speech.nodes.audio_topics import NAMESPACE, AudioTopics
+from linkwright.speech.sound.microphone import Microphone
+from linkwright.speech.sound.samples import BLOCK, RATE, Samples
+from linkwright.speech.sound.wav import read_wav
+
+_PUBLISHED = {"channels": 1, "depth": 16, "sample_rate": RATE, "sample_format": "S16LE", "format": "wave"}
+"""The format parameters of audio_capture, with their only supported values."""
+
+_MOST_CHUNK = 10 * RATE
+
+
+class AudioCapture(SingleNode):
+    """The running node.
+
+    Parameters: ``device``, a microphone by number or part of its name; ``file``, a WAV file to publish instead, paced
+    by the node's clock, starting with the first subscriber and followed by silence, or with ``loop`` by the file again;
+    ``chunk``, the samples of a message.
+
+    Raises:
+        LinkwrightError: VOICE401 or VOICE402 the file cannot be read, VOICE412 or VOICE413 there is no microphone,
+            VOICE414 a parameter is invalid.
+    """
+
+    DEFAULT_NAME = "audio_capture_node"
+    NAMESPACE: ClassVar[str] = ""
+    """Of the topics of a node in no namespace."""
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        self._microphone: Microphone | None = None
+        with starting(self._node):
+            self._start()
+
+    def close(self) -> None:
+        """Close the microphone."""
+        if self._microphone is not None:
+            self._microphone.close()
+            self._microphone = None
+        super().close()
+
+    def _start(self) -> None:
+        node = self._node
+        device: str = node.declare_parameter("device", "").value
+        file: str = node.declare_parameter("file", "").value
+        self._loop: bool = node.declare_parameter("loop", False).value
+        chunk: int = node.declare_parameter("chunk", BLOCK).value
+        for name, value in {"src": "alsasrc", "dst": "appsink", "bitrate": 192, "diagnostic_tolerance": 0.1}.items():
+            node.declare_parameter(name, value)
+        self._warn_of_other_forms()
+        if not 0 < chunk <= _MOST_CHUNK:
+            message = phrase(
+                "parameter '{name}' must be {least} to {most}, and it is {value}",
+                name="chunk",
+                least=1,
+                most=_MOST_CHUNK,
+                value=chunk,
+            )
+            raise LinkwrightError(Diagnostic("VOICE414", message))
+        sound = read_wav(Path(file).expanduser()) if file else None
+        namespace = node.get_namespace().rstrip("/") or self.NAMESPACE
+        self._names = (f"{namespace}/audio", f"{namespace}/audio_stamped")
+        self._topics = AudioTopics(node, namespace)
+        if sound is None:
+            self._listen(device, chunk)
+        else:
+            self._play(sound, chunk)
+
+    def _warn_of_other_forms(self) -> None:
+        for name, published in _PUBLISHED.items():
+            value: Any = self._node.declare_parameter(name, published).value
+            if value != published:
+                text = phrase(
+                    "sound is published with {name} {published}, not {value}",
+                    name=name,
+                    published=published,
+                    value=value,
+                )
+                self._node.get_logger().warning(localized(text))
+
+    def _listen(self, device: str, chunk: int) -> None:
+        waiting: deque[Samples] = deque()
+
+        def publish() -> None:
+            while waiting:
+                self._topics.publish(waiting.popleft())
+
+        ready = self._node.create_guard_condition(publish)
+
+        def heard(samples: Samples) -> None:
+            waiting.append(samples)
+            ready.trigger()
+
+        self._microphone = Microphone(device, chunk, heard)
+
+    def _play(self, sound: Samples, chunk: int) -> None:
+        self._sound, self._chunk, self._at = sound, chunk, -1
+        self._node.create_timer(chunk / RATE, self._publish_next)
+
+    def _publish_next(self) -> None:
+        if self._at < 0:
+            if not any(map(self._node.count_subscribers, self._names)):
+                return
+            self._at = 0
+        block: Samples = self._sound[self._at : self._at + self._chunk]
+        self._at += self._chunk
+        if self._loop and self._at >= len(self._sound):
+            self._at = 0
+        if len(block) < self._chunk:
+            block = np.concatenate((block, np.zeros(self._chunk - len(block), np.int16)))
+        self._topics.publish(block)
+
+
+class RobotAudioCapture(AudioCapture):
+    """The same with topics of our robots, below ``/audio``."""
+
+    DEFAULT_NAME = "audio_capture"
+    NAMESPACE = NAMESPACE

@@ -1,0 +1,202 @@
+"""The dialogue: understanding, asking back, carrying out and answering commands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.graph import Clock, ClockType, Node
+from linkwright.speech.commands.actions import (
+    CallService,
+    Drive,
+    GoTo,
+    Launch,
+    Publish,
+    ScaleSpeed,
+    SendGoal,
+    SetSpeed,
+    Slot,
+    Stop,
+    amount,
+    filled,
+    shown,
+)
+from linkwright.speech.commands.command_set import ANY, CommandSet, Understood, chosen
+from linkwright.speech.nodes.driving import Driver, Ending
+from linkwright.speech.nodes.requests import Requests
+
+
+class Conversation:
+    """Executes commands and answers them.
+
+    Args:
+        node: the node.
+        commands: the commands.
+        language: the language of answers, until the user speaks another.
+        driver: moves the robot.
+        requests: calls services and actions of other nodes.
+        patience: the timeout of a question, s.
+        tell_command: called with each command that is executed: its intent, and ``slot=value`` for each filled slot, in
+            m, rad, s and m/s.
+        say: called with each answer of the robot.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        commands: CommandSet,
+        language: str,
+        driver: Driver,
+        requests: Requests,
+        patience: float,
+        tell_command: Callable[[str], None],
+        say: Callable[[str], None],
+    ) -> None:
+        self._commands, self._language = commands, language
+        self._driver, self._requests = driver, requests
+        self._tell_command, self._say = tell_command, say
+        self._asked: tuple[Understood, str] | None = None
+        clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
+        self._patience = node.create_timer(patience, self._unanswered, clock=clock, autostart=False)
+        for command in commands.commands:
+            requests.prepare(command.action)
+            for tell in command.action.tells if isinstance(command.action, Stop) else ():
+                requests.prepare(tell)
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether something is active that a stop would end."""
+        return self._driver.is_moving or self._requests.is_active
+
+    def handle(self, text: str) -> bool:
+        """Execute the command of a text, or ask back; return whether it was understood."""
+        answer = self._commands.answer(text) if self._asked is not None else None
+        if self._asked is not None and answer is not None:
+            understood, asked_for = self._asked
+            self._forget()
+            if answer:
+                self._carry_out(understood, asked_for)
+            else:
+                self.answer(phrase("I leave it"))
+            return True
+        found = self._commands.understand(text)
+        if found is None:
+            return False
+        self._forget()
+        self._answer_in(found.language)
+        if found.command.question:
+            self._asked = found, text
+            self._say(str(filled(chosen(found.command.question, self._language), found.values)))
+            self._patience.reset()
+        else:
+            self._carry_out(found, text)
+        return True
+
+    def stop(self, text: str = "") -> None:
+        """Stop everything.
+
+        Args:
+            text: the spoken text to answer; empty if there was none.
+        """
+        self._forget()
+        self._driver.stop()
+        self._requests.cancel_all()
+        self._notify_others()
+        if text:
+            stop = self._commands.stops[0]
+            found = self._commands.understand(text)
+            if found is not None:
+                self._answer_in(found.language)
+            self._tell_command(stop.intent)
+            self._say(chosen(stop.response, self._language) or text)
+
+    def rest(self, why: Phrase) -> None:
+        """Stop driving because the speaker is lost."""
+        self._driver.stop()
+        self.answer(why)
+
+    def answer(self, text: Phrase) -> None:
+        """Answer in the language that was spoken last."""
+        self._say(localized(text, "zh" if self._language.startswith("zh") else "en"))
+
+    def drive_ended(self, ending: Ending) -> None:
+        """Handle the end of a drive: done, or out of time."""
+        if ending == "stuck":
+            self.answer(phrase("I am stuck, and stop"))
+
+    def goal_ended(self, reached: bool, reason: str) -> None:
+        """Handle the end of a goal: reached, or not."""
+        if reached:
+            self.answer(phrase("I am done"))
+        elif reason:
+            self.answer(phrase("I could not do it: {reason}", reason=reason))
+        else:
+            self.answer(phrase("I could not do it"))
+
+    def _answer_in(self, language: str) -> None:
+        """Answer in a given language."""
+        if language != ANY:
+            self._language = language
+
+    def _carry_out(self, found: Understood, text: str) -> None:
+        if isinstance(found.command.action, Stop):
+            self.stop(text)
+            return
+        values = found.values
+        self._tell_command(
+            " ".join([found.command.intent, *(f"{name}={shown(value)}" for name, value in values.items())])
+        )
+        problem = self._done(found)
+        if problem is not None:
+            self.answer(problem)
+        else:
+            self._say(str(filled(chosen(found.command.response, self._language) or text, values)))
+
+    def _done(self, found: Understood) -> Phrase | None:
+        """Carry out an action; None, or the reason why it cannot be done."""
+        action, values = found.command.action, found.values
+        if found.command.moves:
+            self._make_way(found)
+        if isinstance(action, Drive):
+            self._driver.begin(action, values)
+        elif isinstance(action, ScaleSpeed):
+            self._driver.scale(action.factor)
+        elif isinstance(action, SetSpeed):
+            self._driver.set_speed(amount(action.speed, values) or 0.0)
+        elif isinstance(action, Publish):
+            self._requests.publish(action, values)
+        elif isinstance(action, Launch):
+            self._requests.launch(action, values)
+        elif isinstance(action, GoTo):
+            name = str(values[action.place.name]) if isinstance(action.place, Slot) else action.place
+            if not self._requests.send_pose(action.action, self._commands.places[name]):
+                return phrase("I cannot: no node serves '{name}'", name=action.action)
+        elif isinstance(action, SendGoal):
+            if not self._requests.send_goal(action, values):
+                return phrase("I cannot: no node serves '{name}'", name=action.action)
+        elif isinstance(action, CallService) and not self._requests.call(action, values):
+            return phrase("I cannot: no node serves '{name}'", name=action.name)
+        return None
+
+    def _make_way(self, found: Understood) -> None:
+        """End the motion that another one replaces."""
+        action = found.command.action
+        self._requests.leave(but=action.action if isinstance(action, GoTo) else "")
+        if not isinstance(action, Drive) and self._driver.is_moving:
+            self._driver.stop()
+        if not isinstance(action, Publish):  # its subscriber may start on it
+            self._notify_others()
+
+    def _notify_others(self) -> None:
+        for stop in self._commands.stops:
+            for tell in stop.action.tells if isinstance(stop.action, Stop) else ():
+                self._requests.publish(tell, {})
+
+    def _forget(self) -> None:
+        self._asked = None
+        self._patience.cancel()
+
+    def _unanswered(self) -> None:
+        self._forget()
+        self.answer(phrase("there is no answer, so I leave it"))

@@ -1,0 +1,387 @@
+"""The detector node, and its names in other packages.
+
+The node subscribes to images only while its detections have a subscriber. A thread processes the latest image, so that
+a slow network never builds up a queue. The same thread loads the detector, which may take seconds: until then the node
+takes no images, `set_classes` delays its answer, and everything else is answered. The differences between the packages
+are in `dialects`.
+
+Parameters, by the names of yolo_ros:
+
+``model``
+    an ONNX file, or the name of a detector: ``colours``, ``aruco``, ``apriltag``, ``qr``, ``line``, and those of
+    packages.
+``labels``
+    a file with the names of the classes, instead of those in the network.
+``device``
+    where the network runs: ``cpu``, ``cuda:0``.
+``imgsz_height``, ``imgsz_width``
+    the input size of a network that takes any size; 0 for that of its training.
+``threshold``, ``iou``, ``max_det``, ``classes``, ``enable``, ``max_rate``
+    which detections count, whether images are processed, and how many a second at most (0: all). These may be set at
+    run time. ``classes`` are names; none means all.
+``input_image_topic``, ``image_transport``, ``image_reliability``
+    the source of images: a topic of Image, or one that ends in ``/compressed``; 1 reliable, 2 best effort.
+``colours.NAME``, ``dictionary``, ``least_area``, ``part``, ``colour``
+    settings of the detectors without networks.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.graph import (
+    Future,
+    Graph,
+    Parameter,
+    ParameterDescriptor,
+    QoSProfile,
+    ReliabilityPolicy,
+    SetParametersResult,
+    Subscription,
+)
+from linkwright.graph.loop.callback_groups import MutuallyExclusiveCallbackGroup
+from linkwright.graph.parameters.parameter import Range
+from linkwright.images import BadImageError, ImageSource, RangeFinder, Unpacker, picture_of
+from linkwright.messages import get_message, get_service
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import bad_value, log_unknown
+from linkwright.perception.nodes.lazy import LazySubscriptions
+from linkwright.vision.detections import Detections
+from linkwright.vision.detector import Detector, Limits
+from linkwright.vision.detectors.drawing import drawn
+from linkwright.vision.detectors.options import LARGEST_SIZE, DetectorOptions
+from linkwright.vision.detectors.registry import DEFAULT_DETECTOR, make_detector
+from linkwright.vision.detectors.settings import bad_setting
+from linkwright.vision.nodes.detection_messages import MESSAGES, image_message
+from linkwright.vision.nodes.dialects import DARKNET_ROS, OURS, YOLO_ROS, YOLOV5_ROS, YOLOV5_ROS2, Dialect
+from linkwright.vision.nodes.latest import LatestWorker
+from linkwright.vision.nodes.picture_watch import ImageWatch
+
+_DEPTH = 10
+_SECONDS_BETWEEN_COMPLAINTS = 5.0
+_SHARE = ParameterDescriptor(floating_point_range=[Range(0.0, 1.0)])
+_RATE = ParameterDescriptor(floating_point_range=[Range(0.0, 1000.0)])
+_SIDE = ParameterDescriptor(integer_range=[Range(0, LARGEST_SIZE)], read_only=True)
+_FOR_GOOD = ParameterDescriptor(read_only=True)
+_ANY = ParameterDescriptor(dynamic_typing=True)
+_SETTINGS = ("dictionary", "least_area", "part", "colour")
+_COLOURS = "colours"
+_CLASSES = "classes"
+_RATE_SLACK = 0.9
+"""The share of a period after which an image is accepted, so that a slightly early one is not skipped."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Task:
+    """An image for the detector, its limits, and whether to draw boxes."""
+
+    message: Any
+    limits: Limits
+    draws: bool
+
+
+class DetectorNode(SingleNode):
+    """The running node. It exits if there is no such detector, or if the detector lacks the classes.
+
+    Attributes:
+        loaded: a future that is done when the detector is loaded.
+
+    Raises:
+        LinkwrightError: a parameter cannot have its value (NODE433, VISION109).
+    """
+
+    DEFAULT_NAME = "yolo_node"
+    DIALECT: ClassVar[Dialect] = OURS
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._graph = graph
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        node, dialect = self._node, self.DIALECT
+        with starting(node):
+            self._declare(dialect)
+            settings = self._detector_options(dialect)
+            self._limits = self._limits_of({}, None)
+            self._source = self._image_source(dialect)
+            self._qos = self._image_qos()
+            log_unknown(node)
+        self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        self.loaded: Future[None] = Future()
+        self._names: tuple[str, ...] | None = None
+        self._unpacker, self._ranges = Unpacker(), RangeFinder()
+        self._last_ns: int | None = None
+        self._done: deque[Callable[[], None]] = deque()
+        output = node.get_parameter(dialect.output_topic).value if dialect.output_topic else dialect.detections
+        self._detections = node.create_publisher(get_message(dialect.message), output, _DEPTH)
+        message_class = get_message("sensor_msgs/msg/Image")
+        self._images = [node.create_publisher(message_class, topic, _DEPTH) for topic in dialect.debug_images]
+        node.create_service(get_service("std_srvs/srv/SetBool"), "enable", self._on_enable)
+        choose, waiting = get_service("yolo_msgs/srv/SetClasses"), MutuallyExclusiveCallbackGroup()
+        node.create_service(choose, "set_classes", self._on_set_classes, callback_group=waiting)
+        node.add_on_set_parameters_callback(self._check)
+        node.add_post_set_parameters_callback(lambda _: self._follow())
+        self._finished = node.create_guard_condition(self._deliver)
+        self._lazy: LazySubscriptions | None = None
+        load = partial(self._load, self._value(dialect.model), settings)
+        self._worker = LatestWorker(load, f"{node.get_name()} detector")
+
+    def close(self) -> None:
+        """End it."""
+        if self._lazy is not None:
+            self._lazy.close()
+        self._worker.close()
+        super().close()
+
+    def _declare(self, dialect: Dialect) -> None:
+        node = self._node
+        node.declare_parameter(dialect.model, DEFAULT_DETECTOR, _FOR_GOOD)
+        node.declare_parameter(dialect.labels, "", _FOR_GOOD)
+        node.declare_parameter("device", "cpu", _FOR_GOOD)
+        node.declare_parameter("imgsz_height", 0, _SIDE)
+        node.declare_parameter("imgsz_width", 0, _SIDE)
+        node.declare_parameter(dialect.threshold, dialect.least_score, _SHARE)
+        node.declare_parameter(dialect.iou, dialect.overlap, _SHARE)
+        node.declare_parameter(dialect.most, dialect.largest_number)
+        node.declare_parameter(_CLASSES, [""], _ANY)
+        node.declare_parameter("enable", True)
+        node.declare_parameter("max_rate", 0.0, _RATE)
+        node.declare_parameter("image_transport", "raw", _FOR_GOOD)
+        node.declare_parameter("image_reliability", ReliabilityPolicy.BEST_EFFORT.value, _FOR_GOOD)
+        if dialect.image_topic:
+            node.declare_parameter(dialect.image_topic, dialect.images, _FOR_GOOD)
+        if dialect.output_topic:
+            node.declare_parameter(dialect.output_topic, dialect.detections, _FOR_GOOD)
+        for name in node.undeclared_overrides():
+            if name in _SETTINGS or name.startswith(f"{_COLOURS}."):
+                node.declare_parameter(name, None, ParameterDescriptor(read_only=True, dynamic_typing=True))
+
+    def _value(self, name: str) -> Any:
+        return self._node.get_parameter(name).value
+
+    def _detector_options(self, dialect: Dialect) -> DetectorOptions:
+        names = self._node.parameter_names()
+        settings: dict[str, object] = {name: self._value(name) for name in _SETTINGS if name in names}
+        colours = {name.partition(".")[2]: self._value(name) for name in names if name.startswith(f"{_COLOURS}.")}
+        if colours:
+            settings[_COLOURS] = colours
+        size = self._value("imgsz_height"), self._value("imgsz_width")
+        if 0 in size and any(size):
+            missing = "imgsz_width" if size[0] else "imgsz_height"
+            raise bad_setting(missing, 0, phrase("an input has a height and a width: give both, or none"))
+        labels = self._value(dialect.labels)
+        return DetectorOptions(
+            labels=Path(labels).expanduser() if labels else None,
+            device=self._value("device"),
+            size=size if all(size) else None,
+            settings=settings,
+        )
+
+    def _image_source(self, dialect: Dialect) -> ImageSource:
+        topic = self._value(dialect.image_topic) if dialect.image_topic else dialect.images
+        transport = self._value("image_transport")
+        source = ImageSource.of(self._node.resolve_topic_name(topic), transport)
+        if not source.is_read:
+            raise bad_value("image_transport", transport, self._node.get_name(), ("raw", "compressed"))
+        return source
+
+    def _image_qos(self) -> QoSProfile:
+        reliability = self._value("image_reliability")
+        known = {policy.value: policy for policy in ReliabilityPolicy}
+        if reliability not in known:
+            raise bad_value("image_reliability", reliability, self._node.get_name(), ("1", "2"))
+        return QoSProfile(depth=1, reliability=known[reliability])
+
+    def _limits_of(self, changed: dict[str, Any], known: Sequence[str] | None) -> Limits:
+        """The limits of the parameters, some of them replaced.
+
+        Args:
+            changed: the others, by name.
+            known: the classes of the detector; None while it is loaded, when all count.
+
+        Raises:
+            LinkwrightError: NODE433, `max_det` is less than 1, or the detector has no such class.
+        """
+        dialect = self.DIALECT
+        threshold, iou, most, classes = (
+            changed.get(name, self._value(name)) for name in (dialect.threshold, dialect.iou, dialect.most, _CLASSES)
+        )
+        if most < 1:
+            raise bad_value(dialect.most, most, self._node.get_name())
+        return Limits(threshold, iou, most, None if known is None else self._wanted(classes, known))
+
+    def _wanted(self, classes: Any, known: Sequence[str]) -> frozenset[str] | None:
+        given = classes if isinstance(classes, Sequence) and not isinstance(classes, str) else [classes]
+        wanted = []
+        for class_name in given:
+            numbered = isinstance(class_name, int) and not isinstance(class_name, bool) and 0 <= class_name < len(known)
+            name = known[class_name] if numbered else str(class_name)
+            if class_name is None or name == "":
+                continue
+            if known and name not in known:
+                raise bad_value(_CLASSES, name, self._node.get_name(), known)
+            wanted.append(name)
+        return frozenset(wanted) if wanted else None
+
+    def _check(self, parameters: Sequence[Parameter]) -> SetParametersResult:
+        changed = {parameter.name: parameter.value for parameter in parameters}
+        if self._names is None and _CLASSES in changed:
+            return SetParametersResult(
+                False, str(phrase("the detector is being loaded: its classes are not known yet"))
+            )
+        try:
+            self._limits_of(changed, self._names)
+        except LinkwrightError as error:
+            finding = error.diagnostics[0]
+            return SetParametersResult(
+                False, f"{finding.message}; {finding.hint}" if finding.hint else str(finding.message)
+            )
+        return SetParametersResult(True)
+
+    def _follow(self) -> None:
+        self._limits = self._limits_of({}, self._names)
+
+    def _on_enable(self, request: Any, response: Any) -> Any:
+        self._node.set_parameters([Parameter("enable", value=request.data)])
+        response.success, response.message = True, "enabled" if request.data else "disabled"
+        return response
+
+    async def _on_set_classes(self, request: Any, response: Any) -> Any:
+        await self.loaded
+        (result,) = self._node.set_parameters([Parameter(_CLASSES, value=list(request.classes) or [""])])
+        response.success, response.message = result.successful, result.reason
+        return response
+
+    def _subscribe(self) -> list[Subscription[Any]]:
+        kind = get_message(self._source.message_type)
+        return [self._node.create_subscription(kind, self._source.topic, self._receive, self._qos)]
+
+    def _receive(self, message: Any) -> None:
+        self._watch.came()
+        if not self._value("enable") or self._is_too_early():
+            return
+        draws = any(publisher.get_subscription_count() for publisher in self._images)
+        self._worker.offer(_Task(message, self._limits, draws))
+
+    def _is_too_early(self) -> bool:
+        rate, now = self._value("max_rate"), self._node.get_clock().now().nanoseconds
+        if rate > 0 and self._last_ns is not None and 0 <= now - self._last_ns < _RATE_SLACK * 1e9 / rate:
+            return True
+        self._last_ns = now
+        return False
+
+    # --- in the worker's thread ----------------------------------------------------------------------------------
+
+    def _load(self, model: str, options: DetectorOptions) -> Callable[[_Task], None] | None:
+        """Load the detector; a function that runs it on an image."""
+        try:
+            detector = make_detector(model, options)
+        except LinkwrightError as error:
+            self._hand_over(partial(self._fail, error))
+            return None
+        except Exception as error:  # noqa: BLE001 - of a detector that others may bring
+            self._hand_over(partial(self._fail, _failure(error)))
+            return None
+        self._hand_over(partial(self._begin, detector))
+        return partial(self._look, detector)
+
+    def _look(self, detector: Detector, task: _Task) -> None:
+        """Detect objects in an image."""
+        try:
+            message = self._unpacker.image(task.message, self._source.transport)
+            image = picture_of(message, self._ranges).rgb()
+            found = detector.detect(image, task.limits)
+            image_with_boxes = drawn(image, found) if task.draws else None
+        except (BadImageError, LinkwrightError) as error:
+            self._hand_over(partial(self._complain, str(error)))
+        except Exception as error:  # noqa: BLE001 - of a detector that others may bring
+            self._hand_over(partial(self._complain, str(_failure(error))))
+        else:
+            self._hand_over(partial(self._publish, task.message.header, found, image_with_boxes))
+
+    def _hand_over(self, result: Callable[[], None]) -> None:
+        self._done.append(result)
+        self._finished.trigger()
+
+    # --- results, in the node's callbacks ------------------------------------------------------------------------
+
+    def _deliver(self) -> None:
+        while self._done:
+            self._done.popleft()()
+
+    def _begin(self, detector: Detector) -> None:
+        """Start to take images."""
+        for note in detector.notes:
+            self._node.get_logger().info(str(note))
+        try:
+            self._limits = self._limits_of({}, detector.names)
+        except LinkwrightError as error:
+            self._fail(error)
+            return
+        self._names = detector.names
+        lazy = self._lazy = LazySubscriptions(
+            self._graph, self._node, [self._detections, *self._images], self._subscribe
+        )
+        self._watch = ImageWatch(self._node, self._source, self._qos, lambda: lazy.are_open, self.DIALECT.image_topic)
+        self.loaded.set_result(None)
+
+    def _fail(self, error: LinkwrightError) -> None:
+        finding = error.diagnostics[0]
+        logger = self._node.get_logger()
+        logger.fatal(finding.message)
+        if finding.hint:
+            logger.fatal(finding.hint)
+        if not self.finished.done():
+            self.finished.set_result(1)
+
+    def _complain(self, problem: str) -> None:
+        self._node.get_logger().error(problem, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+
+    def _publish(self, header: Any, found: Detections, image: NDArray[np.uint8] | None) -> None:
+        self._detections.publish(MESSAGES[self.DIALECT.message](header, found))
+        if image is None:
+            return
+        message = image_message(header, image)
+        for publisher in self._images:
+            if publisher.get_subscription_count():
+                publisher.publish(message)
+
+
+def _failure(error: Exception) -> LinkwrightError:
+    message = phrase("the detector failed: {problem}", problem=foreign(f"{type(error).__name__}: {error}"))
+    return LinkwrightError(Diagnostic("VISION112", message))
+
+
+class YoloRosNode(DetectorNode):
+    """yolo_node of yolo_ros: yolo_msgs/msg/DetectionArray on ``detections``, and ``dbg_image`` too."""
+
+    DIALECT = YOLO_ROS
+
+
+class Yolov5RosNode(DetectorNode):
+    """The detector of yolov5_ros: ``weights``, ``confidence_threshold``, ``iou_threshold``, ``output_topic``."""
+
+    DEFAULT_NAME = "detect"
+    DIALECT = YOLOV5_ROS
+
+
+class Yolov5Ros2Node(DetectorNode):
+    """yolo_detect_2d of yolov5_ros2: ``image_topic``; ``yolo_result`` and ``result_img``."""
+
+    DEFAULT_NAME = "yolov5_ros2"
+    DIALECT = YOLOV5_ROS2
+
+
+class DarknetRosNode(DetectorNode):
+    """detector_node of openrobotics_darknet_ros: ``~/images``, ``~/detections``, ``detection.threshold``."""
+
+    DEFAULT_NAME = "detector_node"
+    DIALECT = DARKNET_ROS

@@ -1,0 +1,119 @@
+"""Detected objects with their colours, in a fixed frame."""
+
+from __future__ import annotations
+
+from collections import Counter, OrderedDict, deque
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.geometry.single import compose
+from linkwright.graph import SENSOR_DATA_QOS, Node
+from linkwright.images import BadImageError, RangeFinder, picture_of
+from linkwright.messages import get_message
+from linkwright.nodes.frame_poses import FramePoses
+from linkwright.vision.nodes.detection_reading import VISION_FORM
+from linkwright.vision.places.colours import colour_of
+
+_DEPTH = 10
+_KEPT_IMAGES = 10
+_KEPT_COLOURS = 200
+_VOTES = 30
+
+
+@dataclass(frozen=True, slots=True)
+class SeenObject:
+    """A seen object.
+
+    Attributes:
+        name: its class.
+        id: the id of a tracker; empty if there is none.
+        colour: the colour as a word, if known.
+        x, y: the position of its centre in the fixed frame, metres.
+        radius: half its width, metres.
+        shape: its width by its height.
+        score: of its detection.
+        seen_ns: the time of the image, nanoseconds.
+    """
+
+    name: str
+    id: str
+    colour: str | None
+    x: float
+    y: float
+    radius: float
+    shape: float
+    score: float
+    seen_ns: int
+
+
+class SeenObjects:
+    """Listens to detections with positions, and finds the colours of the objects in the images.
+
+    Colours are those of the boxes that have the same id: topics ``tracking`` and ``image_raw``.
+
+    Args:
+        node: listens.
+        poses: the transforms.
+        fixed_frame: the frame of the things.
+
+    Attributes:
+        objects: those of the latest image.
+        heard_ns: when that image arrived, by the node's clock; None before the first.
+    """
+
+    def __init__(self, node: Node, poses: FramePoses, fixed_frame: str) -> None:
+        self._node, self._poses, self._frame = node, poses, fixed_frame
+        self.objects: list[SeenObject] = []
+        self.heard_ns: int | None = None
+        self._images: deque[Any] = deque(maxlen=_KEPT_IMAGES)
+        self._votes: OrderedDict[str, Counter[str]] = OrderedDict()
+        self._ranges = RangeFinder()
+        node.create_subscription(
+            get_message("sensor_msgs/msg/Image"), "image_raw", self._images.append, SENSOR_DATA_QOS
+        )
+        node.create_subscription(
+            get_message("vision_msgs/msg/Detection2DArray"), "tracking", self._receive_tracking, _DEPTH
+        )
+        node.create_subscription(
+            get_message("vision_msgs/msg/Detection3DArray"), "detections_3d", self._receive, _DEPTH
+        )
+
+    def _receive_tracking(self, message: Any) -> None:
+        """Record the colours of objects with ids."""
+        time_ns = message.header.stamp.nanoseconds
+        image = next((candidate for candidate in self._images if candidate.header.stamp.nanoseconds == time_ns), None)
+        if image is None or not any(detection.id for detection in message.detections):
+            return
+        try:
+            pixels = picture_of(image, self._ranges).pixels
+        except BadImageError:
+            return
+        if pixels.ndim != 3:
+            return
+        for detection in message.detections:
+            colour = colour_of(pixels[:, :, :3], VISION_FORM.box(detection)) if detection.id else None
+            if colour is not None:
+                votes = self._votes.setdefault(detection.id, Counter())
+                votes[colour] += 1
+                if votes.total() > _VOTES:
+                    self._votes[detection.id] = Counter({name: count // 2 for name, count in votes.items()})
+                self._votes.move_to_end(detection.id)
+        while len(self._votes) > _KEPT_COLOURS:
+            self._votes.popitem(last=False)
+
+    def _receive(self, message: Any) -> None:
+        self.heard_ns = self._node.get_clock().now().nanoseconds
+        time_ns = message.header.stamp.nanoseconds
+        self.objects = []
+        pose = self._poses.pose(self._frame, message.header.frame_id, time_ns) if message.detections else None
+        if pose is None:
+            return
+        for detection in message.detections:
+            at = detection.bbox.center.position
+            x, y, *_ = compose(pose, (at.x, at.y, at.z, 0.0, 0.0, 0.0, 1.0))
+            colours = self._votes.get(detection.id)
+            colour = colours.most_common(1)[0][0] if colours else None
+            name, score = VISION_FORM.best(detection)
+            size = detection.bbox.size
+            shape = size.y / size.z if size.z > 0 else 1.0
+            self.objects.append(SeenObject(name, detection.id, colour, x, y, size.y / 2, shape, score, time_ns))

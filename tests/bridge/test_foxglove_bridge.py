@@ -1,0 +1,402 @@
+"""foxglove_bridge with clients that speak its protocol byte by byte."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import socket
+import struct
+from contextlib import asynccontextmanager
+
+import aiohttp
+import pytest
+
+from linkwright.bridge.foxglove import FoxgloveBridge
+from linkwright.bridge.foxglove.origins import is_welcome
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import DESCRIPTION_QOS, Graph
+from linkwright.messages import String, deserialize, get_message, get_service, serialize
+from linkwright.nodes.options import NodeOptions
+from linkwright.nodes.registry import EXECUTABLES
+from tests.leaving import UPGRADE, ask_and_leave
+from tests.waiting import SECONDS, eventually
+
+V1 = ("foxglove.websocket.v1",)
+
+
+class Foxglove:
+    """A client."""
+
+    def __init__(self, socket_) -> None:
+        self.socket = socket_
+
+    async def next(self):
+        message = await self.socket.receive(timeout=SECONDS)
+        if message.type is aiohttp.WSMsgType.TEXT:
+            return json.loads(message.data)
+        assert message.type is aiohttp.WSMsgType.BINARY, message
+        return message.data
+
+    async def until(self, op: str) -> dict:
+        while True:
+            message = await self.next()
+            if isinstance(message, dict) and message["op"] == op:
+                return message
+
+    async def frame(self, code: int) -> bytes:
+        while True:
+            message = await self.next()
+            if isinstance(message, bytes) and message[0] == code:
+                return message
+
+    async def channel(self, topic: str) -> dict:
+        while True:
+            for channel in (await self.until("advertise"))["channels"]:
+                if channel["topic"] == topic:
+                    return channel
+
+    async def send(self, op: str, **fields) -> None:
+        await self.socket.send_json({"op": op, **fields})
+
+
+class World:
+    def __init__(self, **parameters) -> None:
+        self.log = []
+        self.graph = Graph(on_log=self.log.append)
+        self.node = self.graph.create_node("robot")
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            self.port = free.getsockname()[1]
+        self.bridge = FoxgloveBridge(self.graph, NodeOptions(parameters={"port": self.port, **parameters}))
+
+    async def offers(self, topic: str) -> None:
+        """Wait until the bridge has seen a topic."""
+        channels = self.bridge._offer.channels
+        await eventually(lambda: topic in [each.advertisement()["topic"] for each in channels.all()])
+
+    @asynccontextmanager
+    async def client(self, protocols=V1, **options):
+        async with (
+            aiohttp.ClientSession() as session,
+            session.ws_connect(f"ws://127.0.0.1:{self.port}/", protocols=protocols, **options) as connection,
+        ):
+            yield Foxglove(connection)
+
+
+@asynccontextmanager
+async def world(**parameters):
+    made = World(**parameters)
+    await eventually(lambda: any("connect to" in record.text for record in made.log))
+    try:
+        yield made
+    finally:
+        made.bridge.close()
+        await made.bridge._goodbye
+        await made.graph.close()
+
+
+@pytest.mark.parametrize("steps", range(8))
+async def test_wherever_its_start_is_broken_off_it_listens_no_longer(steps):
+    made = World()
+    for _ in range(steps):
+        await asyncio.sleep(0)
+    made.bridge.close()
+    assert made.bridge._listener.fileno() == -1  # before the loop runs on, which may be ended here
+    await asyncio.wait([made.bridge._serving])
+    await made.graph.close()
+
+
+def test_launch_files_that_start_it_find_it():
+    assert ("foxglove_bridge", "foxglove_bridge") in EXECUTABLES
+
+
+async def test_a_client_is_greeted_with_what_there_is():
+    async with world() as w:
+        w.node.create_publisher(String, "/chatter", 10)
+        await w.offers("/chatter")
+        for protocol in ("foxglove.websocket.v1", "foxglove.sdk.v1"):
+            async with w.client((protocol,)) as client:
+                assert client.socket.protocol == protocol
+                hello = await client.next()
+                assert hello["op"] == "serverInfo"
+                assert hello["supportedEncodings"] == ["cdr"]
+                assert {"clientPublish", "parameters", "services", "connectionGraph", "assets"} <= set(
+                    hello["capabilities"]
+                )
+                chatter = await client.channel("/chatter")
+                assert chatter["encoding"] == "cdr"
+                assert (chatter["schemaName"], chatter["schemaEncoding"]) == ("std_msgs/msg/String", "ros2msg")
+                assert "string data" in chatter["schema"]
+
+
+async def test_messages_come_as_cdr_and_stop_on_demand():
+    async with world() as w, w.client() as client:
+        publisher = w.node.create_publisher(String, "/chatter", 10)
+        channel = await client.channel("/chatter")
+        await client.send("subscribe", subscriptions=[{"id": 42, "channelId": channel["id"]}])
+        await eventually(lambda: publisher.get_subscription_count() == 1)
+        publisher.publish(String("hello"))
+        frame = await client.frame(1)
+        code, subscription, stamp = struct.unpack_from("<BIQ", frame)
+        assert (code, subscription) == (1, 42)
+        assert stamp > 1_600_000_000_000_000_000
+        assert deserialize(frame[13:], String).data == "hello"
+        await client.send("unsubscribe", subscriptionIds=[42])
+        await eventually(lambda: publisher.get_subscription_count() == 0)
+
+
+async def test_a_late_client_gets_what_lasts():
+    async with world() as w:
+        w.node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String("<robot/>"))
+        async with w.client() as client:
+            channel = await client.channel("/robot_description")
+            await client.send("subscribe", subscriptions=[{"id": 1, "channelId": channel["id"]}])
+            assert deserialize((await client.frame(1))[13:], String).data == "<robot/>"
+
+
+async def test_channels_come_and_go():
+    async with world() as w, w.client() as client:
+        publisher = w.node.create_publisher(String, "/brief", 10)
+        channel = await client.channel("/brief")
+        w.node.destroy_publisher(publisher)
+        assert channel["id"] in (await client.until("unadvertise"))["channelIds"]
+        await client.send("subscribe", subscriptions=[{"id": 1, "channelId": channel["id"]}])
+        assert (await client.until("status"))["level"] == 2
+
+
+async def test_clients_publish():
+    heard = []
+    async with world() as w, w.client() as client:
+        twist = get_message("geometry_msgs/msg/Twist")
+        w.node.create_subscription(twist, "/cmd_vel", heard.append, 10)
+        channel = {"id": 9, "topic": "/cmd_vel", "encoding": "cdr", "schemaName": "geometry_msgs/Twist"}
+        await client.send("advertise", channels=[channel])
+        message = twist()
+        message.linear.x = 0.5
+        await client.socket.send_bytes(struct.pack("<BI", 1, 9) + serialize(message))
+        await eventually(lambda: heard)
+        assert heard[0].linear.x == 0.5
+        await client.send("unadvertise", channelIds=[9])
+        await client.socket.send_bytes(struct.pack("<BI", 1, 9) + serialize(message))
+        assert "was not advertised" in (await client.until("status"))["message"]
+
+
+async def test_services_are_called():
+    set_bool = get_service("std_srvs/srv/SetBool")
+
+    def answer(request, response):
+        response.success, response.message = True, f"set to {request.data}"
+        return response
+
+    async with world() as w, w.client() as client:
+        w.node.create_service(set_bool, "/light", answer)
+        light = None
+        while light is None:
+            told = (await client.until("advertiseServices"))["services"]
+            light = next((each for each in told if each["name"] == "/light"), None)
+        assert light["request"]["schema"] == light["requestSchema"] == "bool data\n"
+        head = struct.pack("<BIII", 2, light["id"], 77, 3) + b"cdr"
+        await client.socket.send_bytes(head + serialize(set_bool.Request(data=True)))
+        frame = await client.frame(3)
+        _, service, call, length = struct.unpack_from("<BIII", frame)
+        assert (service, call, frame[13 : 13 + length]) == (light["id"], 77, b"cdr")
+        assert deserialize(frame[13 + length :], set_bool.Response).message == "set to True"
+        await client.socket.send_bytes(struct.pack("<BIII", 2, 9999, 78, 3) + b"cdr")
+        failed = await client.until("serviceCallFailure")
+        assert (failed["callId"], failed["serviceId"]) == (78, 9999)
+
+
+async def test_parameters_are_read_set_and_followed():
+    async with world() as w, w.client() as client:
+        w.node.declare_parameter("speed", 1.5)
+        await client.send("getParameters", parameterNames=["/robot.speed"], id="one")
+        told = await client.until("parameterValues")
+        assert told == {
+            "op": "parameterValues",
+            "id": "one",
+            "parameters": [{"name": "/robot.speed", "value": 1.5, "type": "float64"}],
+        }
+        await client.send("subscribeParameterUpdates", parameterNames=["/robot.speed"])
+        change = {"name": "/robot.speed", "value": 2, "type": "float64"}
+        await client.send("setParameters", parameters=[change], id="two")
+        answers = [await client.until("parameterValues") for _ in range(2)]
+        assert [answer["parameters"][0]["value"] for answer in answers] == [2.0, 2.0]
+        assert w.node.get_parameter("speed").value == 2.0
+        await client.send("getParameters", parameterNames=[], id="all")
+        names = {each["name"] for each in (await client.until("parameterValues"))["parameters"]}
+        assert {"/robot.speed", "/robot.use_sim_time"} <= names
+
+
+async def test_the_connections_are_told_and_then_their_changes():
+    async with world() as w, w.client() as client:
+        w.node.create_publisher(String, "/chatter", 10)
+        await w.offers("/chatter")
+        await client.send("subscribeConnectionGraph")
+        first = await client.until("connectionGraphUpdate")
+        assert {"name": "/chatter", "publisherIds": ["/robot"]} in first["publishedTopics"]
+        w.node.create_subscription(String, "/chatter", print, 10)
+        then = await client.until("connectionGraphUpdate")
+        assert then["subscribedTopics"] == [{"name": "/chatter", "subscriberIds": ["/robot"]}]
+        assert then["publishedTopics"] == []
+
+
+async def test_the_time_of_a_simulation_is_told():
+    async with world(use_sim_time=True) as w, w.client() as client:
+        assert "time" in (await client.next())["capabilities"]
+        clock = get_message("rosgraph_msgs/msg/Clock")
+        publisher = w.node.create_publisher(clock, "/clock", 10)
+        message = clock()
+        message.clock.sec = 12
+        publisher.publish(message)
+        assert struct.unpack("<BQ", await client.frame(2)) == (2, 12_000_000_000)
+
+
+# --- what must not be ----------------------------------------------------------------------------------------------
+
+
+async def fetched(client: Foxglove, uri: str) -> tuple[int, bytes]:
+    await client.send("fetchAsset", uri=uri, requestId=3)
+    frame = await client.frame(4)
+    _, request, failed, length = struct.unpack_from("<BIBI", frame)
+    assert request == 3
+    return failed, frame[10 + length :] if not failed else frame[10 : 10 + length]
+
+
+async def test_only_meshes_of_packages_that_a_description_names_are_given(tmp_path, monkeypatch):
+    share = tmp_path / "robot"
+    (share / "meshes").mkdir(parents=True)
+    (share / "package.xml").write_text("<package format='3'><name>arm_pkg</name><version>1.0.0</version></package>")
+    (share / "meshes" / "a.stl").write_bytes(b"solid a")
+    (share / "secret.py").write_text("secret")
+    (tmp_path / "secret.png").write_bytes(b"secret")
+    (share / "meshes" / "link.png").symlink_to(tmp_path / "secret.png")
+    source = tmp_path / "src" / "robot"  # as colcon build --symlink-install lays a package out
+    source.mkdir(parents=True)
+    (source / "package.xml").write_text((share / "package.xml").read_text())
+    (source / "b.stl").write_bytes(b"solid b")
+    (share / "meshes" / "b.stl").symlink_to(source / "b.stl")
+    monkeypatch.chdir(share)
+    async with world() as w, w.client() as client:
+        assert (await fetched(client, "package://arm_pkg/meshes/a.stl"))[0] == 1
+        w.node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(
+            String('<robot><mesh filename="package://arm_pkg/meshes/a.stl"/></robot>')
+        )
+        await w.graph.settle()
+        assert await fetched(client, "package://arm_pkg/meshes/a.stl") == (0, b"solid a")
+        assert await fetched(client, "package://arm_pkg/meshes/b.stl") == (0, b"solid b")
+        for refused in (
+            "package://arm_pkg/secret.py",
+            "package://arm_pkg/../secret.png",
+            "package://arm_pkg/meshes/../../secret.png",
+            "package://arm_pkg/meshes/%2e%2e/secret.png",
+            "package://arm_pkg/meshes/link.png",
+            "package://arm_pkg//etc/passwd.png",
+            "package://other/meshes/a.stl",
+            "file:///etc/passwd",
+            "/etc/passwd",
+            "http://example.com/a.stl",
+        ):
+            failed, why = await fetched(client, refused)
+            assert failed == 1, refused
+            assert b"secret" not in why
+
+
+@pytest.mark.parametrize(
+    ("origin", "welcome"),
+    [
+        (None, True),
+        ("https://app.foxglove.dev", True),
+        ("https://lichtblick-suite.github.io", True),
+        ("http://localhost:8080", True),
+        ("http://127.0.0.1:3000", True),
+        ("file://", True),
+        ("null", False),
+        ("https://evil.example", False),
+        ("http://app.foxglove.dev", False),
+        ("https://app.foxglove.dev.evil.example", False),
+        ("https://evilfoxglove.dev", False),
+        ("http://[", False),
+    ],
+)
+def test_only_pages_that_are_welcome_connect(origin, welcome):
+    assert is_welcome(origin) is welcome
+
+
+async def test_a_page_of_another_site_is_refused():
+    async with world() as w:
+        with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
+            async with w.client(origin="https://evil.example"):
+                pass
+        assert caught.value.status == 403
+    async with world(allowed_origins=["https://evil.example"]) as w, w.client(origin="https://evil.example") as client:
+        assert (await client.next())["op"] == "serverInfo"
+
+
+async def test_another_protocol_is_refused():
+    async with world() as w, w.client(()) as client:
+        message = await client.socket.receive(timeout=SECONDS)
+        assert message.type is aiohttp.WSMsgType.CLOSE
+        assert client.socket.close_code == 1002
+
+
+async def test_nonsense_is_answered_and_the_bridge_lives_on():
+    async with world() as w, w.client() as client:
+        empty = '{"op": "advertise", "channels": [{}]}'
+        for text in ("nonsense", "[]", "{}", '{"op": "fly"}', '{"op": "subscribe"}', empty, "[" * 100_000):
+            await client.socket.send_str(text)
+            assert (await client.until("status"))["level"] == 2
+        for frame in (
+            b"",
+            b"\x01",
+            b"\xff1234",
+            struct.pack("<BIII", 2, 1, 1, 4_000_000_000),
+            struct.pack("<BI", 1, 5),
+        ):
+            await client.socket.send_bytes(frame)
+            assert (await client.until("status"))["level"] == 2
+        await client.send("subscribeConnectionGraph")
+        assert (await client.until("connectionGraphUpdate"))["publishedTopics"]
+
+
+async def test_lists_of_names_hide_the_rest():
+    lists = {"topic_whitelist": ["/seen.*"], "client_topic_whitelist": ["/cmd_vel"], "service_whitelist": ["/none"]}
+    async with world(**lists) as w:
+        w.node.create_publisher(String, "/seen_one", 10)
+        w.node.create_publisher(String, "/hidden", 10)
+        await w.offers("/seen_one")
+        async with w.client() as client:
+            assert [each["topic"] for each in (await client.until("advertise"))["channels"]] == ["/seen_one"]
+            assert (await client.until("advertiseServices"))["services"] == []
+            channel = {"id": 1, "topic": "/other", "encoding": "cdr", "schemaName": "std_msgs/msg/String"}
+            await client.send("advertise", channels=[channel])
+            assert "may not publish" in (await client.until("status"))["message"]
+
+
+async def test_no_list_of_names_keeps_it_busy():
+    async with world(topic_whitelist=["/(s|ss)+", "/seen"]) as w:
+        w.node.create_publisher(String, "/seen", 10)
+        w.node.create_publisher(String, f"/{'s' * 60}_", 10)
+        await w.offers("/seen")
+        async with w.client() as client:
+            assert [each["topic"] for each in (await client.until("advertise"))["channels"]] == ["/seen"]
+
+
+async def test_a_client_that_leaves_writes_nothing_on_the_terminal(caplog):
+    async with world() as w:
+        for headers in ("", f"{UPGRADE}Sec-WebSocket-Protocol: {V1[0]}\r\n"):
+            await ask_and_leave(w.port, "/", headers)
+        async with w.client() as client:
+            await client.until("serverInfo")
+    assert [record.getMessage() for record in caplog.records] == []
+
+
+async def test_what_it_cannot_start_with_is_said():
+    graph = Graph(on_log=lambda _: None)
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(LinkwrightError) as caught:
+            FoxgloveBridge(graph, NodeOptions(parameters={"port": port}))
+        assert caught.value.diagnostics[0].code == "NODE702"
+    with pytest.raises(LinkwrightError) as caught:
+        FoxgloveBridge(graph, NodeOptions(parameters={"topic_whitelist": ["("]}))
+    assert caught.value.diagnostics[0].code == "NODE701"
+    await graph.close()

@@ -1,0 +1,260 @@
+"""Joysticks: a pipe that says what the kernel would, and what the nodes make of it."""
+
+from __future__ import annotations
+
+import os
+import struct
+import sys
+
+import pytest
+
+from linkwright.control.nodes.teleop.joy import JoyLinuxNode, JoyNode, deflection
+from linkwright.control.nodes.teleop.twist_joy import TeleopTwistJoy
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import get_message
+from linkwright.nodes import NodeOptions
+from tests.waiting import eventually
+
+JOY = get_message("sensor_msgs/msg/Joy")
+BUTTON, AXIS, INITIAL = 1, 2, 0x80
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a device is played by a named pipe")
+
+
+class Joystick:
+    """A device at a path of the test."""
+
+    def __init__(self, path):
+        self.path = path
+        self.file = None
+
+    def plug_in(self):
+        os.mkfifo(self.path)
+        # Opened for both, a pipe is there for its reader at once.
+        self.file = os.open(self.path, os.O_RDWR)
+
+    def pull_out(self):
+        self.path.unlink()
+        self.file = os.close(self.file)
+
+    def say(self, *events):
+        """Tell changes, each as kind, number and value."""
+        for kind, number, value in events:
+            os.write(self.file, struct.pack("=IhBB", 0, value, kind, number))
+
+
+@pytest.fixture
+def joystick(tmp_path, monkeypatch):
+    monkeypatch.setattr("linkwright.control.nodes.teleop.joystick_device.FOLDER", tmp_path)
+    each = Joystick(tmp_path / "js0")
+    yield each
+    if each.file is not None:
+        os.close(each.file)
+
+
+@pytest.fixture
+def heard(stage):
+    messages = []
+    stage.node.create_subscription(JOY, "/joy", messages.append, 100)
+    return messages
+
+
+@pytest.fixture
+async def start(stage):
+    running = []
+
+    def node(kind=JoyNode, **parameters):
+        running.append(kind(stage.graph, NodeOptions(parameters=parameters)))
+        return running[-1]
+
+    yield node
+    for each in running:
+        each.close()
+
+
+async def test_axes_and_buttons_are_those_of_ros(joystick, stage, heard, start):
+    joystick.plug_in()
+    joystick.say((AXIS | INITIAL, 0, 0), (AXIS | INITIAL, 1, 0), (BUTTON | INITIAL, 0, 0), (BUTTON | INITIAL, 1, 0))
+    node = start(deadzone=0.2, autorepeat_rate=0.0)
+    await eventually(lambda: len(node._buttons) == 2)
+    await stage.clock.advance(0.01)
+    assert [(list(each.axes), list(each.buttons)) for each in heard] == [([0, 0], [0, 0])], "one message of the start"
+    joystick.say((BUTTON, 1, 1))
+    await eventually(lambda: len(heard) == 2)
+    assert list(heard[-1].buttons) == [0, 1]
+    assert heard[-1].header.frame_id == "joy"
+    joystick.say((AXIS, 1, -32767), (AXIS, 0, 19661))
+    await eventually(lambda: node._axes[0] != 0)
+    await stage.clock.advance(0.01)
+    assert list(heard[-1].axes) == pytest.approx([-0.5, 1.0], abs=1e-4)
+    assert len(heard) == 3, "what comes within a millisecond is one message"
+
+
+def test_a_deadzone_is_smooth():
+    assert [round(deflection(value, 0.1), 4) for value in (0, 3276, -3277, -32767, 32767, -32768)] == [
+        0,
+        0,
+        0,
+        1,
+        -1,
+        1,
+    ]
+    assert deflection(-18022, 0.1) == pytest.approx(0.5, abs=1e-4)
+
+
+async def test_what_does_not_change_is_repeated(joystick, stage, heard, start):
+    joystick.plug_in()
+    joystick.say((AXIS | INITIAL, 0, 0))
+    node = start(autorepeat_rate=10.0)
+    await eventually(lambda: len(node._axes) == 1)
+    await stage.clock.advance(1.005)
+    assert len(heard) == 11
+
+
+async def test_sticky_buttons_stay(joystick, stage, heard, start):
+    joystick.plug_in()
+    start(sticky_buttons=True, autorepeat_rate=0.0)
+    for count, value in enumerate((1, 0, 1), 1):
+        joystick.say((BUTTON, 0, value))
+        if value:
+            await eventually(lambda expected=(count + 1) // 2: len(heard) == expected)
+    assert [list(each.buttons) for each in heard] == [[1], [0]]
+
+
+async def test_it_waits_for_a_joystick_and_says_so_once(joystick, stage, heard, start, said):
+    node = start(autorepeat_rate=0.0)
+    await stage.clock.advance(5.0)
+    assert said("WARN") == ["there is no joystick /dev/input/js0; waiting for it"]
+    joystick.plug_in()
+    joystick.say((BUTTON | INITIAL, 0, 1))
+    await stage.clock.advance(1.0)
+    await eventually(lambda: node._buttons == [1])
+    await stage.clock.advance(0.01)
+    assert list(heard[-1].buttons) == [1]
+
+
+async def test_a_joystick_that_is_pulled_out_lets_go_of_everything(joystick, stage, heard, start, said):
+    joystick.plug_in()
+    start(autorepeat_rate=0.0)
+    joystick.say((BUTTON, 0, 1), (AXIS, 0, 32767))
+    await eventually(lambda: heard and list(heard[-1].axes))
+    joystick.pull_out()
+    await eventually(lambda: "the joystick is gone; waiting for it" in said("WARN"))
+    await stage.graph.settle()
+    assert (list(heard[-1].axes), list(heard[-1].buttons)) == ([0.0], [0])
+    joystick.plug_in()
+    await stage.clock.advance(1.0)
+    joystick.say((BUTTON, 2, 1))
+    await eventually(lambda: list(heard[-1].buttons) == [0, 0, 1])
+
+
+async def test_a_joystick_that_may_not_be_read_is_told_of(tmp_path, stage, start, said):
+    start(JoyLinuxNode, dev=str(tmp_path))  # a folder
+    (text,) = said("WARN")
+    assert text.startswith(f"joystick {tmp_path} cannot be read: ")
+
+
+async def test_joy_linux_takes_a_device_by_its_path(tmp_path, stage, heard, start):
+    joystick = Joystick(tmp_path / "mine")
+    joystick.plug_in()
+    start(JoyLinuxNode, dev=str(joystick.path), coalesce_interval=0.0, autorepeat_rate=0.0)
+    joystick.say((AXIS, 0, -32767))
+    await eventually(lambda: heard)
+    assert list(heard[0].axes) == [1.0]
+    os.close(joystick.file)
+
+
+@pytest.mark.parametrize("wrong", [{"deadzone": 1.5}, {"autorepeat_rate": -1.0}, {"coalesce_interval_ms": -1}])
+async def test_parameters_out_of_range_are_refused(stage, wrong):
+    with pytest.raises(LinkwrightError) as raised:
+        JoyNode(stage.graph, NodeOptions(parameters=wrong))
+    assert raised.value.diagnostics[0].code == "NODE903"
+    assert next(iter(wrong)) in raised.value.diagnostics[0].message
+
+
+# --- teleop_twist_joy -----------------------------------------------------------------------------------------------
+
+
+class Pilot:
+    """Says what a joystick says, and hears the velocities."""
+
+    def __init__(self, stage, kind="geometry_msgs/msg/Twist"):
+        self.stage = stage
+        self.node = stage.graph.create_node("joystick")
+        self.publisher = self.node.create_publisher(JOY, "/joy", 10)
+        self.velocities = []
+        stage.node.create_subscription(kind, "/cmd_vel", self.velocities.append, 10)
+
+    async def hold(self, axes, *buttons):
+        """Deflect axes and press buttons; gives the velocity that follows, None for none."""
+        self.velocities.clear()
+        self.publisher.publish(JOY(axes=axes, buttons=[int(number in buttons) for number in range(8)]))
+        await self.stage.graph.settle()
+        if not self.velocities:
+            return None
+        twist = getattr(self.velocities[-1], "twist", self.velocities[-1])
+        return twist.linear.x, twist.linear.y, twist.angular.z
+
+
+AXES = [0.5, 0.25, 1.0, 0.0, 0.0, 1.0]
+
+
+async def test_a_button_must_be_held(stage, start):
+    pilot = Pilot(stage)
+    start(TeleopTwistJoy)
+    assert await pilot.hold(AXES) is None
+    assert await pilot.hold(AXES, 5) == (0.5, 0, 0.5)
+    assert await pilot.hold(AXES) == (0, 0, 0)
+    assert await pilot.hold(AXES) is None, "it stops once"
+
+
+async def test_turbo_scales_and_more_axes(stage, start):
+    pilot = Pilot(stage)
+    start(
+        TeleopTwistJoy,
+        **{"enable_turbo_button": 7, "axis_linear.x": 1, "axis_linear.y": 0, "scale_linear.y": 2.0},
+        **{"scale_linear_turbo.x": 4.0, "axis_angular.yaw": 17},
+    )
+    assert await pilot.hold(AXES, 5) == (0.125, 1.0, 0)
+    assert await pilot.hold(AXES, 7) == (1.0, 0, 0)
+
+
+async def test_backwards_turns_can_be_inverted_and_no_button_be_needed(stage, start):
+    pilot = Pilot(stage)
+    start(TeleopTwistJoy, inverted_reverse=True, require_enable_button=False)
+    assert await pilot.hold([0, 0, 1.0, 0, 0, -1.0]) == (-0.5, 0, -0.5)
+
+
+async def test_parameters_can_change(stage, start):
+    pilot = Pilot(stage)
+    node = start(TeleopTwistJoy)
+    assert await stage.set(node, enable_button=1) == [(True, "")]
+    assert await pilot.hold(AXES, 1) == (0.5, 0, 0.5)
+
+
+async def test_the_type_is_that_of_who_listens(stage, start):
+    pilot = Pilot(stage, "geometry_msgs/msg/TwistStamped")
+    start(TeleopTwistJoy, frame="base_link")
+    assert await pilot.hold(AXES, 5) == (0.5, 0, 0.5)
+    assert pilot.velocities[0].header.frame_id == "base_link"
+
+
+async def test_a_joystick_nobody_speaks_for_stops_the_robot(stage, start, said):
+    pilot = Pilot(stage)
+    start(TeleopTwistJoy)
+    await pilot.hold(AXES, 5)
+    pilot.velocities.clear()
+    pilot.node.destroy_node()
+    await stage.clock.advance(1.0)
+    assert [each.linear.x for each in pilot.velocities] == [0.0]
+    assert said("WARN") == ["no node publishes '/joy' any more: the robot is stopped"]
+
+
+async def test_its_end_stops_the_robot(stage):
+    pilot = Pilot(stage)
+    node = TeleopTwistJoy(stage.graph, NodeOptions())
+    await pilot.hold(AXES, 5)
+    pilot.velocities.clear()
+    node.close()
+    await stage.graph.settle()
+    assert [each.linear.x for each in pilot.velocities] == [0.0]

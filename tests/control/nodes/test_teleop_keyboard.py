@@ -1,0 +1,235 @@
+"""teleop_twist_keyboard in a terminal of the test."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+
+import pytest
+
+from linkwright.control.nodes.teleop.keyboard import TeleopTwistKeyboard
+from linkwright.control.nodes.teleop.keys import keys_in
+from linkwright.diagnostics import LinkwrightError
+from linkwright.nodes import NodeOptions
+from tests.waiting import SECONDS, eventually
+
+if sys.platform == "win32":
+    pytest.skip("has no pseudo-terminals", allow_module_level=True)
+
+import termios
+
+TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+
+
+def echoes(descriptor: int) -> bool:
+    return bool(termios.tcgetattr(descriptor)[3] & termios.ECHO)
+
+
+@pytest.fixture
+def terminal() -> Iterator[tuple[int, int]]:
+    """The side that types, and the side of the program."""
+    sides = os.openpty()
+    yield sides
+    for side in sides:
+        with contextlib.suppress(OSError):  # the test closed it
+            os.close(side)
+
+
+class Driver:
+    """Who types."""
+
+    def __init__(self, stage, typing, own, kind=TWIST, **parameters):
+        self.stage, self.typing, self.own = stage, typing, own
+        self.heard, self.printed = [], []
+        self.closed = False
+        if kind:
+            stage.node.create_subscription(kind, "/cmd_vel", self.heard.append, 10)
+        options = NodeOptions(parameters=parameters, output=self.printed.append, terminal=own)
+        self.node = TeleopTwistKeyboard(stage.graph, options)
+
+    async def type(self, text, messages):
+        """Press keys and wait until as many messages have come; gives the last as x, y, z, turn."""
+        os.write(self.typing, text.encode())
+        await eventually(lambda: len(self.heard) >= messages, what=lambda: self.heard)
+        assert len(self.heard) == messages
+        return self.last()
+
+    def close(self):
+        self.closed = True
+        self.node.close()
+
+    def last(self):
+        twist = getattr(self.heard[-1], "twist", self.heard[-1])
+        return twist.linear.x, twist.linear.y, twist.linear.z, twist.angular.z
+
+
+@pytest.fixture
+def start(stage, terminal):
+    started = []
+
+    def driver(**given):
+        started.append(Driver(stage, *terminal, **given))
+        return started[-1]
+
+    yield driver
+    for each in started:
+        if not each.closed:
+            each.close()
+
+
+async def test_keys_move_as_those_of_ros_do(start):
+    driver = start()
+    forwards = {"i": (0.5, 0, 0, 0), "o": (0.5, 0, 0, -1), "u": (0.5, 0, 0, 1), "j": (0, 0, 0, 1), "l": (0, 0, 0, -1)}
+    backwards = {",": (-0.5, 0, 0, 0), ".": (-0.5, 0, 0, 1), "m": (-0.5, 0, 0, -1), "k": (0, 0, 0, 0)}
+    sideways = {"I": (0.5, 0, 0, 0), "O": (0.5, -0.5, 0, 0), "U": (0.5, 0.5, 0, 0), "J": (0, 0.5, 0, 0)}
+    more = {"L": (0, -0.5, 0, 0), "<": (-0.5, 0, 0, 0), ">": (-0.5, -0.5, 0, 0), "M": (-0.5, 0.5, 0, 0)}
+    heights = {"t": (0, 0, 0.5, 0), "b": (0, 0, -0.5, 0), "K": (0, 0, 0, 0)}
+    expected = forwards | backwards | sideways | more | heights
+    for count, (key, velocity) in enumerate(expected.items(), 1):
+        assert await driver.type(key, count) == velocity, key
+
+
+async def test_speeds_change_by_a_tenth_and_are_told(start):
+    driver = start(speed=0.2, turn=2.0)
+    assert "u    i    o" in driver.printed[0]
+    assert driver.printed[1] == "currently:\tspeed 0.2\tturn 2.0 "
+    await driver.type("i", 1)
+    assert (await driver.type("w", 2))[0] == pytest.approx(0.22)
+    await driver.type("c", 3)
+    assert driver.printed[-1] == f"currently:\tspeed {0.2 * 1.1}\tturn 1.8 "
+    await driver.type("q", 4)
+    for count in range(5, 18):
+        await driver.type("z", count)
+    assert sum("u    i    o" in line for line in driver.printed) == 2, "the help comes again after fifteen changes"
+
+
+async def test_arrow_keys_stop(start):
+    driver = start()
+    await driver.type("i", 1)
+    assert await driver.type("\x1bOC", 2) == (0, 0, 0, 0)
+    assert list(keys_in("\x1b[1;5Ai\x1b")) == ["\x1b[1;5A", "i", "\x1b"]
+
+
+async def test_the_type_is_that_of_who_listens(start, stage):
+    driver = start(kind=TWIST_STAMPED, frame_id="base_link")
+    await driver.type("i", 1)
+    assert driver.heard[0].header.frame_id == "base_link"
+    assert driver.heard[0].header.stamp.sec == stage.clock.now_ns() // 10**9
+
+
+async def test_the_type_follows_who_comes_later(start, stage):
+    driver = start(kind=None)
+    stage.node.create_subscription(TWIST_STAMPED, "/cmd_vel", driver.heard.append, 10)
+    await stage.clock.advance(0.6)
+    await driver.type("i", 1)
+
+
+@pytest.mark.parametrize(("stamped", "kind"), [(True, TWIST_STAMPED), (False, TWIST)])
+async def test_the_type_is_the_one_asked_for(start, stage, stamped, kind):
+    start(kind=None, stamped=stamped)
+    assert [endpoint.type_name for endpoint in stage.graph.endpoints() if endpoint.name == "/cmd_vel"] == [kind]
+
+
+async def test_a_key_that_is_lost_stops_the_robot(start, stage):
+    driver = start(key_timeout=0.6)
+    await driver.type("i", 1)
+    await stage.clock.advance(0.5)
+    await driver.type("i", 2)
+    await stage.clock.advance(0.5)
+    assert len(driver.heard) == 2
+    await stage.clock.advance(0.2)
+    assert driver.last() == (0, 0, 0, 0)
+    await stage.clock.advance(5.0)
+    assert len(driver.heard) == 3, "it stops once"
+
+
+async def test_velocities_are_repeated_on_request(start, stage):
+    driver = start(repeat_rate=10.0)
+    await driver.type("u", 1)
+    await stage.clock.advance(1.05)
+    assert len(driver.heard) == 11
+    assert driver.last() == (0.5, 0, 0, 1)
+
+
+async def test_nobody_listening_is_told_once(start, stage, said):
+    driver = start(kind=None)
+    os.write(driver.typing, b"i")
+    await eventually(lambda: driver.node._direction.x == 1.0)
+    await stage.clock.advance(3.0)
+    assert said("WARN") == ["no node subscribes to /cmd_vel; `linkwright doctor` shows more"]
+
+
+@pytest.mark.parametrize("end", ["\x03", "closed"])
+async def test_its_end_stops_the_robot_and_gives_the_terminal_back(start, end):
+    driver = start()
+    assert not echoes(driver.own)
+    await driver.type("i", 1)
+    if end == "closed":
+        os.close(driver.typing)
+    else:
+        settings = termios.tcgetattr(driver.own)
+        settings[3] &= ~termios.ISIG
+        termios.tcsetattr(driver.own, termios.TCSANOW, settings)
+        os.write(driver.typing, end.encode())
+    await eventually(driver.node.finished.done)
+    assert driver.node.finished.result() == 0
+    await driver.stage.graph.settle()
+    assert driver.last() == (0, 0, 0, 0)
+    assert end == "closed" or echoes(driver.own)
+
+
+async def test_closing_the_node_stops_the_robot(start):
+    driver = start()
+    await driver.type("i", 1)
+    driver.close()
+    await driver.stage.graph.settle()
+    assert driver.last() == (0, 0, 0, 0)
+    assert echoes(driver.own)
+
+
+async def test_without_a_terminal_it_says_so(stage):
+    with pytest.raises(LinkwrightError) as raised:
+        TeleopTwistKeyboard(stage.graph, NodeOptions())
+    assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["NODE901"]
+    assert stage.graph.topics().get("/cmd_vel") is None
+
+
+async def test_a_negative_speed_is_refused(stage):
+    with pytest.raises(LinkwrightError) as raised:
+        TeleopTwistKeyboard(stage.graph, NodeOptions(parameters={"speed": -1.0}))
+    assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["NODE902"]
+
+
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, None], ids=str)
+def test_a_process_gives_its_terminal_back(terminal, tmp_path, end):
+    typing, own = terminal
+    process = subprocess.Popen(
+        [sys.executable, "-m", "linkwright.node_program", "teleop_twist_keyboard", "teleop_twist_keyboard"],
+        env={**os.environ, "LINKWRIGHT_DDS": "0", "ROS_LOG_DIR": str(tmp_path)},
+        stdin=own,
+        stdout=own,
+        stderr=subprocess.PIPE,
+    )
+    try:
+        printed = b""
+        while b"currently:" not in printed or not printed.endswith(b"\n"):
+            printed += os.read(typing, 4096)
+        assert not echoes(own)
+        if end is None:
+            os.close(typing)
+        else:
+            process.send_signal(end)
+        assert process.stderr is not None
+        assert process.stderr.read() == b""
+        assert process.wait(SECONDS) == 0
+        assert end is None or echoes(own)
+    finally:
+        if process.poll() is None:
+            process.kill()
+            process.wait()
+        assert process.stderr is not None
+        process.stderr.close()

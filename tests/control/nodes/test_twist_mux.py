@@ -1,0 +1,178 @@
+"""twist_mux: priorities, time-outs and locks."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.control.nodes.teleop.twist_mux import TwistMux
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import get_message
+from linkwright.nodes import NodeOptions
+from tests.outside import Outside, Stranger
+
+TWIST, BOOL = get_message("geometry_msgs/msg/Twist"), get_message("std_msgs/msg/Bool")
+PARAMETERS = {
+    "topics": {
+        "navigation": {"topic": "nav_vel", "timeout": 0.5, "priority": 10},
+        "joystick": {"topic": "joy_vel", "timeout": 0.5, "priority": 100},
+        "tablet": {"topic": "tab_vel", "timeout": 0.0, "priority": 5},
+    },
+    "locks": {"pause": {"topic": "pause", "timeout": 0.0, "priority": 50}},
+}
+
+
+class Traffic:
+    def __init__(self, stage, kind=TWIST):
+        self.stage, self.kind = stage, kind
+        self.out, self.diagnostics = [], []
+        stage.node.create_subscription(kind, "/cmd_vel_out", self.out.append, 10)
+        stage.node.create_subscription(
+            "diagnostic_msgs/msg/DiagnosticArray", "/diagnostics", self.diagnostics.append, 10
+        )
+        self.publishers = {}
+
+    async def send(self, topic, value):
+        """What comes out for a velocity, or a lock, that goes in."""
+        kind = BOOL if isinstance(value, bool) else self.kind
+        publisher = self.publishers.setdefault(topic, self.stage.node.create_publisher(kind, topic, 10))
+        message = kind()
+        if isinstance(value, bool):
+            message.data = value
+        else:
+            getattr(message, "twist", message).linear.x = value
+        self.out.clear()
+        publisher.publish(message)
+        await self.stage.graph.settle()
+        return [getattr(each, "twist", each).linear.x for each in self.out]
+
+    async def said(self):
+        await self.stage.clock.advance(1.0)
+        (status,) = self.diagnostics[-1].status
+        assert (status.name, status.message) == ("twist_mux: Twist mux status", "ok")
+        return {pair.key: pair.value for pair in status.values}
+
+
+@pytest.fixture
+def traffic(stage):
+    return Traffic(stage)
+
+
+def mux(stage, **more):
+    return TwistMux(stage.graph, NodeOptions(parameters={**PARAMETERS, **more}))
+
+
+async def test_the_highest_priority_goes_through_until_it_falls_silent(stage, traffic):
+    mux(stage)
+    assert await traffic.send("nav_vel", 1.0) == [1.0]
+    assert await traffic.send("joy_vel", 2.0) == [2.0]
+    assert await traffic.send("nav_vel", 1.0) == []
+    await stage.clock.advance(0.6)
+    assert await traffic.send("nav_vel", 1.0) == [1.0]
+
+
+async def test_a_topic_without_a_time_out_counts_from_its_first_message(stage, traffic):
+    mux(stage, topics={**PARAMETERS["topics"], "tablet": {"topic": "tab_vel", "timeout": 0.0, "priority": 20}})
+    assert await traffic.send("nav_vel", 1.0) == [1.0]
+    assert await traffic.send("tab_vel", 3.0) == [3.0]
+    await stage.clock.advance(60.0)
+    assert await traffic.send("nav_vel", 1.0) == []
+
+
+async def test_a_lock_shuts_out_lower_priorities(stage, traffic):
+    mux(stage)
+    assert await traffic.send("pause", True) == []
+    assert await traffic.send("nav_vel", 1.0) == []
+    assert await traffic.send("joy_vel", 2.0) == [2.0]
+    await traffic.send("pause", False)
+    await stage.clock.advance(0.6)
+    assert await traffic.send("nav_vel", 1.0) == [1.0]
+
+
+async def test_a_lock_that_is_not_heard_of_locks(stage, traffic):
+    mux(stage, locks={"watchdog": {"topic": "alive", "timeout": 0.5, "priority": 255}})
+    assert await traffic.send("joy_vel", 2.0) == []
+    await traffic.send("alive", False)
+    assert await traffic.send("joy_vel", 2.0) == [2.0]
+    await stage.clock.advance(0.6)
+    assert await traffic.send("joy_vel", 2.0) == []
+
+
+async def test_velocities_may_be_stamped(stage):
+    traffic = Traffic(stage, get_message("geometry_msgs/msg/TwistStamped"))
+    mux(stage, use_stamped=True)
+    assert await traffic.send("nav_vel", 1.0) == [1.0]
+
+
+async def test_diagnostics_tell_who_is_shut_out(stage, traffic):
+    mux(stage)
+    await traffic.send("pause", True)
+    await traffic.send("joy_vel", 2.0)
+    said = await traffic.said()
+    assert said["velocity joystick"] == " masked (listening to joy_vel @ 0.500000s with priority #100)"
+    assert said["velocity navigation"].startswith(" masked (listening to nav_vel")
+    assert said["lock pause"] == " locked (listening to pause @ 0.000000s with priority #50)"
+    assert said["current priority"] == "50"
+
+
+@pytest.mark.parametrize(
+    ("topics", "named"),
+    [
+        ({"a": {"timeout": 0.5, "priority": 1}}, "topics.a.topic"),
+        ({"a": {"topic": "a", "timeout": -1.0, "priority": 1}}, "topics.a.timeout"),
+        ({"a": {"topic": "a", "timeout": 0.5}}, "topics.a.priority"),
+    ],
+)
+async def test_what_is_not_whole_is_refused(stage, topics, named):
+    with pytest.raises(LinkwrightError) as raised:
+        TwistMux(stage.graph, NodeOptions(parameters={"topics": topics}))
+    (found,) = raised.value.diagnostics
+    assert found.code == "NODE904"
+    assert f"'{named}'" in found.message
+
+
+async def test_without_topics_it_says_so_and_runs(stage, said):
+    TwistMux(stage.graph, NodeOptions())
+    assert said("WARN") == ["no topics.NAME.topic is given, so nothing is forwarded"]
+
+
+async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between(traffic):
+    mux(traffic.stage)
+    outside = Outside(traffic.stage.graph)
+    named = (("/tab_vel", "tab"), ("/joy_vel", "joy"), ("/joy_vel", "pad"))
+    tablet, joystick, other = (Stranger(outside, topic, node) for topic, node in named)
+
+    async def drive(*sources):
+        for _ in range(20):
+            for speed, source in enumerate(sources):
+                message = TWIST()
+                message.linear.x = float(speed)
+                source.send(message)
+                await traffic.stage.clock.advance(0.1)
+
+    def told():
+        return [each.text for each in traffic.stage.log if "two drivers" in each.text]
+
+    await drive(tablet, joystick)
+    assert not told()
+    await drive(tablet, joystick, other)
+    (text,) = told()
+    assert "'/joy', '/pad' send commands on '/joy_vel'" in text
+
+
+async def test_a_stop_goes_out_when_who_sent_the_last_velocity_is_lost(traffic):
+    mux(traffic.stage)
+    outside = Outside(traffic.stage.graph)
+    tablet, joystick = (Stranger(outside, topic, topic[1:]) for topic in ("/tab_vel", "/joy_vel"))
+    for source, speed in ((tablet, 0.1), (joystick, 0.3)):
+        message = TWIST()
+        message.linear.x = speed
+        source.send(message)
+    await traffic.stage.graph.settle()
+    tablet.be_lost()
+    await traffic.stage.graph.settle()
+    assert [each.linear.x for each in traffic.out] == [0.1, 0.3]
+    joystick.be_lost()
+    await traffic.stage.graph.settle()
+    assert [each.linear.x for each in traffic.out] == [0.1, 0.3, 0.0]
+    (told,) = [each.text for each in traffic.stage.log if "was lost" in each.text]
+    assert told.endswith("a stop is sent to '/cmd_vel_out'")

@@ -1,0 +1,85 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.navigation.estimation.estimator import Estimator, Timing
+from linkwright.navigation.estimation.kalman import ExtendedKalmanFilter, Settings
+from linkwright.navigation.estimation.motion_model import SIZE, State
+from tests.navigation.estimation.test_kalman import SECOND, measured
+
+
+def estimator(**timing):
+    kalman = ExtendedKalmanFilter(Settings(initial_covariance=np.eye(SIZE)))
+    return Estimator(kalman, Timing(**{"sensor_timeout_ns": SECOND, **timing}))
+
+
+def advance(estimator, seconds):
+    estimator.advance(round(seconds * SECOND))
+    return estimator.filter
+
+
+def test_measurements_are_used_in_the_order_of_their_stamps():
+    forwards, backwards = estimator(), estimator()
+    measurements = [measured(0.1 * step, x=0.3 * step**2, vyaw=0.1 * step) for step in range(10)]
+    for measurement in measurements:
+        forwards.add(measurement)
+    for measurement in reversed(measurements):
+        backwards.add(measurement)
+    np.testing.assert_array_equal(advance(forwards, 1.0).state, advance(backwards, 1.0).state)
+
+
+def test_a_measurement_of_the_future_waits():
+    running = estimator()
+    running.add(measured(0.0, x=1.0))
+    running.add(measured(2.0, x=9.0))
+    assert advance(running, 1.0).state[State.X] == 1.0
+    assert advance(running, 2.0).state[State.X] > 1.0
+
+
+def test_the_state_is_predicted_only_where_sensors_are_silent_for_long():
+    running = estimator(sensor_timeout_ns=SECOND // 2)
+    running.add(measured(0.0, vx=1.0))
+    assert advance(running, 0.0).time_ns == 0
+    assert advance(running, 0.4).time_ns == 0
+    assert advance(running, 0.6).state[State.X] == pytest.approx(0.6)
+    always = estimator(predict_to_now=True)
+    always.add(measured(0.0, vx=1.0))
+    assert advance(always, 0.1).state[State.X] == pytest.approx(0.1)
+
+
+def test_nothing_is_predicted_before_the_first_measurement():
+    assert not advance(estimator(predict_to_now=True), 10.0).initialized
+
+
+def test_a_late_measurement_is_put_where_it_belongs():
+    measurements = [measured(0.1 * step, x=np.sin(0.1 * step), vx=np.cos(0.1 * step)) for step in range(20)]
+    in_order, late = estimator(history_ns=10 * SECOND), estimator(history_ns=10 * SECOND)
+    for measurement in measurements:
+        in_order.add(measurement)
+        advance(in_order, 5.0)
+    for index, measurement in enumerate(measurements):
+        if index != 7:
+            late.add(measurement)
+            advance(late, 5.0)
+    late.add(measurements[7])
+    np.testing.assert_allclose(advance(late, 5.0).state, in_order.filter.state, atol=1e-12)
+    np.testing.assert_allclose(late.filter.covariance, in_order.filter.covariance, atol=1e-12)
+
+
+def test_a_measurement_from_before_the_history_goes_back_as_far_as_can_be():
+    running = estimator(history_ns=SECOND)
+    for step in range(50):
+        running.add(measured(0.1 * step, x=0.0))
+        advance(running, 0.1 * step)
+    running.add(measured(1.0, x=1.0))
+    state = advance(running, 5.0)
+    assert state.time_ns == round(4.9 * SECOND)
+    assert state.state[State.X] != 0.0
+
+
+def test_what_waits_is_forgotten():
+    running = estimator()
+    running.add(measured(0.0, x=1.0))
+    running.clear()
+    assert not advance(running, 1.0).initialized

@@ -1,0 +1,235 @@
+from __future__ import annotations
+
+from math import inf, nan, pi, sqrt
+
+import numpy as np
+import pytest
+
+from linkwright.navigation.estimation.kalman import (
+    Control,
+    ExtendedKalmanFilter,
+    Measurement,
+    Settings,
+    UnscentedKalmanFilter,
+)
+from linkwright.navigation.estimation.motion_model import SIZE, State, derivatives, wrapped
+
+SECOND = 1_000_000_000
+FILTERS = pytest.mark.parametrize("kind", [ExtendedKalmanFilter, UnscentedKalmanFilter])
+
+
+def measured(time_s, variance=0.01, threshold=inf, **values):
+    vector, covariance, used = np.zeros(SIZE), np.zeros((SIZE, SIZE)), [False] * SIZE
+    for name, value in values.items():
+        index = State[name.upper()]
+        vector[index], covariance[index, index], used[index] = value, variance, True
+    return Measurement("sensor", round(time_s * SECOND), vector, covariance, tuple(used), threshold)
+
+
+def diagonal(**values):
+    matrix = np.zeros((SIZE, SIZE))
+    for name, value in values.items():
+        matrix[State[name.upper()], State[name.upper()]] = value
+    return matrix
+
+
+@FILTERS
+def test_the_first_measurement_is_taken_as_it_is(kind):
+    kalman = kind()
+    assert kalman.process(measured(5.0, 0.3, x=2.0, yaw=1.0))
+    assert kalman.initialized
+    assert kalman.time_ns == 5 * SECOND
+    assert (kalman.state[State.X], kalman.state[State.YAW], kalman.state[State.Y]) == (2.0, 1.0, 0.0)
+    assert kalman.covariance[State.X, State.X] == 0.3
+    assert kalman.covariance[State.Y, State.Y] == 1e-9
+
+
+@FILTERS
+def test_one_correction_is_the_weighted_mean(kind):
+    kalman = kind(Settings(initial_covariance=diagonal(x=0.3)))
+    kalman.initialized = True
+    kalman.state[State.X] = 1.0
+    kalman.correct(measured(0.0, 0.1, x=2.0))
+    weight = 0.3 / (0.3 + 0.1)
+    assert kalman.state[State.X] == pytest.approx(1.0 + weight)
+    assert kalman.covariance[State.X, State.X] == pytest.approx((1 - weight) * 0.3)
+
+
+def batch_solution(settings, measurements, steps):
+    """The most likely states of all times at once, by least squares: the last one and its covariance.
+
+    It knows nothing of filters. The motion is taken for linear, so nothing may turn.
+    """
+    count = len(measurements)
+    free = np.flatnonzero(np.diag(settings.initial_covariance))
+    size = len(free)
+    motions = [derivatives(np.zeros(SIZE), step)[np.ix_(free, free)] for step in steps]
+    rows, targets = [], []
+
+    def add(block_by_time, target, covariance):
+        weight = np.linalg.inv(np.linalg.cholesky(covariance))
+        row = np.zeros((len(target), size * count))
+        for time, block in block_by_time.items():
+            row[:, time * size : (time + 1) * size] = block
+        rows.append(weight @ row)
+        targets.append(weight @ target)
+
+    add({0: np.eye(size)}, settings.initial_state[free], settings.initial_covariance[np.ix_(free, free)])
+    for time, (step, motion) in enumerate(zip(steps, motions, strict=True)):
+        noise = settings.noise[np.ix_(free, free)] * step
+        add({time: -motion, time + 1: np.eye(size)}, np.zeros(size), noise)
+    for time, measurement in enumerate(measurements):
+        used = [index for index, here in enumerate(measurement.used) if here]
+        seen = np.zeros((len(used), size))
+        for row, index in enumerate(used):
+            seen[row, list(free).index(index)] = 1.0
+        add({time: seen}, measurement.values[used], measurement.covariance[np.ix_(used, used)])
+    matrix, target = np.vstack(rows), np.concatenate(targets)
+    information = matrix.T @ matrix
+    solution = np.linalg.solve(information, matrix.T @ target)
+    return free, solution[-size:], np.linalg.inv(information)[-size:, -size:]
+
+
+@FILTERS
+def test_a_filter_agrees_with_least_squares_over_all_measurements(kind):
+    noise = diagonal(x=0.02, vx=0.1, ax=0.3, y=0.03, vy=0.2, ay=0.1)
+    start = diagonal(x=1.0, vx=2.0, ax=1.0, y=1.0, vy=1.0, ay=0.5)
+    # Sigma points near the state lose digits to rounding; far ones do not, and the motion is linear here.
+    settings = Settings(noise=noise, initial_covariance=start)
+    kalman = kind(settings) if kind is ExtendedKalmanFilter else kind(settings, alpha=1.0)
+    kalman.initialized = True
+    random = np.random.default_rng(7)
+    steps = list(random.uniform(0.05, 0.5, 29))
+    times = np.concatenate([[0.0], np.cumsum(steps)])
+    measurements = []
+    for index, time in enumerate(times):
+        if index % 3 == 0:
+            measurements.append(measured(time, 0.05, x=time + random.normal(0, 0.2), y=random.normal(0, 0.2)))
+        elif index % 3 == 1:
+            measurements.append(measured(time, 0.02, vx=1.0 + random.normal(0, 0.1)))
+        else:
+            measurements.append(measured(time, 0.3, ax=random.normal(0, 0.5), vy=random.normal(0, 0.5)))
+    steps = list(np.diff([measurement.time_ns for measurement in measurements]) / SECOND)
+    for measurement in measurements:
+        kalman.process(measurement)
+    free, state, covariance = batch_solution(settings, measurements, steps)
+    np.testing.assert_allclose(kalman.state[free], state, atol=1e-7)
+    np.testing.assert_allclose(kalman.covariance[np.ix_(free, free)], covariance, atol=1e-7)
+
+
+@FILTERS
+def test_constant_velocity_is_found_from_positions(kind):
+    kalman = kind(Settings(initial_covariance=np.eye(SIZE)))
+    for step in range(200):
+        kalman.process(measured(0.1 * step, 1e-4, x=0.5 * 0.1 * step, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0))
+    assert kalman.state[State.VX] == pytest.approx(0.5, abs=1e-3)
+    assert kalman.state[State.X] == pytest.approx(0.5 * 19.9, abs=1e-3)
+
+
+@FILTERS
+def test_a_constant_turn_is_followed(kind):
+    # The less sure a heading is, the shorter is the mean way of all headings: it is sure here.
+    kalman = kind(Settings(noise=np.eye(SIZE) * 1e-6))
+    for step in range(1, 301):
+        kalman.process(measured(0.01 * step, 1e-6, vx=1.0, vy=0.0, vz=0.0, vroll=0.0, vpitch=0.0, vyaw=0.5))
+    turned = 0.5 * 2.99
+    assert wrapped(kalman.state[State.YAW] - turned) == pytest.approx(0.0, abs=1e-3)
+    assert kalman.state[State.X] == pytest.approx(2.0 * np.sin(turned), abs=2e-2)
+    assert kalman.state[State.Y] == pytest.approx(2.0 * (1.0 - np.cos(turned)), abs=2e-2)
+
+
+@FILTERS
+def test_a_biased_gyroscope_is_held_by_a_compass(kind):
+    bias = 0.05
+    kalman = kind()
+    for step in range(200):
+        kalman.process(measured(0.1 * step, 0.1, vyaw=bias))
+        kalman.correct(measured(0.1 * step, 1e-3, yaw=0.0))
+    free = kind()
+    for step in range(200):
+        free.process(measured(0.1 * step, 0.1, roll=0.0, pitch=0.0, vroll=0.0, vpitch=0.0, vyaw=bias))
+    assert free.state[State.YAW] == pytest.approx(bias * 19.9, rel=0.1)
+    assert abs(kalman.state[State.YAW]) < 0.02
+
+
+@FILTERS
+def test_angles_are_compared_around_the_circle(kind):
+    kalman = kind(Settings(initial_covariance=diagonal(yaw=0.1)))
+    kalman.initialized = True
+    kalman.state[State.YAW] = pi - 0.1
+    kalman.correct(measured(0.0, 0.1, yaw=-pi + 0.1))
+    assert abs(kalman.state[State.YAW]) == pytest.approx(pi)
+
+
+def test_outliers_are_left_out():
+    kalman = ExtendedKalmanFilter(Settings(initial_covariance=diagonal(x=0.03)))
+    kalman.initialized = True
+    deviation = sqrt(0.03 + 0.01)
+    assert not kalman.correct(measured(0.0, 0.01, threshold=3.0, x=3.01 * deviation))
+    assert kalman.state[State.X] == 0.0
+    assert kalman.correct(measured(0.0, 0.01, threshold=3.0, x=2.99 * deviation))
+    assert kalman.state[State.X] > 0.0
+
+
+def test_what_is_no_number_is_left_out_and_the_rest_counts():
+    kalman = ExtendedKalmanFilter(Settings(initial_covariance=diagonal(x=1.0, y=1.0)))
+    kalman.initialized = True
+    assert kalman.correct(measured(0.0, 1.0, x=nan, y=1.0))
+    assert kalman.state[:2] == pytest.approx([0.0, 0.5])
+    assert not kalman.correct(measured(0.0, 1.0, x=inf))
+    assert not kalman.correct(measured(0.0, nan, x=1.0))
+    assert kalman.state[:2] == pytest.approx([0.0, 0.5])
+
+
+def test_exact_and_negative_variances_are_taken_for_small_ones():
+    kalman = ExtendedKalmanFilter(Settings(initial_covariance=diagonal(x=1.0, y=1.0)))
+    kalman.initialized = True
+    assert kalman.correct(measured(0.0, 0.0, x=1.0))
+    assert kalman.state[State.X] == pytest.approx(1.0)
+    assert kalman.correct(measured(0.0, -1.0, y=1.0))
+    assert kalman.state[State.Y] == pytest.approx(0.5)
+
+
+def test_a_measurement_of_the_past_corrects_without_going_back():
+    kalman = ExtendedKalmanFilter()
+    kalman.process(measured(2.0, x=0.0))
+    kalman.process(measured(1.0, x=1.0))
+    assert kalman.time_ns == 2 * SECOND
+    assert 0.0 < kalman.state[State.X] < 1.0
+
+
+def test_noise_of_the_pose_that_grows_with_the_velocity():
+    kalman = ExtendedKalmanFilter(Settings(dynamic_noise=True, initial_covariance=np.zeros((SIZE, SIZE))))
+    kalman.initialized = True
+    kalman.predict(SECOND)
+    assert kalman.covariance[State.X, State.X] == 0.0
+    assert kalman.covariance[State.VX, State.VX] == pytest.approx(0.025)
+    kalman.restore(kalman.snapshot())
+    kalman.covariance[:] = 0.0
+    kalman.state[State.VX] = 2.0
+    kalman.predict(2 * SECOND)
+    assert kalman.covariance[State.X, State.X] == pytest.approx(0.05 * 4.0)
+
+
+def test_commands_accelerate_within_limits_and_end_after_their_time():
+    ones, limits = (1.0,) * 6, (0.5,) * 6
+    used = (True, False, False, False, False, True)
+    kalman = ExtendedKalmanFilter(Settings(control=Control(used, SECOND, limits, ones, limits, ones)))
+    kalman.process(measured(0.0, vx=0.0, vyaw=0.0))
+    kalman.command = (np.array([2.0, 0.0, 0.0, 0.0, 0.0, 0.1]), 0)
+    kalman.predict(SECOND // 2)
+    assert kalman.state[State.AX] == 0.5
+    assert kalman.state[State.VX] == pytest.approx(0.25)
+    assert kalman.state[State.VYAW] == pytest.approx(0.05)
+    kalman.predict(2 * SECOND)
+    assert kalman.state[State.AX] == pytest.approx(-0.25)
+
+
+@FILTERS
+def test_a_filter_begins_anew_where_it_was_told_to(kind):
+    start = np.arange(SIZE) / 100.0
+    kalman = kind(Settings(initial_state=start))
+    kalman.process(measured(0.0, x=3.0))
+    kalman.reset()
+    assert not kalman.initialized
+    np.testing.assert_array_equal(kalman.state, start)

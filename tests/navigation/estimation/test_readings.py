@@ -1,0 +1,135 @@
+from __future__ import annotations
+
+from math import inf, nan, pi
+
+import numpy as np
+import pytest
+
+from linkwright.geometry.single import IDENTITY, compose, quaternion_from_rpy, quaternion_multiply
+from linkwright.navigation.estimation.motion_model import ANGLES, POSITION, RATES, SIZE, TWIST, VELOCITY, State
+from linkwright.navigation.estimation.readings import (
+    GRAVITY,
+    PoseReader,
+    read_acceleration,
+    read_twist,
+    without_gravity,
+)
+
+SECOND = 1_000_000_000
+ALL = (True,) * SIZE
+SIX = np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+
+
+def pose(x=0.0, y=0.0, z=0.0, rpy=(0.0, 0.0, 0.0)):
+    return (x, y, z, *quaternion_from_rpy(rpy))
+
+
+def only(*names):
+    return tuple(State(index).name in names for index in range(SIZE))
+
+
+def names_of(used):
+    return {State(index).name for index, each in enumerate(used) if each}
+
+
+def test_a_pose_is_taken_to_our_world_with_its_covariance():
+    reader = PoseReader(only("X", "YAW"))
+    reading = reader.read(pose(1.0, 2.0, rpy=(0, 0, 0.3)), SIX, pose(10.0, rpy=(0, 0, pi / 2)), 0)
+    assert reading.values[POSITION] == pytest.approx([8.0, 1.0, 0.0])
+    assert reading.values[State.YAW] == pytest.approx(0.3 + pi / 2)
+    assert names_of(reading.used) == {"Y", "YAW"}
+    assert np.diag(reading.covariance)[:6] == pytest.approx([2.0, 1.0, 3.0, 5.0, 4.0, 6.0])
+
+
+def test_relative_poses_count_from_the_first_one():
+    reader = PoseReader(ALL, relative=True)
+    first = reader.read(pose(5.0, 1.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, 0)
+    assert first.values == pytest.approx(np.zeros(SIZE))
+    second = reader.read(pose(5.0, 3.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, SECOND)
+    assert second.values[POSITION] == pytest.approx([2.0, 0.0, 0.0])
+    reader.forget()
+    assert reader.read(pose(9.0), SIX, IDENTITY, 0).values == pytest.approx(np.zeros(SIZE))
+
+
+def test_a_differential_sensor_gives_velocities():
+    reader = PoseReader(only("X", "Y", "YAW"), differential=True)
+    assert reader.read(pose(1.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, 0) is None
+    reading = reader.read(pose(1.0, 1.0, rpy=(0, 0, pi / 2 + 0.1)), SIX, IDENTITY, SECOND // 2)
+    assert reading.values[VELOCITY] == pytest.approx([2.0, 0.0, 0.0])
+    assert reading.values[State.VYAW] == pytest.approx(0.2)
+    assert names_of(reading.used) == {"VX", "VY", "VYAW"}
+    assert np.diag(reading.covariance)[TWIST] == pytest.approx(np.diag(SIX) * 2.0 * 0.5)
+    assert reader.read(pose(), SIX, IDENTITY, SECOND // 2) is None
+
+
+def test_on_a_plane_the_rest_is_zero_and_sure():
+    reading = PoseReader(only("X"), two_d=True).read(pose(1.0, 2.0, 3.0, (0.1, 0.2, 0.3)), SIX, IDENTITY, 0)
+    assert names_of(reading.used) == {"X", "Z", "ROLL", "PITCH", "VZ", "VROLL", "VPITCH", "AZ"}
+    assert reading.values[State.Z] == reading.values[State.ROLL] == 0.0
+    assert reading.covariance[State.AZ, State.AZ] == 1e-6
+
+
+@pytest.mark.parametrize("mounting", [(pi, 0, 0), (0, 0, pi / 2), (0.2, -0.7, 2.0)])
+def test_an_imu_mounted_in_any_way_tells_the_attitude_of_the_body(mounting):
+    body, turned = quaternion_from_rpy((0.1, 0.2, 0.3)), quaternion_from_rpy(mounting)
+    imu = quaternion_multiply(body, turned)
+    reading = PoseReader(only("ROLL", "PITCH", "YAW")).read_orientation(imu, SIX, (0.5, 0, 0, *turned), 0)
+    assert reading.values[ANGLES] == pytest.approx([0.1, 0.2, 0.3])
+    assert reading.values[POSITION] == pytest.approx([0.0, 0.0, 0.0])
+
+
+def test_a_turned_imu_that_gives_roll_gives_pitch_of_the_body():
+    mounting = pose(rpy=(0, 0, pi / 2))
+    reading = PoseReader(only("ROLL")).read_orientation(mounting[3:], SIX, mounting, 0)
+    assert names_of(reading.used) == {"PITCH"}
+    assert reading.covariance[State.PITCH, State.PITCH] == pytest.approx(4.0)
+
+
+def test_a_sensor_away_from_the_origin_moves_when_the_body_turns():
+    mounting, rates = pose(1.0, rpy=(0, 0, pi / 2)), np.array([0.0, 0.0, 2.0])
+    # The sensor is carried to the left at 2 m/s, which is its own x.
+    reading = read_twist(np.array([2.0, 0.0, 0.0]), rates, SIX, mounting, rates, ALL, two_d=False)
+    assert reading.values[VELOCITY] == pytest.approx([0.0, 0.0, 0.0])
+    assert reading.values[RATES] == pytest.approx([0.0, 0.0, 2.0])
+    assert np.diag(reading.covariance)[TWIST] == pytest.approx([2.0, 1.0, 3.0, 5.0, 4.0, 6.0])
+    assert names_of(reading.used) == {"VX", "VY", "VZ", "VROLL", "VPITCH", "VYAW"}
+
+
+def test_a_resting_accelerometer_measures_nothing_but_gravity():
+    tilted = quaternion_from_rpy((0.3, -0.4, 1.0))
+    upwards = compose((0.0, 0.0, 0.0, *_inverse(tilted)), (0.0, 0.0, GRAVITY, 0.0, 0.0, 0.0, 1.0))[:3]
+    assert without_gravity(np.array(upwards), tilted) == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
+
+
+def test_acceleration_is_turned_into_the_body():
+    mounting = pose(rpy=(0, 0, pi / 2))
+    reading = read_acceleration(np.array([1.0, 0.0, 0.0]), np.eye(3), mounting, only("AX"), two_d=False)
+    assert reading.values[12:] == pytest.approx([0.0, 1.0, 0.0])
+    assert names_of(reading.used) == {"AY"}
+
+
+def test_what_is_no_number_is_left_out_and_the_rest_counts():
+    reading = PoseReader(only("X", "Y", "YAW")).read((1.0, nan, nan, nan, 0.0, 0.0, 1.0), SIX, IDENTITY, 0)
+    assert names_of(reading.used) == {"X"}
+    assert reading.values[State.X] == 1.0
+    assert np.isfinite(reading.values).all()
+    twist = read_twist(
+        np.array([1.0, nan, 0.0]), np.array([inf, 0.0, 2.0]), SIX, IDENTITY, np.zeros(3), ALL, two_d=False
+    )
+    assert names_of(twist.used) == {"VX", "VZ", "VPITCH", "VYAW"}
+    felt = read_acceleration(np.array([nan, 2.0, 3.0]), np.eye(3), IDENTITY, ALL, two_d=False)
+    assert names_of(felt.used) == {"AY", "AZ"}
+    slanting = read_acceleration(np.array([nan, 2.0, 3.0]), np.eye(3), pose(rpy=(0, 0, 0.7)), ALL, two_d=False)
+    assert names_of(slanting.used) == {"AZ"}
+
+
+def test_a_relative_sensor_that_begins_without_numbers_counts_from_the_first_that_it_has():
+    reader = PoseReader(only("X"), relative=True)
+    assert reader.read((nan, nan, nan, nan, nan, nan, nan), SIX, IDENTITY, 0) is None
+    assert reader.read(pose(5.0), SIX, IDENTITY, 1).values[State.X] == 0.0
+    assert reader.read(pose(7.0), SIX, IDENTITY, 2).values[State.X] == 2.0
+
+
+def _inverse(quaternion):
+    x, y, z, w = quaternion
+    return -x, -y, -z, w

@@ -1,0 +1,107 @@
+"""A robot that moves as ``/cmd_vel`` tells it, in a room with walls, and tells where it is."""
+
+from __future__ import annotations
+
+from math import hypot
+from typing import Any
+
+import numpy as np
+
+from linkwright.graph import ActionClient, Graph, JumpClock
+from linkwright.messages import get_action, get_message
+from linkwright.navigation.following.follower import STILL, Velocity, motions
+from tests.navigation.nodes.scene import Scene
+
+PERIOD = 0.02
+
+
+class DrivingScene(Scene):
+    """A scene whose robot drives.
+
+    Attributes:
+        speeds: the velocities that it was told, in their order.
+        told: whether it tells its pose.
+        held: whether it cannot move.
+        seen: rays, in degrees, that meet something, and at which range.
+        sees: whether its laser sends.
+    """
+
+    def __init__(self, graph: Graph, clock: JumpClock) -> None:
+        super().__init__(graph, clock)
+        self.speeds: list[Velocity] = []
+        self.velocity = STILL
+        self.told, self.held = True, False
+        self.seen: tuple[tuple[int, float], ...] = ()
+        self.sees = True
+        self._odometry = self.node.create_publisher("nav_msgs/msg/Odometry", "/odom", 10)
+        self.node.create_subscription("geometry_msgs/msg/Twist", "/cmd_vel", self._on_velocity, 10)
+        self.node.create_timer(PERIOD, self._move)
+        self.node.create_timer(0.2, lambda: self.tell_scan(*self.seen) if self.sees else None)
+        self.tell_pose()
+
+    def _on_velocity(self, message: Any) -> None:
+        self.velocity = Velocity(message.linear.x, message.linear.y, message.angular.z)
+        self.speeds.append(self.velocity)
+
+    def _move(self) -> None:
+        velocity = STILL if self.held else self.velocity
+        self.pose = tuple(map(float, motions(self.pose, np.array([velocity]), np.array([PERIOD]))[0, 0]))
+        if self.told:
+            self.tell_pose()
+        message = self._odometry.msg_type()
+        message.twist.twist.linear.x, message.twist.twist.angular.z = float(velocity.x), float(velocity.yaw)
+        self._odometry.publish(message)
+
+    def distance_to(self, x: float, y: float) -> float:
+        return hypot(self.pose[0] - x, self.pose[1] - y)
+
+
+class Asked:
+    """A goal that a test sends."""
+
+    def __init__(self, scene: Scene, kind: str, name: str) -> None:
+        self._scene = scene
+        self.kind = get_action(f"nav2_msgs/action/{kind}")
+        self.client = ActionClient(scene.node, self.kind, name)
+        self.feedback: list[Any] = []
+        self.handle: Any = None
+        self.answer: Any = None
+
+    async def send(self, **fields: Any) -> None:
+        await self._scene.run(0.1)
+        self.answer = None
+        self.client.send_goal_async(
+            self.kind.Goal(**fields), feedback_callback=lambda message: self.feedback.append(message.feedback)
+        ).add_done_callback(self._accepted)
+        await self._scene.graph.settle()
+
+    def _accepted(self, future: Any) -> None:
+        self.handle = future.result()
+        if self.handle.accepted:
+            self.handle.get_result_async().add_done_callback(self._ended)
+
+    def _ended(self, future: Any) -> None:
+        self.answer = future.result()
+
+    async def ends(self, seconds: float) -> int:
+        """Its status, once it has ended; 0 where it has not within so many seconds."""
+        for _ in range(round(seconds / 0.5)):
+            if self.answer is not None:
+                return int(self.answer.status)
+            await self._scene.run(0.5)
+        return 0 if self.answer is None else int(self.answer.status)
+
+
+def pose_stamped(x: float, y: float, yaw: float = 0.0, frame: str = "map") -> Any:
+    message = get_message("geometry_msgs/msg/PoseStamped")()
+    message.header.frame_id = frame
+    message.pose.position.x, message.pose.position.y = float(x), float(y)
+    message.pose.orientation.z, message.pose.orientation.w = float(np.sin(yaw / 2)), float(np.cos(yaw / 2))
+    return message
+
+
+def path_message(poses: Any, frame: str = "map") -> Any:
+    message = get_message("nav_msgs/msg/Path")()
+    message.header.frame_id = frame
+    message.poses = [pose_stamped(*pose, frame=frame) for pose in poses]
+    return message

@@ -1,0 +1,265 @@
+"""amcl in our house, in lock-step with the simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from math import atan2, cos, hypot, pi, sin
+from typing import Any
+
+import numpy as np
+import pytest
+
+from linkwright.geometry.single import quaternion_from_rpy, rpy_from_quaternion
+from linkwright.graph import LogLevel, TransformException
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.graph.transforms.listener import TransformListener
+from linkwright.messages import get_message, get_service
+from linkwright.navigation.maps.map_files import load_map
+from linkwright.navigation.nodes.amcl import Amcl
+from linkwright.navigation.nodes.map_server import MapServer
+from linkwright.nodes import NodeOptions
+from linkwright.testing import SteppedSimulation
+from tests.places import GAZEBO_PACKAGE, PACKAGE
+
+HOUSE = GAZEBO_PACKAGE / "worlds" / "house.world"
+MAP = GAZEBO_PACKAGE / "maps" / "house.yaml"
+MBOT = PACKAGE / "urdf" / "mbot_gazebo.xacro"
+POSE = "geometry_msgs/msg/PoseWithCovarianceStamped"
+TOUR = [
+    (-2.0, 0.0),
+    (-2.2, -2.4),
+    (-0.2, -2.4),
+    (0.4, -1.7),
+    (2.4, -1.7),
+    (3.2, -0.6),
+    (2.2, -1.7),
+    (0.4, -1.7),
+    (0.0, 0.0),
+]
+"""Through the living room and into the kitchen and back."""
+
+
+class House:
+    """mbot in the house, with a map server and amcl."""
+
+    def __init__(self, test: SteppedSimulation, **parameters: object) -> None:
+        self.test = test
+        self.buffer = BufferCore()
+        TransformListener(self.buffer, test.node)
+        self.poses = test.record("/amcl_pose", get_message(POSE))
+        common = {"use_sim_time": True, "autostart_node": True}
+        self.server = MapServer(test.graph, NodeOptions(parameters={"yaml_filename": str(MAP), **common}))
+        self.amcl = Amcl(test.graph, NodeOptions(parameters={**common, **parameters}))
+        self.errors: list[float] = []
+        test.advance(0.5)
+
+    def close(self) -> None:
+        self.amcl.close()
+        self.server.close()
+
+    def tell(self, x: float, y: float, yaw: float) -> None:
+        """2D Pose Estimate."""
+        message = get_message(POSE)()
+        message.header.frame_id = "map"
+        message.pose.pose.position.x, message.pose.pose.position.y = x, y
+        turned = message.pose.pose.orientation
+        turned.x, turned.y, turned.z, turned.w = quaternion_from_rpy((0.0, 0.0, yaw))
+        covariance = np.zeros((6, 6))
+        covariance[0, 0] = covariance[1, 1] = 0.25
+        covariance[5, 5] = 0.0685
+        message.pose.covariance = covariance.reshape(36)
+        self.test.publish("/initialpose", message)
+        self.test.settle()
+
+    def error(self) -> tuple[float, float]:
+        """How far, in metres and radians, the transforms have the robot from where it is."""
+        true = self.test.robot_pose()
+        found, _ = self.buffer.lookup("map", "base_footprint", 0)
+        turn = rpy_from_quaternion(found[3:])[2] - rpy_from_quaternion(true[3:])[2]
+        return hypot(found[0] - true[0], found[1] - true[1]), abs(atan2(sin(turn), cos(turn)))
+
+    def drive(self, corners: list[tuple[float, float]], speed: float = 0.5) -> None:
+        """Drive from corner to corner, by where the robot really is."""
+        test = self.test
+        for x, y in corners:
+            for _ in range(300):
+                here = test.robot_pose()
+                away = hypot(x - here[0], y - here[1])
+                if away < 0.12:
+                    break
+                turn = (atan2(y - here[1], x - here[0]) - rpy_from_quaternion(here[3:])[2] + pi) % (2 * pi) - pi
+                ahead = min(speed, 1.5 * away) * max(0.0, cos(turn)) ** 3
+                test.drive(ahead if abs(turn) < 1.0 else 0.0, max(-1.0, min(1.0, 2.0 * turn)))
+                test.advance(0.1)
+                try:
+                    self.errors.append(self.error()[0])
+                except TransformException:
+                    continue
+            else:
+                raise AssertionError(f"stuck at {here} on the way to {x}, {y}")
+        test.drive(0.0)
+        test.advance(0.5)
+
+    def said(self, level: LogLevel) -> list[str]:
+        return [record.text for record in self.test.log if record.level is level and record.node.endswith("amcl")]
+
+
+Begin = Callable[..., House]
+
+
+@pytest.fixture
+def begin() -> Iterator[Begin]:
+    running: list[Any] = []
+
+    def start(pose: tuple[float, float, float] = (0.0, 0.0, 0.0), **parameters: object) -> House:
+        place = (pose[0], pose[1], 0, 0, 0, pose[2])
+        test = SteppedSimulation(
+            HOUSE, MBOT, arguments={"laser": "true"}, pose=place, robot_state_publisher=True, seed=3
+        )
+        running.append(test.__enter__())
+        house = House(running[0], **parameters)
+        running.insert(0, house)
+        return house
+
+    yield start
+    if running:
+        running[0].close()
+        running[1].__exit__(None, None, None)
+
+
+def test_the_map_is_that_of_the_house() -> None:
+    grid = load_map(MAP)
+    here = grid.cells_of(np.array([(0.0, 0.0), (4.9, 2.0), (4.95, 2.0), (20.0, 0.0)]))
+    assert grid.has(here).tolist() == [True, True, True, False]
+    assert grid.cells[tuple(here[0])] == 0
+    assert 100 in (grid.cells[tuple(here[1])], grid.cells[tuple(here[2])])
+
+
+def test_it_tracks_a_drive_through_the_house(begin: Begin) -> None:
+    house = begin(set_initial_pose=True)
+    house.drive(TOUR)
+    assert max(house.errors) < 0.2
+    assert sum(house.errors) / len(house.errors) < 0.08
+    assert house.error()[1] < 0.05
+    assert house.said(LogLevel.WARN) == house.said(LogLevel.ERROR) == []
+
+
+def test_a_pose_that_is_wrong_is_put_right(begin: Begin) -> None:
+    house = begin((-2.0, 0.0, 0.5))
+    house.test.advance(1.0)
+    with pytest.raises(TransformException):
+        house.error()
+    assert "Please set the initial pose" in house.said(LogLevel.WARN)[0]
+    house.tell(-1.6, 0.3, 0.2)  # 0.5 m and 0.3 rad off
+    house.test.advance(0.5)
+    house.drive([(-2.2, -0.4), (-2.2, -2.0), (-0.2, -2.4)])
+    away, turn = house.error()
+    assert away < 0.1
+    assert turn < 0.1
+    covariance = np.asarray(house.poses.last.pose.covariance).reshape(6, 6)
+    assert 0.0 < covariance[0, 0] < 0.2
+
+
+def _call(house: House, service: str, kind: str = "std_srvs/srv/Empty", **fields: object) -> Any:
+    return house.test.call(service, get_service(kind).Request(**fields))
+
+
+def test_it_finds_the_robot_anywhere(begin: Begin) -> None:
+    house = begin((-2.0, 0.0, 0.5), max_particles=5000)
+    _call(house, "/reinitialize_global_localization")
+    house.drive([(-2.2, -2.4), (-0.2, -2.4), (0.4, -1.7), (2.4, -1.7), (3.2, -0.6), (2.2, -1.7)])
+    away, turn = house.error()
+    assert away < 0.15
+    assert turn < 0.1
+
+
+def test_a_robot_that_was_carried_away_is_found_again(begin: Begin) -> None:
+    house = begin(
+        set_initial_pose=True,
+        recovery_alpha_slow=0.001,
+        recovery_alpha_fast=0.1,
+        max_particles=5000,
+    )
+    house.drive([(-1.0, 0.0)])
+    house.test.simulation.set_model_pose("mbot", (2.8, -1.7, 0.0, *quaternion_from_rpy((0.0, 0.0, 1.0))))
+    house.test.advance(0.5)
+    house.drive(
+        [
+            (3.2, -0.6),
+            (2.2, -1.7),
+            (0.4, -1.7),
+            (-0.2, -2.4),
+            (-2.2, -2.4),
+            (-2.0, 0.0),
+            (0.0, 0.0),
+            (0.4, -1.7),
+            (2.4, -1.7),
+        ]
+    )
+    assert house.error()[0] < 0.15
+
+
+def test_scans_that_fit_nowhere_near_are_told(begin: Begin) -> None:
+    house = begin((-2.0, 0.0, 0.0))
+    house.tell(3.0, 2.0, 2.0)
+    house.test.advance(0.5)
+    house.drive([(-2.2, -0.4), (-2.2, -2.0), (-0.2, -2.4), (0.0, 0.0)])
+    assert house.error()[0] > 0.5
+    assert any("of the beams end near something on the map" in text for text in house.said(LogLevel.WARN))
+
+
+def test_it_says_what_it_waits_for(begin: Begin) -> None:
+    house = begin(map_topic="nowhere", set_initial_pose=True)
+    assert house.said(LogLevel.WARN) == ["Waiting for map.... No node publishes on '/nowhere'."]
+    assert len(house.poses) == 0
+
+
+def test_without_transforms_it_says_which_is_missing(begin: Begin) -> None:
+    house = begin(odom_frame_id="odometry", set_initial_pose=True)
+    house.test.advance(3.0)
+    assert "Couldn't determine robot's pose associated with laser scan" in house.said(LogLevel.ERROR)[0]
+    assert "odometry" in house.said(LogLevel.ERROR)[0]
+
+
+def test_poses_particles_and_transforms_are_those_of_nav2(begin: Begin) -> None:
+    house = begin(set_initial_pose=True, transform_tolerance=0.5)
+    clouds = house.test.record("/particle_cloud", get_message("nav2_msgs/msg/ParticleCloud"))
+    before = len(house.poses)
+    house.test.advance(1.0)
+    assert len(house.poses) == before  # it stands still
+    _call(house, "/request_nomotion_update")
+    house.test.advance(0.5)
+    assert len(house.poses) == before + 1
+    assert house.poses.last.header.frame_id == "map"
+    assert 500 <= len(clouds.last.particles) <= 2000
+    assert sum(particle.weight for particle in clouds.last.particles) == pytest.approx(1.0)
+    assert clouds.last.header.frame_id == "map"
+    _, stamp_ns = house.buffer.lookup("map", "odom", 0)
+    now_ns = house.amcl.node.get_clock().now().nanoseconds
+    assert 0.2e9 < stamp_ns - now_ns <= 0.5e9
+
+
+def test_poses_in_other_frames_or_of_no_numbers_are_refused(begin: Begin) -> None:
+    house = begin()
+    request = get_service("nav2_msgs/srv/SetInitialPose").Request()
+    for frame, x in (("", 1.0), ("odom", 1.0), ("map", float("nan")), ("map", 1.5)):
+        request.pose.header.frame_id = frame
+        request.pose.pose.pose.position.x = x
+        house.test.call("/set_initial_pose", request)
+    warnings = house.said(LogLevel.WARN)
+    assert sum("empty frame_id" in text for text in warnings) == 1
+    assert sum('Ignoring initial pose in frame "odom"' in text for text in warnings) == 1
+    assert house.said(LogLevel.ERROR) == ["Received initial pose contains NaNs or Infs! Ignoring as invalid!"]
+    house.test.advance(0.5)
+    assert house.poses.last.pose.pose.position.x == pytest.approx(1.5, abs=0.2)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("laser_model_type", "likelihod_field"), ("max_beams", 0), ("min_particles", 9000), ("alpha1", -1.0)],
+)
+def test_parameters_that_mean_nothing_are_refused(begin: Begin, name: str, value: object) -> None:
+    house = begin(**{name: value})
+    assert any(f"parameter '{name}' of 'amcl' cannot be" in text for text in house.said(LogLevel.ERROR))
+    node: Any = house.amcl.node
+    assert not node.is_active

@@ -1,0 +1,138 @@
+"""behavior_server: behaviours as actions, with obstacles, time and cancellation."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.graph.actions.goal import GoalStatus
+from linkwright.graph.time.values import Duration
+from linkwright.messages import get_message
+from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
+from linkwright.navigation.costmaps.footprints import circle, placed
+from linkwright.navigation.following.follower import STILL
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.nodes.behavior_server import BehaviorServer
+from linkwright.navigation.nodes.costmap_messages import raw_message
+from linkwright.nodes import NodeOptions
+from tests.navigation.nodes.robots import Asked, DrivingScene
+
+
+class CostmapScene(DrivingScene):
+    """A scene that tells a costmap and a footprint, too."""
+
+    def __init__(self, graph, clock):
+        super().__init__(graph, clock)
+        self.costmap = Costmap(Grid(cells=np.zeros((100, 100), np.uint8), resolution=0.05))
+        raw, polygon = get_message("nav2_msgs/msg/Costmap"), get_message("geometry_msgs/msg/PolygonStamped")
+        self._raw = self.node.create_publisher(raw, "/local_costmap/costmap_raw", DESCRIPTION_QOS)
+        self._footprint = self.node.create_publisher(polygon, "/local_costmap/published_footprint", 10)
+        self.node.create_timer(0.2, self.tell_costmap)
+
+    def tell_costmap(self):
+        if not self.sees:
+            return
+        self._raw.publish(raw_message(self.costmap, "odom", self.stamp()))
+        message = self._footprint.msg_type()
+        message.header.frame_id, message.header.stamp = "odom", self.stamp()
+        point = get_message("geometry_msgs/msg/Point32")
+        corners = placed(circle(0.2), *self.pose)
+        message.polygon.points = [point(x=float(x), y=float(y)) for x, y in corners]
+        self._footprint.publish(message)
+
+
+@pytest.fixture
+async def scene(graph, clock):
+    scene = CostmapScene(graph, clock)
+    scene.pose = (2.5, 2.5, 0.4)
+    server = BehaviorServer(graph, NodeOptions(parameters={"autostart_node": True}))
+    await scene.run(1.0)
+    yield scene
+    server.close()
+
+
+async def test_it_spins(scene):
+    goal = Asked(scene, "Spin", "spin")
+    await goal.send(target_yaw=pi / 2, time_allowance=Duration(seconds=10.0).to_msg())
+    assert await goal.ends(10.0) == GoalStatus.SUCCEEDED
+    assert scene.pose[2] == pytest.approx(0.4 + pi / 2, abs=0.1)
+    assert scene.velocity == STILL
+    assert goal.feedback[-1].angular_distance_traveled == pytest.approx(pi / 2, abs=0.15)
+    assert goal.answer.result.total_elapsed_time.sec >= 1
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "sign"), [("backup", "BackUp", -1), ("drive_on_heading", "DriveOnHeading", 1)]
+)
+async def test_it_drives_straight(scene, name, kind, sign):
+    goal = Asked(scene, kind, name)
+    before = scene.pose
+    await goal.send(target=get_message("geometry_msgs/msg/Point")(x=0.3), speed=0.2)
+    assert await goal.ends(10.0) == GoalStatus.SUCCEEDED
+    assert scene.distance_to(*before[:2]) == pytest.approx(0.3, abs=0.05)
+    assert np.sign(scene.pose[0] - before[0]) == sign
+    assert scene.velocity == STILL
+
+
+async def test_it_does_not_back_into_an_obstacle(scene, log):
+    scene.costmap.grid.cells[:, :30] = LETHAL  # up to x = 1.5 m
+    await scene.run(0.5)
+    goal = Asked(scene, "BackUp", "backup")
+    await goal.send(target=get_message("geometry_msgs/msg/Point")(x=3.0), speed=0.2)
+    assert await goal.ends(20.0) == GoalStatus.ABORTED
+    assert 1.65 < scene.pose[0] < 2.4
+    assert scene.velocity == STILL
+    assert any("there is an obstacle ahead" in record.text for record in log)
+
+
+async def test_it_takes_no_longer_than_is_allowed(scene):
+    goal = Asked(scene, "DriveOnHeading", "drive_on_heading")
+    target = get_message("geometry_msgs/msg/Point")(x=1.5)
+    await goal.send(target=target, speed=0.05, time_allowance=Duration(seconds=2.0).to_msg())
+    assert await goal.ends(4.0) == GoalStatus.ABORTED
+    assert scene.velocity == STILL
+
+
+async def test_a_costmap_that_falls_silent_stops_the_robot(scene, log):
+    goal = Asked(scene, "DriveOnHeading", "drive_on_heading")
+    await goal.send(target=get_message("geometry_msgs/msg/Point")(x=2.0), speed=0.02)
+    scene.sees = False
+    assert await goal.ends(10.0) == GoalStatus.ABORTED
+    assert scene.velocity == STILL
+    assert any("the costmap has fallen silent" in record.text for record in log)
+
+
+async def test_it_waits_and_can_be_canceled(scene):
+    goal = Asked(scene, "Wait", "wait")
+    await goal.send(time=Duration(seconds=2.0).to_msg())
+    assert await goal.ends(5.0) == GoalStatus.SUCCEEDED
+    await goal.send(time=Duration(seconds=60.0).to_msg())
+    await scene.run(1.0)
+    goal.handle.cancel_goal_async()
+    assert await goal.ends(2.0) == GoalStatus.CANCELED
+
+
+async def test_who_drives_with_assistance_is_stopped_before_a_wall(scene):
+    scene.costmap.grid.cells[:, 70:] = LETHAL  # from x = 3.5 m on
+    scene.pose = (2.5, 2.5, 0.0)
+    await scene.run(0.5)
+    asked = scene.node.create_publisher("geometry_msgs/msg/Twist", "/cmd_vel_teleop", 10)
+    goal = Asked(scene, "AssistedTeleop", "assisted_teleop")
+    await goal.send(time_allowance=Duration(seconds=8.0).to_msg())
+    twist = asked.msg_type()
+    twist.linear.x = 0.4
+    for _ in range(70):
+        asked.publish(twist)
+        await scene.run(0.1)
+    assert 2.9 < scene.pose[0] < 3.31
+    assert await goal.ends(3.0) == GoalStatus.ABORTED
+    assert scene.velocity == STILL
+
+
+async def test_targets_beside_the_robot_are_refused(scene):
+    goal = Asked(scene, "BackUp", "backup")
+    await goal.send(target=get_message("geometry_msgs/msg/Point")(x=0.3, y=0.1), speed=0.2)
+    assert await goal.ends(1.0) == GoalStatus.ABORTED

@@ -1,0 +1,181 @@
+"""bt_navigator and waypoint_follower: to poses and through them, with recoveries, feedback and refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.graph import DESCRIPTION_QOS, ActionServer
+from linkwright.graph.actions.goal import GoalStatus
+from linkwright.messages import get_action
+from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
+from linkwright.navigation.following.follower import STILL
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.nodes.behavior_server import BehaviorServer
+from linkwright.navigation.nodes.bt_navigator import BtNavigator
+from linkwright.navigation.nodes.controller_server import ControllerServer
+from linkwright.navigation.nodes.costmap_messages import raw_message
+from linkwright.navigation.nodes.waypoint_follower import WaypointFollower
+from linkwright.nodes import NodeOptions
+from tests.navigation.following.driving import line
+from tests.navigation.nodes.robots import Asked, DrivingScene, path_message, pose_stamped
+from tests.navigation.nodes.test_controller_server import LOCAL, PURE_PURSUIT
+
+
+class Planner:
+    """Plans straight lines; fails as often as it is told."""
+
+    def __init__(self, scene):
+        self.scene = scene
+        self.failures = 0
+        self.plans = 0
+        for name in ("ComputePathToPose", "ComputePathThroughPoses"):
+            kind = get_action(f"nav2_msgs/action/{name}")
+            topic = "compute_path_to_pose" if name.endswith("ToPose") else "compute_path_through_poses"
+            ActionServer(scene.node, kind, topic, lambda handle, kind=kind: self._plan(handle, kind.Result()))
+
+    def _plan(self, handle, result):
+        self.plans += 1
+        if self.failures > 0:
+            self.failures -= 1
+            handle.abort()
+            return result
+        goal = handle.request
+        poses = [each.pose.position for each in (goal.goals if hasattr(goal, "goals") else [goal.goal])]
+        result.path = path_message(line(self.scene.pose[:2], *[(pose.x, pose.y) for pose in poses]))
+        handle.succeed()
+        return result
+
+
+@pytest.fixture
+async def scene(graph, clock):
+    scene = DrivingScene(graph, clock)
+    planner = Planner(scene)
+    options = NodeOptions(parameters={"FollowPath.plugin": PURE_PURSUIT, "autostart_node": True})
+    for name, value in LOCAL.items():
+        options.for_others.set("/local_costmap/local_costmap", name, value)
+    own = NodeOptions(parameters={"autostart_node": True})
+    nodes = [ControllerServer(graph, options), BehaviorServer(graph, own), BtNavigator(graph, own)]
+    follower = {"autostart_node": True, "stop_on_failure": False}
+    nodes.append(WaypointFollower(graph, NodeOptions(parameters=follower)))
+    scene.planner = planner
+    await scene.run(1.0)
+    yield scene
+    for node in nodes:
+        node.close()
+
+
+async def test_it_goes_to_a_pose_and_tells_how_far_it_is(scene):
+    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+    await goal.send(pose=pose_stamped(3.0, 1.0))
+    assert await goal.ends(60.0) == GoalStatus.SUCCEEDED
+    assert scene.distance_to(3.0, 1.0) < 0.26
+    assert scene.velocity == STILL
+    left = [each.distance_remaining for each in goal.feedback]
+    assert max(left) == pytest.approx(2.0, abs=0.2)
+    assert left[-1] < 0.4
+    assert goal.feedback[-1].number_of_recoveries == 0
+    assert goal.feedback[-1].current_pose.header.frame_id == "map"
+    assert scene.planner.plans > 3, "a path each second"
+
+
+async def test_a_goal_pose_of_rviz_moves_the_robot(scene):
+    publisher = scene.node.create_publisher("geometry_msgs/msg/PoseStamped", "/goal_pose", 10)
+    publisher.publish(pose_stamped(2.0, 1.0))
+    for _ in range(60):
+        await scene.run(0.5)
+    assert scene.distance_to(2.0, 1.0) < 0.26
+
+
+async def test_it_goes_through_poses(scene):
+    goal = Asked(scene, "NavigateThroughPoses", "navigate_through_poses")
+    await goal.send(poses=[pose_stamped(2.0, 1.0), pose_stamped(2.0, 2.0), pose_stamped(3.0, 2.0)])
+    assert await goal.ends(90.0) == GoalStatus.SUCCEEDED
+    assert scene.distance_to(3.0, 2.0) < 0.26
+    assert {each.number_of_poses_remaining for each in goal.feedback} >= {1, 2, 3}
+
+
+async def test_canceling_stops_the_robot(scene):
+    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+    await goal.send(pose=pose_stamped(3.5, 1.0))
+    await scene.run(3.0)
+    assert scene.velocity.x > 0.0
+    goal.handle.cancel_goal_async()
+    assert await goal.ends(2.0) == GoalStatus.CANCELED
+    await scene.run(0.2)
+    assert scene.velocity == STILL
+
+
+async def test_another_goal_takes_over(scene):
+    first, second = (Asked(scene, "NavigateToPose", "navigate_to_pose") for _ in range(2))
+    await first.send(pose=pose_stamped(3.5, 1.0))
+    await scene.run(2.0)
+    await second.send(pose=pose_stamped(1.0, 2.0))
+    assert await second.ends(60.0) == GoalStatus.SUCCEEDED
+    assert await first.ends(0.5) == GoalStatus.ABORTED
+    assert scene.distance_to(1.0, 2.0) < 0.26
+
+
+async def test_it_recovers_in_the_order_of_nav2(scene, log):
+    scene.planner.failures = 8
+    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+    await goal.send(pose=pose_stamped(2.0, 1.0))
+    assert await goal.ends(120.0) == GoalStatus.SUCCEEDED
+    said = [record.text for record in log]
+    order = [said.index(text) for text in ("Running spin", "Running wait", "Running backup")]
+    assert order == sorted(order)
+    assert goal.feedback[-1].number_of_recoveries >= 4
+
+
+async def test_it_gives_up_after_six_recoveries(scene, log):
+    scene.planner.failures = 1000
+    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+    await goal.send(pose=pose_stamped(2.0, 1.0))
+    assert await goal.ends(120.0) == GoalStatus.ABORTED
+    assert any(record.text.startswith("Goal failed: the planner found no path") for record in log)
+
+
+async def test_a_goal_in_a_wall_is_refused_with_a_reason(scene, log):
+    costmap = Costmap(Grid(cells=np.zeros((100, 100), np.uint8), resolution=0.05))
+    costmap.grid.cells[:, 40:44] = LETHAL
+    publisher = scene.node.create_publisher("nav2_msgs/msg/Costmap", "/global_costmap/costmap_raw", DESCRIPTION_QOS)
+    publisher.publish(raw_message(costmap, "map", scene.stamp()))
+    scene.planner.failures = 1000
+    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+    await goal.send(pose=pose_stamped(2.1, 1.0))
+    assert await goal.ends(10.0) == GoalStatus.ABORTED
+    assert any("the goal (2.10, 1.00) is in an obstacle" in record.text for record in log)
+    assert scene.velocity == STILL
+
+
+async def test_no_poses_are_no_goal(scene):
+    goal = Asked(scene, "NavigateThroughPoses", "navigate_through_poses")
+    await goal.send(poses=[])
+    assert not goal.handle.accepted
+
+
+async def test_trees_of_users_are_not_read(scene, log):
+    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+    await goal.send(pose=pose_stamped(1.2, 1.0), behavior_tree="/tmp/mine.xml")
+    assert await goal.ends(30.0) == GoalStatus.SUCCEEDED
+    assert any("behaviour trees are not read" in record.text for record in log)
+
+
+async def test_waypoints_are_followed_and_missed_ones_told(scene):
+    goal = Asked(scene, "FollowWaypoints", "follow_waypoints")
+    costmap = Costmap(Grid(cells=np.zeros((100, 100), np.uint8), resolution=0.05))
+    costmap.grid.cells[60:] = LETHAL  # above y = 3 m
+    publisher = scene.node.create_publisher("nav2_msgs/msg/Costmap", "/global_costmap/costmap_raw", DESCRIPTION_QOS)
+    publisher.publish(raw_message(costmap, "map", scene.stamp()))
+    await goal.send(poses=[pose_stamped(2.0, 1.0), pose_stamped(2.0, 2.0)])
+    assert await goal.ends(90.0) == GoalStatus.SUCCEEDED
+    assert list(goal.answer.result.missed_waypoints) == []
+    assert {each.current_waypoint for each in goal.feedback} == {0, 1}
+    scene.planner.failures = 2
+    await goal.send(poses=[pose_stamped(1.0, 3.5), pose_stamped(2.0, 1.0)])
+    assert await goal.ends(90.0) == GoalStatus.SUCCEEDED
+    missed = [
+        getattr(missed_waypoint, "index", missed_waypoint) for missed_waypoint in goal.answer.result.missed_waypoints
+    ]  # Jazzy's are messages
+    assert missed == [0]
+    assert scene.distance_to(2.0, 1.0) < 0.26

@@ -1,0 +1,253 @@
+"""collision_monitor: velocities pass, slowed and stopped by what sensors see."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import LogLevel
+from linkwright.graph.lifecycle.states import ACTIVE, UNCONFIGURED
+from linkwright.messages import get_message
+from linkwright.navigation.following.follower import STILL
+from linkwright.navigation.nodes.collision_monitor import CollisionMonitor
+from linkwright.nodes import NodeOptions
+from tests.navigation.nodes.robots import DrivingScene
+
+STOP = {
+    "polygons": ["stop"],
+    "stop.type": "polygon",
+    "stop.action_type": "stop",
+    "stop.points": "[[0.6, 0.3], [0.6, -0.3], [0.0, -0.3], [0.0, 0.3]]",
+    "stop.min_points": 1,
+}
+SCAN = {"observation_sources": ["scan"], "base_frame_id": "base_link", "autostart_node": True}
+
+
+class Driven(DrivingScene):
+    """A scene whose robot somebody wants to drive forwards, ten times a second."""
+
+    def __init__(self, graph, clock):
+        super().__init__(graph, clock)
+        self.wanted = 0.4
+        self.wall = None
+        self._driver = self.node.create_publisher("geometry_msgs/msg/Twist", "/cmd_vel_smoothed", 10)
+        self.node.create_timer(0.1, self._drive)
+
+    def tell_scan(self, *ranges):
+        """A scan that sees a wall ahead, too, where there is one."""
+        super().tell_scan(*ranges, *([] if self.wall is None else [(0, self.wall - self.pose[0])]))
+
+    def _drive(self):
+        message = self._driver.msg_type()
+        message.linear.x = self.wanted
+        self._driver.publish(message)
+
+
+@pytest.fixture
+def scene(graph, clock):
+    return Driven(graph, clock)
+
+
+@pytest.fixture
+def monitor(graph, scene):
+    made = []
+
+    def make(**parameters):
+        made.append(CollisionMonitor(graph, NodeOptions(parameters={**SCAN, **parameters})))
+        return made[-1].node
+
+    yield make
+    for each in made:
+        each.close()
+
+
+async def test_velocities_pass_where_the_way_is_free(scene, monitor):
+    monitor(**STOP)
+    await scene.run(1.0)
+    assert scene.velocity.x == pytest.approx(0.4)
+
+
+async def test_the_robot_stops_for_something_in_the_zone_and_goes_on_when_it_is_gone(scene, monitor, log):
+    node = monitor(**STOP, state_topic="state")
+    states = []
+    scene.node.create_subscription("nav2_msgs/msg/CollisionMonitorState", "state", states.append, 10)
+    await scene.run(1.0)
+    scene.seen = ((0, 0.5),)
+    await scene.run(1.0)
+    assert scene.velocity == STILL
+    scene.seen = ()
+    await scene.run(1.0)
+    assert scene.velocity.x == pytest.approx(0.4)
+    assert [(state.action_type, state.polygon_name) for state in states[-2:]] == [(1, "stop"), (0, "")]
+    assert any(each.text == "Robot to stop due to stop" for each in log)
+    assert node.lifecycle_state == ACTIVE
+
+
+async def test_a_robot_that_stays_stopped_is_left_to_others(scene, monitor):
+    monitor(**STOP, stop_pub_timeout=1.0)
+    scene.seen = ((0, 0.5),)
+    await scene.run(3.0)
+    scene.speeds.clear()
+    await scene.run(1.0)
+    assert scene.speeds == []
+
+
+async def test_a_silent_sensor_stops_the_robot(scene, monitor):
+    monitor(**STOP, source_timeout=1.0)
+    await scene.run(1.0)
+    assert scene.velocity.x == pytest.approx(0.4)
+    scene.sees = False
+    await scene.run(2.0)
+    assert scene.velocity == STILL
+
+
+async def test_a_sensor_without_a_timeout_may_be_silent(scene, monitor):
+    monitor(**STOP, **{"scan.source_timeout": 0.0})
+    scene.sees = False
+    await scene.run(1.0)
+    assert scene.velocity.x == pytest.approx(0.4)
+
+
+async def test_the_robot_slows_down(scene, monitor):
+    monitor(**{**STOP, "stop.action_type": "slowdown", "stop.slowdown_ratio": 0.3})
+    scene.seen = ((0, 0.5),)
+    await scene.run(1.0)
+    assert scene.velocity.x == pytest.approx(0.12)
+
+
+async def test_humbles_corners_and_number_of_points_are_read(scene, monitor):
+    humble = {**STOP, "stop.points": [0.6, 0.3, 0.6, -0.3, 0.0, -0.3, 0.0, 0.3], "stop.max_points": 1}
+    monitor(**humble)
+    scene.seen = ((0, 0.5),)
+    await scene.run(1.0)
+    assert scene.velocity.x == pytest.approx(0.4)  # one point is allowed
+    scene.seen = ((0, 0.5), (1, 0.5))
+    await scene.run(1.0)
+    assert scene.velocity == STILL
+
+
+async def test_what_was_seen_stands_still_while_the_robot_moves_on(scene, monitor):
+    monitor(**STOP)
+    scene.seen = ((0, 0.9),)
+    await scene.run(0.5)
+    assert scene.velocity.x == pytest.approx(0.4)
+    scene.sees = False  # for less than the timeout
+    scene.tell_pose(x=scene.pose[0] + 0.35)
+    await scene.run(0.5)
+    assert scene.velocity == STILL
+
+
+async def test_a_robot_slows_down_towards_a_wall_with_the_footprint_of_its_costmap(scene, monitor):
+    polygon, point = get_message("geometry_msgs/msg/PolygonStamped"), get_message("geometry_msgs/msg/Point32")
+    footprints = scene.node.create_publisher(polygon, "/local_costmap/published_footprint", 10)
+
+    def tell():
+        x, y, _ = scene.pose
+        corners = [(x + a, y + b) for a, b in ((0.2, 0.2), (0.2, -0.2), (-0.2, -0.2), (-0.2, 0.2))]
+        message = polygon()
+        message.header.frame_id, message.header.stamp = "odom", scene.stamp()
+        message.polygon.points = [point(x=float(a), y=float(b)) for a, b in corners]
+        footprints.publish(message)
+
+    scene.node.create_timer(0.1, tell)
+    approach = {"polygons": ["body"], "body.type": "polygon", "body.action_type": "approach", "body.min_points": 1}
+    monitor(**approach, **{"body.time_before_collision": 2.0})
+    scene.wall = scene.pose[0] + 1.5
+    await scene.run(8.0)
+    assert 0.2 < scene.wall - scene.pose[0] < 0.45
+    speeds = [speed.x for speed in scene.speeds if speed.x > 0]
+    assert speeds[0] == pytest.approx(0.4)
+    assert 0 < speeds[-1] < 0.2
+
+
+async def test_the_zone_of_a_speed_is_used_at_it(scene, monitor):
+    zone = {
+        "polygons": ["v"],
+        "v.type": "velocity_polygon",
+        "v.action_type": "stop",
+        "v.min_points": 1,
+        "v.velocity_polygons": ["fast", "slow"],
+    }
+    for name, reach, least, most in (("fast", 1.0, 0.3, 1.0), ("slow", 0.4, -1.0, 0.3)):
+        zone[f"v.{name}.points"] = f"[[{reach}, 0.3], [{reach}, -0.3], [0.0, -0.3], [0.0, 0.3]]"
+        zone |= {f"v.{name}.linear_min": least, f"v.{name}.linear_max": most}
+        zone |= {f"v.{name}.theta_min": -1.0, f"v.{name}.theta_max": 1.0}
+    monitor(**zone)
+    scene.seen = ((0, 0.7),)
+    await scene.run(1.0)
+    assert scene.velocity == STILL
+    scene.wanted = 0.2
+    await scene.run(1.0)
+    assert scene.velocity.x == pytest.approx(0.2)
+
+
+async def test_a_zone_can_be_switched_off(scene, monitor):
+    node = monitor(**STOP)
+    scene.seen = ((0, 0.5),)
+    await scene.run(1.0)
+    assert scene.velocity == STILL
+    node.set_parameters([type(node.get_parameter("stop.enabled"))("stop.enabled", value=False)])
+    await scene.run(1.0)
+    assert scene.velocity.x == pytest.approx(0.4)
+
+
+async def test_clouds_count_between_two_heights(scene, monitor):
+    cloud, field = get_message("sensor_msgs/msg/PointCloud2"), get_message("sensor_msgs/msg/PointField")
+    clouds = scene.node.create_publisher(cloud, "/points", 5)
+    height = [0.01]
+
+    def tell():
+        points = np.array([[0.5, 0.0, height[0]], [np.nan, 0.0, 0.2]], np.float32)
+        message = cloud(height=1, width=2, point_step=12, row_step=24, data=points.tobytes())
+        message.fields = [field(name=name, offset=4 * i, datatype=7, count=1) for i, name in enumerate("xyz")]
+        message.header.frame_id, message.header.stamp = "base_link", scene.stamp()
+        clouds.publish(message)
+
+    scene.node.create_timer(0.1, tell)
+    monitor(**STOP, **{"scan.type": "pointcloud", "scan.topic": "points"})
+    await scene.run(1.0)
+    assert scene.velocity.x == pytest.approx(0.4)
+    height[0] = 0.2
+    await scene.run(1.0)
+    assert scene.velocity == STILL
+
+
+@pytest.mark.parametrize(("distance", "passes"), [(0.5, False), (2.0, True), (9.0, True)])
+async def test_a_single_distance_is_an_arc(scene, monitor, distance, passes):
+    kind = get_message("sensor_msgs/msg/Range")
+    ranges = scene.node.create_publisher(kind, "/sonar", 5)
+
+    def tell():
+        message = kind(field_of_view=0.5, min_range=0.1, max_range=4.0, range=distance)
+        message.header.frame_id, message.header.stamp = "base_link", scene.stamp()
+        ranges.publish(message)
+
+    scene.node.create_timer(0.1, tell)
+    monitor(**STOP, **{"scan.type": "range", "scan.topic": "sonar"})
+    await scene.run(1.0)
+    assert (scene.velocity != STILL) is passes
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("stop.action_type", "halt"),
+        ("stop.type", "triangle"),
+        ("stop.points", "[[0, 0]]"),
+        ("stop.points", ""),
+        ("scan.type", "sonar"),
+    ],
+)
+async def test_a_parameter_that_cannot_be_is_said_and_nothing_passes(scene, monitor, log, name, value):
+    node = monitor(**{**STOP, name: value})
+    await scene.run(0.5)
+    assert node.lifecycle_state == UNCONFIGURED
+    errors = [each.text for each in log if each.level == LogLevel.ERROR]
+    assert any("NODE433" in error and name in error for error in errors)
+    assert scene.speeds == []
+
+
+def test_a_name_of_a_topic_that_is_none_ends_it(graph):
+    with pytest.raises(LinkwrightError):
+        CollisionMonitor(graph, NodeOptions(parameters={**SCAN, "cmd_vel_out_topic": 5}))

@@ -1,0 +1,185 @@
+"""controller_server: follows paths, stops at the end of all, and says why it gives up."""
+
+from __future__ import annotations
+
+from math import pi
+
+import pytest
+
+from linkwright.graph.actions.goal import GoalStatus
+from linkwright.messages import get_message
+from linkwright.navigation.following.follower import STILL
+from linkwright.navigation.nodes.controller_server import ControllerServer
+from linkwright.nodes import NodeOptions
+from tests.navigation.following.driving import line
+from tests.navigation.nodes.robots import Asked, DrivingScene, path_message
+
+LOCAL = {
+    "global_frame": "odom",
+    "rolling_window": True,
+    "width": 3,
+    "height": 3,
+    "resolution": 0.05,
+    "robot_radius": 0.15,
+    "update_frequency": 5.0,
+    "publish_frequency": 2.0,
+    "plugins": ["obstacle_layer", "inflation_layer"],
+    "obstacle_layer.plugin": "nav2_costmap_2d::ObstacleLayer",
+    "obstacle_layer.observation_sources": "scan",
+    "obstacle_layer.scan.topic": "/scan",
+    "obstacle_layer.scan.expected_update_rate": 0.5,
+    "inflation_layer.plugin": "nav2_costmap_2d::InflationLayer",
+    "inflation_layer.inflation_radius": 0.3,
+}
+PURE_PURSUIT = "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController"
+DWB = {
+    "FollowPath.plugin": "dwb_core::DWBLocalPlanner",
+    "FollowPath.max_vel_x": 0.26,
+    "FollowPath.max_vel_theta": 1.0,
+    "FollowPath.acc_lim_x": 2.5,
+    "FollowPath.acc_lim_theta": 3.2,
+    "FollowPath.decel_lim_x": -2.5,
+    "FollowPath.decel_lim_theta": -3.2,
+    "FollowPath.critics": ["Oscillation"],
+}
+PATH = line((1.0, 1.0), (2.5, 1.0), (2.5, 2.0))
+
+
+@pytest.fixture
+async def start(graph, clock):
+    """Starts the server with parameters; the scene and the action."""
+    made = []
+
+    async def start(**parameters):
+        scene = DrivingScene(graph, clock)
+        options = NodeOptions(parameters={"FollowPath.plugin": PURE_PURSUIT, "autostart_node": True, **parameters})
+        for name, value in LOCAL.items():
+            options.for_others.set("/local_costmap/local_costmap", name, value)
+        server = ControllerServer(graph, options)
+        made.append(server)
+        await scene.run(1.0)
+        return scene, Asked(scene, "FollowPath", "follow_path"), server
+
+    yield start
+    for server in made:
+        server.close()
+
+
+@pytest.mark.parametrize("parameters", [{}, DWB], ids=["pure pursuit", "dwb"])
+async def test_a_path_is_driven_to_its_end(start, parameters):
+    scene, goal, _ = await start(**parameters)
+    await goal.send(path=path_message(PATH))
+    assert await goal.ends(60.0) == GoalStatus.SUCCEEDED
+    assert scene.distance_to(2.5, 2.0) < 0.26
+    assert abs(scene.pose[2] - pi / 2) < 0.26
+    assert scene.velocity == STILL
+    assert goal.feedback[0].distance_to_goal == pytest.approx(2.5, abs=0.15)
+    assert max(each.speed for each in goal.feedback) > 0.15
+
+
+async def test_canceling_stops_the_robot(start):
+    scene, goal, _ = await start()
+    await goal.send(path=path_message(PATH))
+    await scene.run(2.0)
+    assert scene.velocity.x > 0.0
+    goal.handle.cancel_goal_async()
+    assert await goal.ends(2.0) == GoalStatus.CANCELED
+    assert scene.velocity == STILL
+
+
+async def test_another_path_takes_over_while_the_robot_drives(start, log):
+    scene, goal, _ = await start()
+    await goal.send(path=path_message(PATH))
+    await scene.run(2.0)
+    second = Asked(scene, "FollowPath", "follow_path")
+    await second.send(path=path_message(line((1.5, 1.0), (3.0, 1.0))))
+    assert STILL not in scene.speeds[5:]
+    assert await goal.ends(1.0) == GoalStatus.ABORTED
+    assert await second.ends(30.0) == GoalStatus.SUCCEEDED
+    assert scene.distance_to(3.0, 1.0) < 0.26
+    beginnings = ["Received a goal, begin computing control effort.", "Passing new path to controller."]
+    assert [record.text for record in log if record.text in beginnings] == beginnings
+
+
+async def test_an_obstacle_on_the_path_stops_the_robot(start, log):
+    scene, goal, _ = await start()
+    await goal.send(path=path_message(line((1.0, 1.0), (4.5, 1.0))))
+    scene.seen = tuple((degree % 360, 0.8) for degree in range(-20, 21))
+    assert await goal.ends(30.0) == GoalStatus.ABORTED
+    assert scene.velocity == STILL
+    assert any("there is an obstacle ahead" in record.text for record in log)
+
+
+async def test_a_robot_that_is_held_makes_no_progress(start, log):
+    scene, goal, _ = await start(**{"progress_checker.movement_time_allowance": 3.0})
+    await goal.send(path=path_message(PATH))
+    scene.held = True
+    assert await goal.ends(6.0) == GoalStatus.ABORTED
+    assert any("Failed to make progress" in record.text for record in log)
+
+
+async def test_lost_transforms_stop_the_robot(start, log):
+    scene, goal, _ = await start()
+    await goal.send(path=path_message(PATH))
+    await scene.run(1.0)
+    assert scene.velocity.x > 0.0
+    scene.told = False
+    await scene.run(0.5)
+    assert scene.velocity == STILL, "it waits"
+    scene.told = True
+    await scene.run(1.0)
+    assert scene.velocity.x > 0.0, "it goes on"
+    scene.told = False
+    assert await goal.ends(5.0) == GoalStatus.ABORTED
+    assert scene.velocity == STILL
+    assert any("s old: given up" in record.text for record in log)
+
+
+async def test_a_silent_laser_stops_the_robot(start, log):
+    scene, goal, _ = await start()
+    await goal.send(path=path_message(line((1.0, 1.0), (4.5, 1.0))))
+    await scene.run(0.5)
+    assert scene.velocity.x > 0.0
+    scene.sees = False
+    await scene.run(1.5)
+    assert scene.velocity == STILL
+    assert await goal.ends(10.0) == GoalStatus.ABORTED
+    assert any("the costmap is not current" in record.text for record in log)
+
+
+async def test_a_server_that_is_deactivated_stops_the_robot(start):
+    scene, goal, server = await start()
+    await goal.send(path=path_message(PATH))
+    await scene.run(1.0)
+    server.node.trigger_deactivate()
+    await scene.run(0.1)
+    assert scene.velocity == STILL
+    assert await goal.ends(1.0) == GoalStatus.ABORTED
+    await goal.send(path=path_message(PATH))
+    assert not goal.handle.accepted
+
+
+async def test_a_speed_limit_is_kept(start):
+    scene, goal, _ = await start()
+    limit = get_message("nav2_msgs/msg/SpeedLimit")(percentage=True, speed_limit=20.0)
+    publisher = scene.node.create_publisher(type(limit), "/speed_limit", 10)
+    publisher.publish(limit)
+    await goal.send(path=path_message(PATH))
+    await scene.run(3.0)
+    assert 0.05 < max(speed.x for speed in scene.speeds) <= 0.1 + 1e-9
+
+
+async def test_an_empty_path_and_an_unknown_controller_are_refused(start, log):
+    _, goal, _ = await start()
+    await goal.send(path=path_message([]))
+    assert await goal.ends(1.0) == GoalStatus.ABORTED
+    await goal.send(path=path_message(PATH), controller_id="Fast")
+    assert await goal.ends(1.0) == GoalStatus.ABORTED
+    said = [record.text for record in log]
+    assert "Path is empty." in said
+    assert "there is no controller 'Fast'; there are: FollowPath" in said
+
+
+async def test_what_has_no_effect_is_named(start, log):
+    await start(**DWB)
+    assert any("without effect here: critics" in record.text for record in log)

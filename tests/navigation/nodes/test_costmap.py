@@ -1,0 +1,276 @@
+"""Costmaps of nav2's servers on the graph: maps, scans, windows that move, services, parameters."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, Parameter
+from linkwright.graph.lifecycle.states import TransitionCallbackReturn
+from linkwright.messages import get_message, get_service
+from linkwright.navigation.costmaps.costmap import FREE, INSCRIBED, LETHAL
+from linkwright.navigation.nodes.costmap import make_costmap
+from linkwright.nodes import NodeOptions
+from tests.navigation.nodes.scene import Scene, walls
+
+GLOBAL = {
+    "global_frame": "map",
+    "robot_base_frame": "base_link",
+    "resolution": 0.05,
+    "robot_radius": 0.2,
+    "update_frequency": 5.0,
+    "publish_frequency": 5.0,
+    "plugins": ["static_layer", "obstacle_layer", "inflation_layer"],
+    "obstacle_layer.plugin": "nav2_costmap_2d::ObstacleLayer",
+    "obstacle_layer.observation_sources": "scan",
+    "obstacle_layer.scan.topic": "/scan",
+    "obstacle_layer.scan.clearing": True,
+    "obstacle_layer.scan.max_obstacle_height": 2.0,
+}
+LOCAL = {
+    **GLOBAL,
+    "global_frame": "odom",
+    "rolling_window": True,
+    "width": 2,
+    "height": 2,
+    "plugins": ["voxel_layer", "inflation_layer"],
+    "voxel_layer.plugin": "nav2_costmap_2d::VoxelLayer",
+    "voxel_layer.observation_sources": "scan",
+    "voxel_layer.scan.topic": "/scan",
+    "voxel_layer.scan.clearing": True,
+    "voxel_layer.scan.max_obstacle_height": 2.0,
+}
+
+
+@pytest.fixture
+def scene(graph, clock) -> Scene:
+    return Scene(graph, clock)
+
+
+@pytest.fixture
+def start(graph, scene):
+    made = []
+
+    def start(name="global_costmap", parameters=GLOBAL, **more):
+        options = NodeOptions()
+        for key, value in {**parameters, **more}.items():
+            options.for_others.set(f"/{name}/{name}", key, value)
+        node = make_costmap(scene.node, graph, options, name)
+        made.append(node)
+        if node.trigger_configure() == TransitionCallbackReturn.SUCCESS:
+            node.trigger_activate()
+        return node
+
+    yield start
+    for node in made:
+        node.leave()
+        node.destroy_node()
+
+
+async def call(scene, service, kind, **fields):
+    kind = get_service(f"nav2_msgs/srv/{kind}")
+    client = scene.node.create_client(kind, service)
+    future = client.call_async(kind.Request(**fields))
+    await scene.graph.settle()
+    assert future.done()
+    return future.result()
+
+
+async def test_a_map_becomes_costs_as_large_as_the_map(scene, start):
+    node = start()
+    assert node.get_fully_qualified_name() == "/global_costmap/global_costmap"
+    scene.tell_map(walls())
+    scene.tell_pose()
+    await scene.run(0.5)
+    costs = node.costmap.grid.cells
+    assert costs.shape == (60, 80)
+    assert costs[30, 0] == LETHAL
+    assert costs[30, 3] == INSCRIBED
+    assert costs[30, 40] == FREE
+    assert node.is_current
+
+
+async def test_transforms_are_heard_where_its_server_hears_them(graph, scene):
+    """The launch files of nav2 make the topics of transforms relative, for robots in namespaces."""
+    options = NodeOptions(remappings=[("/tf", "tf"), ("/tf_static", "tf_static")])
+    node = make_costmap(scene.node, graph, options, "global_costmap")
+    heard = {subscription.topic_name for subscription in node.subscriptions}
+    assert {"/tf", "/tf_static"} <= heard
+    node.leave()
+    node.destroy_node()
+
+
+async def test_it_waits_for_the_place_of_the_robot_and_for_the_map(scene, start):
+    node = start()
+    await scene.run(0.5)
+    assert not node.is_current
+    scene.tell_pose()
+    await scene.run(0.5)
+    assert not node.is_current
+    scene.tell_map(walls())
+    await scene.run(0.5)
+    assert node.is_current
+
+
+async def test_what_the_laser_sees_comes_and_goes(scene, start):
+    node = start()
+    scene.tell_map(walls())
+    scene.tell_pose()
+    scene.tell_scan((0, 1.0))
+    await scene.run(0.3)
+    assert node.costmap.cost_at(np.array([2.0, 1.0])) == LETHAL
+    scene.tell_pose()
+    scene.tell_scan()
+    await scene.run(0.3)
+    assert node.costmap.cost_at(np.array([2.0, 1.0])) == FREE
+
+
+async def test_a_scan_waits_until_its_place_is_known(scene, start):
+    node = start()
+    scene.tell_map(walls())
+    scene.tell_pose(x=0.5)
+    await scene.run(0.3)
+    scene.tell_scan((0, 1.0))
+    await scene.run(0.3)
+    assert node.costmap.cost_at(np.array([1.5, 1.0])) == FREE
+    scene.tell_pose(x=1.0)  # the robot has moved since the last transform, and the scan is between both
+    await scene.run(0.3)
+    found = np.argwhere(node.costmap.grid.cells[15:25, 20:50] == LETHAL)
+    assert len(found) == 1
+    assert 1.5 < (found[0, 1] + 20) * 0.05 < 2.0
+
+
+async def test_a_local_costmap_moves_with_the_robot(scene, start):
+    node = start("local_costmap", LOCAL)
+    scene.tell_pose()
+    scene.tell_scan((0, 0.8))
+    await scene.run(0.3)
+    assert node.costmap.grid.cells.shape == (40, 40)
+    assert node.costmap.cost_at(np.array([1.8, 1.0])) == LETHAL
+    scene.tell_pose(x=1.5)
+    scene.tell_scan((0, 0.3))
+    await scene.run(0.3)
+    assert node.costmap.grid.x == pytest.approx(0.5)
+    assert node.costmap.cost_at(np.array([1.8, 1.0])) == LETHAL
+
+
+async def test_what_a_sonar_measures(scene, start):
+    node = start(
+        plugins=["sonar"],
+        **{"sonar.plugin": "nav2_costmap_2d::RangeSensorLayer", "sonar.topics": ["sonar"]},
+    )
+    kind = get_message("sensor_msgs/msg/Range")
+    publisher = scene.node.create_publisher(kind, "/sonar", SENSOR_DATA_QOS)
+    for _ in range(5):
+        message = kind(field_of_view=0.5, min_range=0.1, max_range=3.0, range=1.0)
+        message.header.frame_id, message.header.stamp = "base_link", scene.stamp()
+        publisher.publish(message)
+        scene.tell_pose()
+        await scene.run(0.2)
+    assert node.costmap.cost_at(np.array([2.0, 1.0])) == LETHAL
+    assert node.costmap.cost_at(np.array([1.5, 1.0])) == FREE
+
+
+async def test_others_hear_of_it(scene, start):
+    maps, parts, raw, outlines = [], [], [], []
+    for kind, topic, heard in (
+        ("nav_msgs/msg/OccupancyGrid", "costmap", maps),
+        ("map_msgs/msg/OccupancyGridUpdate", "costmap_updates", parts),
+        ("nav2_msgs/msg/Costmap", "costmap_raw", raw),
+    ):
+        scene.node.create_subscription(get_message(kind), f"/global_costmap/{topic}", heard.append, DESCRIPTION_QOS)
+    polygon = get_message("geometry_msgs/msg/PolygonStamped")
+    scene.node.create_subscription(polygon, "/global_costmap/published_footprint", outlines.append, 10)
+    node = start()
+    scene.tell_map(walls(columns=300))
+    scene.tell_pose()
+    await scene.run(0.5)
+    told = np.array(maps[-1].data, np.int8).reshape(60, 300)
+    assert (told[30, 0], told[30, 3], told[30, 40]) == (100, 99, 0)
+    assert np.array_equal(np.array(raw[-1].data, np.uint8).reshape(60, 300), node.costmap.grid.cells)
+    assert len(outlines[-1].polygon.points) == 16
+    count = len(maps)
+    scene.tell_pose()
+    scene.tell_scan((0, 1.0))
+    await scene.run(0.5)
+    assert len(maps) == count  # only a part changed
+    part = parts[-1]
+    assert part.width < 300
+    cells = np.array(part.data, np.int8).reshape(part.height, part.width)
+    assert cells[20 - part.y, 40 - part.x] == 100 or cells[19 - part.y, 39 - part.x] == 100
+
+
+async def test_it_can_be_cleared(scene, start):
+    node = start()
+    scene.tell_map(walls())
+    scene.tell_pose()
+    scene.tell_scan((0, 1.0), (180, 0.5))
+    await scene.run(0.3)
+    layer = node.layered.layers[1]
+    layer.buffers[0].add(np.zeros(3), np.zeros((0, 3)), 0)  # what was seen is not seen any more
+    near, far = np.array([0.5, 1.0]), np.array([2.0, 1.0])
+    await call(scene, "/global_costmap/clear_around_global_costmap", "ClearCostmapAroundRobot", reset_distance=1.2)
+    assert node.costmap.cost_at(near) < INSCRIBED
+    assert node.costmap.cost_at(far) == LETHAL
+    await call(scene, "/global_costmap/clear_except_global_costmap", "ClearCostmapExceptRegion", reset_distance=1.2)
+    assert node.costmap.cost_at(far) == FREE
+    layer.seen.cells[20, 40] = LETHAL
+    await call(scene, "/global_costmap/clear_entirely_global_costmap", "ClearEntireCostmap")
+    assert node.costmap.cost_at(far) == FREE
+    assert node.costmap.grid.cells[30, 0] == LETHAL
+    told = await call(scene, "/global_costmap/get_costmap", "GetCostmap")
+    assert told.map.metadata.size_x == 80
+
+
+async def test_a_footprint_instead_of_a_radius(scene, start):
+    node = start(footprint="[[0.3, 0.1], [0.3, -0.1], [-0.3, -0.1], [-0.3, 0.1]]", footprint_padding=0.0)
+    assert node.footprint.tolist() == [[0.3, 0.1], [0.3, -0.1], [-0.3, -0.1], [-0.3, 0.1]]
+    assert node.layered.inscribed_radius == pytest.approx(0.1)
+
+
+async def test_parameters_that_change_are_obeyed(scene, start):
+    node = start()
+    scene.tell_map(walls())
+    scene.tell_pose()
+    await scene.run(0.3)
+    place = np.array([0.5, 1.5])
+    assert node.costmap.cost_at(place) > FREE
+    node.set_parameters([Parameter("inflation_layer.inflation_radius", value=0.3)])
+    await scene.run(0.3)
+    assert node.costmap.cost_at(place) == FREE
+    node.set_parameters([Parameter("inflation_layer.enabled", value=False), Parameter("robot_radius", value=0.4)])
+    await scene.run(0.3)
+    assert node.costmap.cost_at(np.array([0.1, 1.5])) == FREE
+    assert node.layered.circumscribed_radius == pytest.approx(0.41, abs=0.01)
+
+
+async def test_what_is_not_had_is_left_out_with_a_line(scene, start, log):
+    start(
+        plugins=["static_layer", "sonar"],
+        filters=["keepout_filter"],
+        **{
+            "sonar.plugin": "my_package::Sonar",
+            "sonar.topics": ["/sonar"],
+            "keepout_filter.enabled": True,
+        },
+    )
+    told = [each.text for each in log]
+    assert "there is no layer my_package::Sonar here: the costmap ignores 'sonar'" in told
+    assert "costmap filters are not supported: the costmap ignores keepout_filter" in told
+    assert "layers that 'plugins' does not name are ignored: obstacle_layer" in told
+    assert not [each for each in told if "is not a parameter" in each or "are not read" in each]
+
+
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        ({"resolution": 0.0}, "parameter 'resolution' of 'global_costmap' cannot be '0.0'"),
+        ({"footprint": "[[1, 2]]"}, "'[[1, 2]]' has 1"),
+        ({"plugins": ["mine"]}, "parameter 'mine.plugin' of 'global_costmap' is not given"),
+        ({"obstacle_layer.scan.data_type": "Image"}, "it is one of LaserScan, PointCloud2"),
+    ],
+)
+async def test_what_cannot_be_is_told(scene, start, log, given, why):
+    node = start(**given)
+    assert not node.is_active
+    assert [each for each in log if why in each.text]

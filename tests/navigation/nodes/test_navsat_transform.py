@@ -1,0 +1,180 @@
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.single import quaternion_from_rpy
+from linkwright.graph import STATIC_TF_PUBLISHER_QOS
+from linkwright.messages import TFMessage, Time, TransformBatch, get_message, get_service
+from linkwright.navigation.estimation.geodesy import TangentPlane, degrees_of_utm, utm_of, zone_of
+from linkwright.navigation.nodes.robot_localization.navsat_transform import NavsatTransformNode
+from linkwright.nodes import NodeOptions
+from linkwright.testing.stepped import AsyncSteppedGraph
+
+HERE = (48.5, 9.0)
+"""In the middle of zone 32, where the grid is not turned."""
+
+
+@pytest.fixture
+async def test():
+    async with AsyncSteppedGraph() as graph:
+        yield graph
+
+
+def start(test, **parameters):
+    return NavsatTransformNode(test.graph, NodeOptions(parameters=parameters))
+
+
+def headed(test, kind, frame):
+    message = get_message(kind)()
+    message.header.stamp, message.header.frame_id = Time.from_nanoseconds(test.clock.now_ns()), frame
+    return message
+
+
+def turn(message, yaw):
+    message.x, message.y, message.z, message.w = quaternion_from_rpy((0.0, 0.0, yaw))
+
+
+async def fix(test, east=0.0, north=0.0, altitude=200.0, frame="gps"):
+    """What a receiver says that is some metres away from where it began, on the grid."""
+    zone = zone_of(*HERE)
+    x, y = utm_of(*HERE, zone)
+    message = headed(test, "sensor_msgs/msg/NavSatFix", frame)
+    message.latitude, message.longitude = degrees_of_utm(x + east, y + north, zone)
+    message.altitude = altitude
+    message.position_covariance = np.diag([1.0, 4.0, 9.0]).reshape(9)
+    test.publish("/gps/fix", message)
+    await test.settle()
+
+
+async def odometry(test, x=0.0, y=0.0, yaw=0.0):
+    message = headed(test, "nav_msgs/msg/Odometry", "odom")
+    message.child_frame_id = "base_link"
+    message.pose.pose.position.x, message.pose.pose.position.y = x, y
+    turn(message.pose.pose.orientation, yaw)
+    test.publish("/odometry/filtered", message)
+    await test.settle()
+
+
+async def imu(test, yaw, frame="base_link"):
+    message = headed(test, "sensor_msgs/msg/Imu", frame)
+    turn(message.orientation, yaw)
+    test.publish("/imu", message)
+    await test.settle()
+
+
+def point(message):
+    position = message.pose.pose.position
+    return position.x, position.y, position.z
+
+
+async def test_fixes_become_odometry_of_a_robot_that_began_to_the_north(test):
+    start(test, broadcast_cartesian_transform=True)
+    gps, tf = test.record("/odometry/gps"), test.record("/tf_static", TFMessage)
+    await odometry(test)
+    await imu(test, pi / 2)
+    await fix(test, frame="base_link")
+    await test.advance(0.15)
+    assert len(gps) == 0  # the first one is the origin
+    await odometry(test)
+    await fix(test, east=-3.0, north=10.0, altitude=201.0, frame="base_link")
+    await test.advance(0.1)
+    assert point(gps.last) == pytest.approx((10.0, 3.0, 1.0), abs=1e-6)
+    assert gps.last.header.frame_id == "odom"
+    assert np.diag(np.reshape(gps.last.pose.covariance, (6, 6)))[:3] == pytest.approx([4.0, 1.0, 9.0])
+    (transform,) = tf.last.transforms
+    assert (transform.header.frame_id, transform.child_frame_id) == ("odom", "utm")
+
+
+async def test_the_receiver_is_not_in_the_middle_of_the_robot(test):
+    start(test, zero_altitude=True)
+    gps = test.record("/odometry/gps")
+    pose = np.array([[1.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0]])
+    batch = TransformBatch(("base_link",), ("gps",), 0, pose)
+    test.publish("/tf_static", TFMessage(batch=batch), STATIC_TF_PUBLISHER_QOS)
+    await odometry(test)
+    await imu(test, 0.0)
+    await fix(test)
+    await test.advance(0.15)
+    await odometry(test, yaw=pi / 2)  # it turned on the spot: the receiver went to its left
+    await fix(test, east=-1.0, north=1.0)
+    await test.advance(0.1)
+    assert point(gps.last) == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
+
+
+async def test_odometry_becomes_fixes(test):
+    start(test, use_odometry_yaw=True)
+    filtered = test.record("/gps/filtered")
+    await odometry(test, x=5.0, yaw=pi / 2)
+    await fix(test, frame="base_link")
+    await test.advance(0.15)
+    await odometry(test, x=5.0, y=100.0)
+    await test.advance(0.1)
+    zone = zone_of(*HERE)
+    x, y = utm_of(*HERE, zone)
+    east, north = utm_of(filtered.last.latitude, filtered.last.longitude, zone)
+    assert (east - x, north - y, filtered.last.altitude) == pytest.approx((0.0, 100.0, 200.0), abs=1e-4)
+
+
+async def test_a_datum_and_the_services(test):
+    start(test, wait_for_datum=True, datum=[*HERE, 0.0])
+    ask = get_service("robot_localization/srv/FromLL").Request()
+    zone = zone_of(*HERE)
+    x, y = utm_of(*HERE, zone)
+    ask.ll_point.latitude, ask.ll_point.longitude = degrees_of_utm(x + 20.0, y - 7.0, zone)
+    there = (await test.call("/fromLL", ask)).map_point
+    assert (there.x, there.y) == pytest.approx((20.0, -7.0), abs=1e-6)
+    back = (await test.call("/toLL", get_service("robot_localization/srv/ToLL").Request(map_point=there))).ll_point
+    assert (back.latitude, back.longitude) == pytest.approx((ask.ll_point.latitude, ask.ll_point.longitude), abs=1e-9)
+    several = get_service("robot_localization/srv/FromLLArray").Request(ll_points=[ask.ll_point] * 2)
+    assert [map_point.x for map_point in (await test.call("/fromLLArray", several)).map_points] == pytest.approx(
+        [20.0, 20.0]
+    )
+    datum = get_service("robot_localization/srv/SetDatum").Request()
+    datum.geo_pose.position = ask.ll_point
+    turn(datum.geo_pose.orientation, 0.0)
+    await test.call("/datum", datum)
+    there = (await test.call("/fromLL", ask)).map_point
+    assert (there.x, there.y) == pytest.approx((0.0, 0.0), abs=1e-6)
+    zone_request = get_service("robot_localization/srv/SetUTMZone").Request
+    assert (await test.call("/setUTMZone", zone_request(utm_zone="31U"))).status
+    assert not (await test.call("/setUTMZone", zone_request(utm_zone="99"))).status
+
+
+async def test_the_plane_that_touches_the_earth(test):
+    start(test, wait_for_datum=True, datum=[*HERE, pi / 2], use_local_cartesian=True)
+    ask = get_service("robot_localization/srv/FromLL").Request()
+    place = ask.ll_point
+    place.latitude, place.longitude, place.altitude = TangentPlane(*HERE, 0.0).place_of((3.0, 50.0, 2.0))
+    there = (await test.call("/fromLL", ask)).map_point
+    assert (there.x, there.y, there.z) == pytest.approx((50.0, -3.0, 2.0), abs=1e-5)
+
+
+async def test_without_all_that_is_needed_nothing_is_published(test):
+    start(test)
+    gps = test.record("/odometry/gps")
+    for _ in range(3):
+        await odometry(test)
+        await fix(test)
+        await test.advance(0.1)
+    assert len(gps) == 0
+    answer = await test.call("/fromLL", get_service("robot_localization/srv/FromLL").Request())
+    assert answer.map_point.x == 0.0
+    assert [record.text for record in test.log if record.level.name == "ERROR"] == ["No transform available (yet)"]
+
+
+@pytest.mark.parametrize(
+    ("parameters", "text"),
+    [
+        ({"datum": [1.0, 2.0]}, "parameter 'datum' must have 3 values and has 2"),
+        ({"datum": [200.0, 2.0, 0.0]}, "parameter 'datum' of 'navsat_transform_node' cannot be '[200.0, 2.0, 0.0]'"),
+        ({"frequency": 0.0}, "parameter 'frequency' of 'navsat_transform_node' cannot be '0.0'"),
+    ],
+)
+async def test_values_that_mean_nothing(test, parameters, text):
+    with pytest.raises(LinkwrightError) as caught:
+        start(test, **parameters)
+    assert text in str(caught.value)

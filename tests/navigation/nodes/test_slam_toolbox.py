@@ -1,0 +1,418 @@
+"""The nodes of slam_toolbox, with scans of known walls and time that passes in steps."""
+
+from __future__ import annotations
+
+from math import inf, nan, pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.single import quaternion_from_rpy, rpy_from_quaternion
+from linkwright.graph import SENSOR_DATA_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS
+from linkwright.messages import TFMessage, Time, TransformBatch, get_message, get_service
+from linkwright.navigation.grids.grid import FREE, OCCUPIED
+from linkwright.navigation.grids.occupancy import grid_of
+from linkwright.navigation.maps.map_files import load_map
+from linkwright.navigation.nodes.slam_toolbox.nodes import (
+    AsyncSlamToolbox,
+    LocalizationSlamToolbox,
+    MapAndLocalizationSlamToolbox,
+    SyncSlamToolbox,
+)
+from linkwright.navigation.slam.poses import between, compose
+from linkwright.nodes import NodeOptions
+from linkwright.testing import SteppedGraph
+from tests.navigation.slam.scenes import along, drifting, house, ranges_at
+
+WALLS = house()
+PATH = along([(-4, -3), (-1, -3), (3, -3)], step=0.25, turn=0.25)
+
+
+class Robot:
+    """Sends the transforms and scans of a robot in the flat."""
+
+    def __init__(self, test: SteppedGraph, mounting: tuple[float, ...] = (0, 0, 0.2, 0, 0, 0)) -> None:
+        self.test = test
+        self.mounting = mounting
+        node = test.create_node("robot")
+        self._static = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
+        self._tf = node.create_publisher(TFMessage, "/tf", TF_QOS)
+        self.scans = node.create_publisher(get_message("sensor_msgs/msg/LaserScan"), "/scan", SENSOR_DATA_QOS)
+        x, y, z, roll, pitch, yaw = mounting
+        pose = (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
+        batch = TransformBatch(("base_footprint",), ("laser",), 0, np.array([pose]))
+        self._static.publish(TFMessage(batch=batch))
+
+    def tell_odometry(self, odometry: np.ndarray) -> None:
+        pose = (odometry[0], odometry[1], 0.0, *quaternion_from_rpy((0.0, 0.0, float(odometry[2]))))
+        stamp_ns = self.test.clock.now_ns()
+        self.send(TransformBatch(("odom",), ("base_footprint",), stamp_ns, np.array([pose])))
+
+    def send(self, batch: TransformBatch) -> None:
+        self._tf.publish(TFMessage(batch=batch))
+
+    def scan(self, pose: np.ndarray) -> Any:
+        x, y, _, roll, _, yaw = self.mounting
+        ranges, angles = ranges_at(WALLS, compose(pose, np.array((x, y, yaw))), 180)
+        if roll:
+            ranges = np.roll(ranges[::-1], 1)
+        message = get_message("sensor_msgs/msg/LaserScan")()
+        message.header.frame_id = "laser"
+        message.header.stamp = Time.from_nanoseconds(self.test.clock.now_ns())
+        message.angle_min, message.angle_max = float(angles[0]), float(angles[-1])
+        message.angle_increment = float(angles[1] - angles[0])
+        message.range_min, message.range_max = 0.05, 12.0
+        message.ranges = ranges.astype(np.float32)
+        return message
+
+    def go(self, path: np.ndarray, odometry: np.ndarray, seconds: float = 0.5) -> None:
+        """Be at each pose for a moment."""
+        for pose, told in zip(path, odometry, strict=True):
+            self.tell_odometry(told)
+            self.scans.publish(self.scan(pose))
+            self.test.advance(seconds)
+
+
+@pytest.fixture
+def test():
+    with SteppedGraph() as graph:
+        yield graph
+
+
+@pytest.fixture(autouse=True)
+def humble(monkeypatch):
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+
+
+def start(test: SteppedGraph, kind: Any = AsyncSlamToolbox, **parameters: Any) -> Any:
+    return kind(test.graph, NodeOptions(parameters={"map_update_interval": 2.0, **parameters}))
+
+
+def said(test: SteppedGraph, level: str) -> list[str]:
+    return [record.text for record in test.log if record.level.name == level]
+
+
+def call(test: SteppedGraph, service: str, kind: str, **fields: Any) -> Any:
+    return test.call(f"/slam_toolbox/{service}", get_service(kind).Request(**fields))
+
+
+def planar(transform: Any) -> np.ndarray:
+    at, turned = transform.translation, transform.rotation
+    return np.array((at.x, at.y, rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2]))
+
+
+def map_to_odom(tf: Any) -> Any:
+    """The last transform that the node published."""
+    found = [transform for message in tf for transform in message.transforms if transform.header.frame_id == "map"]
+    assert found[-1].child_frame_id == "odom"
+    return found[-1]
+
+
+def is_a_map(message: Any) -> bool:
+    grid = grid_of(message)
+    return bool((grid.cells == FREE).sum() > 2000 and (grid.cells == OCCUPIED).sum() > 100)
+
+
+@pytest.mark.parametrize("kind", [AsyncSlamToolbox, SyncSlamToolbox])
+def test_map_pose_and_transform_are_there_and_right(test, kind):
+    start(test, kind)
+    maps, sizes, poses, tf = (test.record(topic) for topic in ("/map", "/map_metadata", "/pose", "/tf"))
+    robot, odometry = Robot(test), drifting(between(PATH[0], PATH), 1.04, 0.05)
+    robot.go(PATH, odometry)
+    assert is_a_map(maps.last)
+    assert maps.last.header.frame_id == "map"
+    assert maps.last.info.resolution == pytest.approx(0.05)
+    assert sizes.last == maps.last.info
+    true = between(PATH[0], PATH[-1])  # the map lies where the first scan was taken
+    correction = map_to_odom(tf)
+    assert compose(planar(correction.transform), odometry[-1]) == pytest.approx(true, abs=0.03)
+    assert (
+        correction.header.stamp.nanoseconds == test.clock.now_ns() - 500_000_000 + 500_000_000
+    )  # ahead by the time-out
+    at = poses.last.pose.pose.position
+    assert [at.x, at.y] == pytest.approx(true[:2], abs=0.3)
+    covariance = np.reshape(poses.last.pose.covariance, (6, 6))
+    assert 0 < covariance[0, 0] < 0.01
+    assert 0 < covariance[5, 5] < 0.01
+
+
+def test_a_laser_may_look_backwards_and_upside_down(test):
+    start(test)
+    maps, tf = test.record("/map"), test.record("/tf")
+    robot = Robot(test, (0.15, 0.0, 0.3, pi, 0.0, 2.0))
+    odometry = drifting(between(PATH[0], PATH), 1.04, 0.05)
+    robot.go(PATH, odometry)
+    assert compose(planar(map_to_odom(tf).transform), odometry[-1]) == pytest.approx(
+        between(PATH[0], PATH[-1]), abs=0.04
+    )
+    assert is_a_map(maps.last)
+
+
+def test_scans_that_measure_nothing_make_no_map_and_move_nothing(test):
+    start(test)
+    maps, tf, robot = test.record("/map"), test.record("/tf"), Robot(test)
+    for number, value in enumerate((inf, nan, 0.0, inf, -1.0)):
+        robot.tell_odometry(np.array((0.6 * number, 0.0, 0.0)))
+        message = robot.scan(PATH[0])
+        message.ranges = np.full(180, value, dtype=np.float32)
+        robot.scans.publish(message)
+        test.advance(1.0)
+    assert len(maps) == 0
+    assert planar(map_to_odom(tf).transform) == pytest.approx([0, 0, 0], abs=1e-9)
+    response = call(test, "save_map", "slam_toolbox/srv/SaveMap")
+    assert response.result == response.RESULT_NO_MAP_RECEIEVD
+
+
+def test_without_transforms_scans_are_dropped_and_the_log_says_why(test):
+    node = start(test)
+    robot, maps = Robot(test), test.record("/map")
+    for _ in range(8):
+        robot.scans.publish(robot.scan(PATH[0]))
+        test.advance(0.5)
+    assert len(maps) == 0
+    assert any("scans are dropped" in line and "odom" in line for line in said(test, "WARN"))
+    robot.go(PATH[:4], between(PATH[0], PATH[:4]))
+    assert len(maps) > 0
+    node.close()
+
+
+def test_a_scan_that_comes_before_its_transform_waits_for_it(test):
+    start(test)
+    robot, poses = Robot(test), test.record("/pose")
+    robot.tell_odometry(np.zeros(3))
+    test.advance(0.1)
+    robot.scans.publish(robot.scan(PATH[0]))
+    test.advance(0.05)
+    assert len(poses) == 0
+    robot.tell_odometry(np.zeros(3))
+    test.advance(0.1)
+    assert len(poses) == 1
+
+
+def test_scans_of_a_fast_laser_are_dropped_unless_the_robot_moved(test):
+    node = start(test)
+    robot, poses = Robot(test), test.record("/pose")
+    for number in range(200):
+        robot.tell_odometry(np.array((0.005 * number, 0.0, 0.0)))
+        robot.scans.publish(robot.scan(PATH[0] + np.array((0.005 * number, 0.0, 0.0))))
+        test.advance(0.01)
+    assert 3 <= len(poses) <= 4
+    assert not node._work[0].queue
+
+
+def test_throttled_scans_are_not_looked_at(test):
+    start(test, throttle_scans=3, minimum_travel_distance=0.1)
+    robot, poses = Robot(test), test.record("/pose")
+    robot.go(PATH[:9], between(PATH[0], PATH[:9]))
+    assert len(poses) == 3
+
+
+def test_measuring_can_be_paused(test):
+    start(test)
+    robot, poses = Robot(test), test.record("/pose")
+    robot.go(PATH[:5], between(PATH[0], PATH[:5]))
+    count = len(poses)
+    assert call(test, "pause_new_measurements", "slam_toolbox/srv/Pause").status
+    robot.go(PATH[5:12], between(PATH[0], PATH[5:12]))
+    assert len(poses) == count
+    assert call(test, "pause_new_measurements", "slam_toolbox/srv/Pause").status
+    robot.go(PATH[12:16], between(PATH[0], PATH[12:16]))
+    assert len(poses) > count
+
+
+def test_the_map_is_saved_and_asked_for(test, tmp_path):
+    start(test)
+    robot, maps = Robot(test), test.record("/map")
+    robot.go(PATH[:6], between(PATH[0], PATH[:6]))
+    name = get_message("std_msgs/msg/String")(data=str(tmp_path / "flat"))
+    response = call(test, "save_map", "slam_toolbox/srv/SaveMap", name=name)
+    assert response.result == response.RESULT_SUCCESS
+    answer = call(test, "dynamic_map", "nav_msgs/srv/GetMap").map
+    test.advance(2.5)
+    assert answer.info.width == maps.last.info.width
+    saved = load_map(tmp_path / "flat.yaml")
+    assert ((saved.cells == OCCUPIED) == (grid_of(answer).cells == OCCUPIED)).all()
+
+
+def test_a_new_map_begins_where_that_is_asked_for(test):
+    start(test)
+    robot, tf = Robot(test), test.record("/tf")
+    odometry = drifting(between(PATH[0], PATH), 1.04, 0.05)
+    robot.go(PATH[:16], odometry[:16])
+    response = call(test, "reset", "slam_toolbox/srv/Reset", pause_new_measurements=True)
+    assert response.result == response.RESULT_SUCCESS
+    test.advance(0.2)
+    assert planar(map_to_odom(tf).transform) == pytest.approx([0, 0, 0], abs=1e-9)
+    assert call(test, "dynamic_map", "nav_msgs/srv/GetMap").map.info.width == 0
+
+
+def serialized(test: SteppedGraph, path: Path, node: Any) -> str:
+    robot = Robot(test)
+    robot.go(PATH, between(PATH[0], PATH))
+    name = str(path / "flat")
+    response = call(test, "serialize_map", "slam_toolbox/srv/SerializePoseGraph", filename=name)
+    assert response.result == response.RESULT_SUCCESS
+    node.close()
+    return name
+
+
+def test_a_robot_is_found_in_a_saved_map(test, tmp_path):
+    name = serialized(test, tmp_path, start(test))
+    start(test, LocalizationSlamToolbox, map_file_name=name, map_start_pose=[1.9, 0.2, 0.1])
+    maps, poses = test.record("/map"), test.record("/pose")
+    test.advance(3.0)
+    assert is_a_map(maps.last)
+    robot, back = Robot(test), along([(-2, -3), (0, -3), (2, -2.8)], step=0.25)
+    robot.go(back, drifting(between(back[0], back), 1.05, 0.03))
+    where = [between(PATH[0], each) for each in back]
+    at = poses.last.pose.pose.position
+    assert min(np.hypot(at.x - pose[0], at.y - pose[1]) for pose in where[-3:]) < 0.05
+    initial = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()
+    initial.header.frame_id = "map"
+    initial.pose.pose.position.x, initial.pose.pose.position.y = 4.6, 0.5
+    initial.pose.pose.orientation.w = 1.0
+    test.publish("/initialpose", initial)
+    test.advance(0.1)
+    pose = np.array((0.3, -3.0, 0.0))
+    robot.go(pose[None], np.array([[20.0, 7.0, 2.0]]))  # it was carried away
+    at = poses.last.pose.pose.position
+    assert [at.x, at.y] == pytest.approx(between(PATH[0], pose)[:2], abs=0.05)
+
+
+def test_mapping_goes_on_with_a_saved_map(test, tmp_path):
+    name = serialized(test, tmp_path, start(test))
+    node = start(test, MapAndLocalizationSlamToolbox)
+    request = get_service("slam_toolbox/srv/DeserializePoseGraph").Request
+    pose = get_message("geometry_msgs/msg/Pose2D")(x=6.6, y=0.5, theta=0.2)
+    assert call(
+        test,
+        "deserialize_map",
+        "slam_toolbox/srv/DeserializePoseGraph",
+        filename=name,
+        match_type=request.START_AT_GIVEN_POSE,
+        initial_pose=pose,
+    )
+    robot, poses = Robot(test), test.record("/pose")
+    before = len(node._work[0].mapper.scans)
+    on = along([(3, -3), (4, -3), (4, 2)], step=0.25, turn=0.25)
+    robot.go(on, drifting(between(on[0], on), 1.02, 0.02))
+    assert len(node._work[0].mapper.scans) > before
+    at = poses.last.pose.pose.position
+    assert [at.x, at.y] == pytest.approx(between(PATH[0], on[-1])[:2], abs=0.3)
+    assert call(test, "set_localization_mode", "std_srvs/srv/SetBool", data=True).success
+    count = len(node._work[0].mapper.scans)
+    robot.go(on[::-1], between(on[0], on[::-1]))
+    assert len(node._work[0].mapper.scans) == count
+
+
+def test_a_file_that_is_no_graph_is_refused_with_a_reason(test, tmp_path):
+    (tmp_path / "other.posegraph").write_bytes(b"22 serialization::archive 17 0 0")
+    (tmp_path / "broken.posegraph").write_bytes(b"nothing of the kind")
+    for name, reason in (("other", "slam_toolbox itself"), ("broken", "not a pose graph"), ("none", "does not exist")):
+        with pytest.raises(LinkwrightError) as caught:
+            start(test, LocalizationSlamToolbox, map_file_name=str(tmp_path / name), map_start_at_dock=True)
+        assert caught.value.diagnostics[0].code == "NAV501"
+        assert reason in str(caught.value)
+    start(test)
+    kind = "slam_toolbox/srv/DeserializePoseGraph"
+    call(test, "deserialize_map", kind, filename=str(tmp_path / "none"), match_type=1)
+    call(test, "deserialize_map", kind, filename="x", match_type=3)
+    call(test, "deserialize_map", kind, filename="x")
+    errors = said(test, "ERROR")
+    assert "does not exist" in errors[-3]
+    assert "non-localization" in errors[-2]
+    assert "match_type is not set" in errors[-1]
+
+
+def test_who_localises_without_a_map_is_told_so(test):
+    start(test, LocalizationSlamToolbox)
+    Robot(test).go(PATH[:3], between(PATH[0], PATH[:3]))
+    assert any("map_file_name" in line for line in said(test, "ERROR"))
+
+
+def test_in_jazzy_the_node_is_managed(test, monkeypatch):
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    running = start(test)
+    robot, maps = Robot(test), test.record("/map")
+    robot.go(PATH[:3], between(PATH[0], PATH[:3]))
+    assert len(maps) == 0
+    running.node.trigger_configure()
+    running.node.trigger_activate()
+    robot.go(PATH[:3], between(PATH[0], PATH[:3]))
+    assert len(maps) > 0
+    running.node.trigger_deactivate()
+    count = len(maps)
+    robot.go(PATH[3:12], between(PATH[0], PATH[3:12]))
+    assert len(maps) == count
+    running.node.trigger_cleanup()
+    running.node.trigger_configure()
+    running.node.trigger_activate()
+    robot.go(PATH[:3], between(PATH[0], PATH[:3]))
+    assert len(maps) > count
+    running.close()
+
+
+def test_what_a_file_has_that_changes_nothing_is_known_and_what_is_misspelt_is_told(test):
+    start(test, solver_plugin="solver_plugins::SpaSolver", ceres_loss_function="None", resolutoin=0.1, resolution=-1.0)
+    assert any("solver_plugins::SpaSolver" in line for line in said(test, "INFO"))
+    warnings = said(test, "WARN")
+    assert any("resolutoin" in line for line in warnings)
+    assert any("zero or negative" in line for line in warnings)
+    assert not any("ceres" in line for line in (*warnings, *said(test, "INFO")))
+
+
+def test_the_graph_is_shown(test):
+    start(test)
+    markers = test.record("/slam_toolbox/graph_visualization")
+    Robot(test).go(PATH[:12], between(PATH[0], PATH[:12]))
+    nodes, edges, others = markers.last.markers
+    assert len(edges.points) == 2 * (len(nodes.points) - 1) > 4
+    assert others.action == others.DELETE
+
+
+def test_where_time_jumps_back_the_map_begins_anew(test):
+    clock = test.create_node("clock").create_publisher(get_message("rosgraph_msgs/msg/Clock"), "/clock", 10)
+    node = start(test, use_sim_time=True)
+    robot, poses = Robot(test), test.record("/pose")
+
+    def at(seconds: float, pose: np.ndarray) -> None:
+        clock.publish(get_message("rosgraph_msgs/msg/Clock")(clock=Time.from_nanoseconds(round(seconds * 1e9))))
+        test.settle()
+        stamp = Time.from_nanoseconds(round(seconds * 1e9))
+        batch = TransformBatch(
+            ("odom",), ("base_footprint",), round(seconds * 1e9), np.array([(*pose[:2], 0, 0, 0, 0, 1)])
+        )
+        robot.send(batch)
+        message = robot.scan(PATH[0] + pose)
+        message.header.stamp = stamp
+        robot.scans.publish(message)
+        test.settle()
+
+    for number in range(5):
+        at(100.0 + number, np.array((0.5 * number, 0.0, 0.0)))
+    assert len(node._work[0].mapper.scans) == 5
+    at(1.0, np.zeros(3))
+    at(2.0, np.array((0.5, 0.0, 0.0)))
+    assert any("Time has jumped back" in line for line in said(test, "WARN"))
+    assert len(node._work[0].mapper.scans) == 2
+    assert poses.last.header.stamp.sec == 2
+
+
+def test_the_synchronous_node_forgets_what_waits(test):
+    node = start(test, SyncSlamToolbox)
+    robot = Robot(test)
+    robot.go(PATH[:4], between(PATH[0], PATH[:4]))
+    node._work[0].queue.append((None, np.zeros(3)))
+    assert call(test, "clear_queue", "slam_toolbox/srv/ClearQueue").status
+    assert not node._work[0].queue
+
+
+def test_a_launch_file_of_jazzy_starts_it_by_a_parameter(test, monkeypatch):
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    start(test, autostart_node=True)
+    maps = test.record("/map")
+    Robot(test).go(PATH[:3], between(PATH[0], PATH[:3]))
+    assert len(maps) > 0

@@ -1,0 +1,200 @@
+"""velocity_smoother: limits of speed and acceleration, time-outs and the life of a managed node."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.messages import get_message
+from linkwright.navigation.nodes.velocity_smoother import VelocitySmoother
+from linkwright.navigation.nodes.velocity_smoothing import Limits, smoothed
+from linkwright.nodes import NodeOptions
+from tests.outside import Outside, Stranger
+
+TWIST, STAMPED = get_message("geometry_msgs/msg/Twist"), get_message("geometry_msgs/msg/TwistStamped")
+ODOMETRY = get_message("nav_msgs/msg/Odometry")
+
+velocities = st.floats(-3.0, 3.0)
+LIMITS = [Limits(-0.5, 0.5, 2.5, -2.0), Limits(-1.0, 1.0, 0.0, 0.0), Limits(-2.5, 2.5, 3.2, -3.0)]
+
+
+@given(wanted=st.tuples(*[velocities] * 3), now=st.tuples(*[st.floats(-0.5, 0.5)] * 3), scaled=st.booleans())
+def test_no_axis_leaves_its_limits(wanted, now, scaled):
+    after = smoothed(LIMITS, now, wanted, 0.05, scaled=scaled)
+    for limits, before, velocity, goal in zip(LIMITS, now, after, wanted, strict=True):
+        assert abs(velocity - before) <= limits.change(before, limits.clamped(goal), 0.05) + 1e-12
+        assert min(before, limits.least) - 1e-12 <= velocity <= max(before, limits.most) + 1e-12
+
+
+def test_the_direction_stays_where_it_is_asked_for():
+    limits = [Limits(-1, 1, 1.0, -1.0), Limits(-1, 1, 4.0, -4.0)]
+    assert smoothed(limits, (0, 0), (1.0, 1.0), 0.1, scaled=True) == pytest.approx([0.1, 0.1])
+    assert smoothed(limits, (0, 0), (1.0, 1.0), 0.1, scaled=False) == pytest.approx([0.1, 0.4])
+
+
+class Line:
+    """What goes in and what comes out."""
+
+    def __init__(self, stage, kind=TWIST, **parameters):
+        self.stage, self.kind, self.out = stage, kind, []
+        stage.node.create_subscription(kind, "/cmd_vel_smoothed", self.out.append, 100)
+        self.publisher = stage.node.create_publisher(kind, "/cmd_vel", 10)
+        self.odometry = stage.node.create_publisher(ODOMETRY, "/odom", 10)
+        self.node = VelocitySmoother(stage.graph, NodeOptions(parameters={"autostart_node": True, **parameters}))
+
+    async def send(self, x, yaw=0.0):
+        message = self.kind()
+        twist = getattr(message, "twist", message)
+        twist.linear.x, twist.angular.z = x, yaw
+        self.publisher.publish(message)
+        await self.stage.graph.settle()
+
+    def speeds(self):
+        return [round(getattr(each, "twist", each).linear.x, 6) for each in self.out]
+
+
+@pytest.fixture
+async def line(stage):
+    lines = []
+
+    def start(**given):
+        lines.append(Line(stage, **given))
+        return lines[-1]
+
+    yield start
+    for line in lines:
+        line.node.close()
+
+
+async def test_a_step_becomes_a_ramp_within_the_limits(line, stage):
+    one = line()
+    await one.send(0.8)
+    await stage.clock.advance(0.3)
+    assert one.speeds() == [0.125, 0.25, 0.375, 0.5, 0.5, 0.5]
+
+
+async def test_a_command_that_is_not_repeated_ends(line, stage, said):
+    one = line(velocity_timeout=0.2)
+    await one.send(0.25)
+    await stage.clock.advance(2.0)
+    assert one.speeds() == [0.125, 0.25, 0.25, 0.25, 0.125, 0.0]
+    assert said("INFO")[-1:] == [
+        "no command for 0.2 s (velocity_timeout), and the last one was not a stop: the robot is stopped"
+    ]
+
+
+async def test_after_a_stop_nothing_is_said_of_commands_that_end(line, stage, said):
+    one = line(velocity_timeout=0.2)
+    await one.send(0.25)
+    await stage.clock.advance(0.1)
+    await one.send(0.0)
+    await stage.clock.advance(2.0)
+    assert not [each for each in said("INFO") if "velocity_timeout" in each]
+
+
+async def test_it_stops_when_who_commanded_is_lost_and_says_so(line, stage, said):
+    one = line(velocity_timeout=10.0, enable_stamped_cmd_vel=False)
+    driver = Stranger(Outside(stage.graph), "/cmd_vel")
+    message = TWIST()
+    message.linear.x = 0.25
+    driver.send(message)
+    await stage.clock.advance(0.2)
+    driver.be_lost()
+    await stage.clock.advance(1.0)
+    assert one.speeds()[3] == 0.25
+    assert one.speeds()[-1] == 0.0
+    assert said("WARN") == [
+        (
+            "'/driver', which sent the commands on '/cmd_vel', was lost (killed, crashed or out of reach): "
+            "the robot is stopped"
+        )
+    ]
+
+
+async def test_slow_velocities_are_none(line, stage):
+    one = line(deadband_velocity=[0.2, 0.0, 0.0])
+    await one.send(0.3)
+    await stage.clock.advance(0.15)
+    assert one.speeds() == [0.0, 0.25, 0.3]
+
+
+async def test_closed_loop_goes_on_from_what_is_measured(line, stage):
+    one = line(feedback="CLOSED_LOOP")
+    message = ODOMETRY()
+    message.twist.twist.linear.x = 0.2
+    one.odometry.publish(message)
+    await one.send(0.5)
+    await stage.clock.advance(0.06)
+    assert one.speeds() == [0.325]
+
+
+async def test_six_axes_may_be_limited(line, stage):
+    six = {name: [sign] * 6 for name, sign in (("max_velocity", 1.0), ("min_velocity", -1.0))}
+    six |= {"max_accel": [2.0] * 6, "max_decel": [-2.0] * 6, "deadband_velocity": [0.0] * 6}
+    one = line(**six)
+    await one.send(1.0, 1.0)
+    await stage.clock.advance(0.06)
+    assert (one.out[0].linear.x, one.out[0].angular.z) == pytest.approx((0.1, 0.1))
+
+
+@pytest.mark.parametrize("kind", [TWIST, STAMPED])
+async def test_either_type_goes_through_and_nothing_is_said_of_the_other(line, stage, said, kind):
+    one = line(kind=kind)
+    await one.send(0.5)
+    await stage.clock.advance(0.06)
+    assert one.speeds() == [0.125]
+    assert said("WARN") == []
+
+
+async def test_numbers_that_are_none_are_left_out(line, stage, said):
+    one = line()
+    await one.send(float("nan"))
+    await stage.clock.advance(0.5)
+    assert one.out == []
+    assert "NaNs" in said("ERROR")[0]
+
+
+async def test_it_is_a_managed_node(line, stage):
+    one = line(autostart_node=False)
+    await one.send(0.5)
+    await stage.clock.advance(0.5)
+    assert one.out == []
+    node = one.node.node
+    node.trigger_configure()
+    node.trigger_activate()
+    await one.send(0.5)
+    await stage.clock.advance(0.21)
+    assert one.speeds()[-1] == 0.5
+    node.trigger_deactivate()
+    await stage.clock.advance(1.0)
+    assert one.speeds()[-1] == 0.0
+    node.trigger_cleanup()
+    assert "/cmd_vel_smoothed" not in {
+        endpoint.name for endpoint in stage.graph.endpoints() if endpoint.node.name != "audience"
+    }
+
+
+@pytest.mark.parametrize(
+    ("wrong", "text"),
+    [
+        ({"max_decel": [2.5, 0.0, 3.2]}, "max_decel must not be positive"),
+        ({"max_velocity": [0.5]}, "3 entries"),
+        ({"feedback": "SOMETIMES"}, "OPEN_LOOP or CLOSED_LOOP, and it is 'SOMETIMES'"),
+        ({"smoothing_frequency": 0.0}, "smoothing_frequency must be more than 0"),
+    ],
+)
+async def test_what_is_wrong_is_told(line, said, wrong, text):
+    line(autostart_node=False, **wrong).node.node.trigger_configure()
+    assert text in said("ERROR")[0]
+
+
+async def test_parameters_change_while_it_runs(line, stage):
+    one = line()
+    assert await stage.set(one.node, max_velocity=[0.25, 0.0, 1.0]) == [(True, "")]
+    await one.send(0.5)
+    await stage.clock.advance(0.3)
+    assert one.speeds()[-1] == 0.25
+    ((done, reason),) = await stage.set(one.node, max_accel=[-1.0, 0.0, 0.0])
+    assert not done
+    assert reason == "max_accel must not be negative"

@@ -1,0 +1,113 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import Time, get_message
+from linkwright.nodes import NodeOptions
+from linkwright.perception.nodes.depthimage_to_laserscan import depths_of
+from linkwright.perception.nodes.image_republisher import ImageRepublisher
+from linkwright.testing.stepped import AsyncSteppedGraph
+
+
+@pytest.fixture
+async def test():
+    async with AsyncSteppedGraph() as graph:
+        yield graph
+
+
+def start(test, *words, remappings=(), **parameters):
+    options = NodeOptions(arguments=list(words), parameters=parameters, remappings=list(remappings))
+    return ImageRepublisher(test.graph, options)
+
+
+def picture(values, encoding):
+    message = get_message("sensor_msgs/msg/Image")()
+    message.header.stamp, message.header.frame_id = Time.from_nanoseconds(7), "camera"
+    message.height, message.width = values.shape[:2]
+    message.encoding, message.step = encoding, values.nbytes // values.shape[0]
+    message.data = np.frombuffer(values.tobytes(), np.uint8)
+    return message
+
+
+def coloured():
+    pixels = np.zeros((16, 16, 3), np.uint8)
+    pixels[:, :, 0] = 200
+    return pixels
+
+
+async def send(test, topic, message):
+    test.publish(topic, message)
+    await test.settle()
+    test.publish(topic, message)
+    await test.settle()
+
+
+async def test_raw_becomes_compressed_and_raw_again(test):
+    start(test, "raw", "compressed", remappings=[("in", "/camera/image_raw"), ("out", "/small")])
+    start(test, "compressed", "raw", remappings=[("in/compressed", "/small/compressed"), ("out", "/back")])
+    back, small = test.record("/back"), test.record("/small/compressed")
+    await test.settle()
+    await send(test, "/camera/image_raw", picture(coloured(), "bgr8"))
+    assert small.last.format == "bgr8; jpeg compressed bgr8"
+    assert (back.last.encoding, back.last.width, back.last.step) == ("bgr8", 16, 48)
+    pixels = np.frombuffer(bytes(back.last.data), np.uint8).reshape(16, 16, 3)
+    assert np.abs(pixels.astype(int) - coloured()).max() <= 4
+    assert back.last.header.frame_id == "camera"
+
+
+async def test_depths_in_metres_go_through(test):
+    start(test, "raw", "compressedDepth")
+    start(test, "compressedDepth", "raw", remappings=[("in", "/out"), ("out", "/back")])
+    back = test.record("/back")
+    await test.settle()
+    depths = np.array([[0.5, 1.0, 2.0, 5.0, np.nan, 20.0]], np.float32)
+    await send(test, "/in", picture(depths, "32FC1"))
+    assert back.last.encoding == "32FC1"
+    assert depths_of(back.last)[0] == pytest.approx([0.5, 1.0, 2.0, 5.0, np.nan, np.nan], rel=0.01, nan_ok=True)
+
+
+async def test_depths_in_millimetres_go_through_unchanged(test):
+    start(test, "raw", "compressedDepth")
+    start(test, "compressedDepth", "raw", remappings=[("in", "/out"), ("out", "/back")])
+    back = test.record("/back")
+    await test.settle()
+    depths = np.array([[0, 1, 499, 65535]], np.uint16)
+    await send(test, "/in", picture(depths, "16UC1"))
+    assert np.frombuffer(bytes(back.last.data), "<u2").tolist() == [0, 1, 499, 65535]
+
+
+async def test_without_an_output_transport_there_are_all(test):
+    start(test, in_transport="raw")
+    kinds = dict(test.graph.get_topic_names_and_types())
+    assert {"/out", "/out/compressed", "/out/compressedDepth"} <= set(kinds)
+    assert test.graph.count_subscribers("/in") == 0
+    out = test.record("/out")
+    message = picture(coloured(), "rgb8")
+    await send(test, "/in", message)
+    assert out.last is message
+
+
+async def test_what_cannot_be_packed_or_unpacked_is_told(test):
+    start(test, "compressed", "raw")
+    test.record("/out")
+    broken = get_message("sensor_msgs/msg/CompressedImage")()
+    broken.format, broken.data = "rgb8; jpeg compressed bgr8", b"no image"
+    await send(test, "/in/compressed", broken)
+    (text,) = [record.text for record in test.log if record.level.name == "ERROR"]
+    assert text.startswith("An image cannot be republished: The image is neither a PNG nor a JPEG")
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["theora"], "parameter 'in_transport' of 'image_republisher' cannot be 'theora'"),
+        (["raw", "png"], "parameter 'out_transport' of 'image_republisher' cannot be 'png'"),
+        (["raw", "raw", "raw"], "unexpected argument 'raw'"),
+    ],
+)
+async def test_transports_that_there_are_not(test, words, text):
+    with pytest.raises(LinkwrightError) as caught:
+        start(test, *words)
+    assert text in str(caught.value)

@@ -1,0 +1,162 @@
+from __future__ import annotations
+
+from math import hypot, inf, pi
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.single import quaternion_from_rpy
+from linkwright.graph import STATIC_TF_PUBLISHER_QOS
+from linkwright.messages import TFMessage, Time, TransformBatch, get_message
+from linkwright.nodes import NodeOptions
+from linkwright.perception.nodes.depthimage_to_laserscan import DepthImageToLaserScan
+from linkwright.perception.nodes.pointcloud_to_laserscan import LaserScanToPointCloud, PointCloudToLaserScan, points_of
+from linkwright.testing.stepped import AsyncSteppedGraph
+
+
+@pytest.fixture
+async def test():
+    async with AsyncSteppedGraph() as graph:
+        yield graph
+
+
+def start(test, kind, **parameters):
+    return kind(test.graph, NodeOptions(parameters=parameters))
+
+
+def said(test, level):
+    return [record.text for record in test.log if record.level.name == level]
+
+
+async def send(test, topic, message):
+    """Publish, with a publisher that the node has found before."""
+    if not any(publisher.name == topic for publisher in test.node.publishers):
+        test.node.create_publisher(type(message), topic, 10)
+        await test.settle()
+    test.publish(topic, message)
+    await test.settle()
+
+
+def headed(test, kind, frame):
+    message = get_message(kind)()
+    message.header.stamp, message.header.frame_id = Time.from_nanoseconds(test.clock.now_ns()), frame
+    return message
+
+
+def depth_image(test, depths, encoding="32FC1"):
+    message = headed(test, "sensor_msgs/msg/Image", "camera")
+    rows = np.asarray(depths, "<f4" if encoding == "32FC1" else "<u2")
+    message.height, message.width = rows.shape
+    message.encoding, message.step = encoding, rows.strides[0]
+    message.data = np.frombuffer(rows.tobytes(), np.uint8)
+    return message
+
+
+def camera(test):
+    message = headed(test, "sensor_msgs/msg/CameraInfo", "camera")
+    message.p = [4.0, 0.0, 2.0, 0.0, 0.0, 4.0, 1.5, 0.0, 0.0, 0.0, 1.0, 0.0]
+    return message
+
+
+async def test_a_depth_image_becomes_a_scan(test):
+    start(test, DepthImageToLaserScan, range_min=0.1, output_frame="laser")
+    scan = test.record("/scan")
+    await send(test, "/depth", depth_image(test, np.full((3, 5), 2.0)))
+    assert len(scan) == 0
+    assert said(test, "ERROR") == [
+        "Could not convert depth image to laserscan: no camera_info with a focal length has arrived"
+    ]
+    await send(test, "/depth_camera_info", camera(test))
+    await send(test, "/depth", depth_image(test, np.full((3, 5), 2.0)))
+    assert scan.last.ranges[2] == 2.0
+    assert scan.last.ranges[0] == pytest.approx(hypot(2.0, 0.5))
+    assert scan.last.header.frame_id == "laser"
+    assert scan.last.scan_time == pytest.approx(0.033)
+    await send(test, "/depth", depth_image(test, np.full((3, 5), 1500), "16UC1"))
+    assert scan.last.ranges[2] == pytest.approx(1.5)
+    count = len(scan)
+    await test.advance(10.0)
+    odd = depth_image(test, np.full((3, 5), 2.0))
+    odd.encoding = "rgb8"
+    await send(test, "/depth", odd)
+    assert len(scan) == count
+    assert said(test, "ERROR")[-1].endswith("Depth image has unsupported encoding: rgb8")
+
+
+async def test_nothing_is_subscribed_while_nobody_listens(test):
+    running = start(test, DepthImageToLaserScan)
+    await test.settle()
+    assert test.graph.count_subscribers("/depth") == 0
+    listener = test.node.create_subscription(get_message("sensor_msgs/msg/LaserScan"), "scan", lambda _: None, 10)
+    await test.settle()
+    assert test.graph.count_subscribers("/depth") == 1
+    test.node.destroy_subscription(listener)
+    await test.settle()
+    assert test.graph.count_subscribers("/depth") == 0
+    running.close()
+
+
+def cloud(test, points, frame="camera"):
+    message = headed(test, "sensor_msgs/msg/PointCloud2", frame)
+    kind = np.dtype({"names": ["x", "y", "z"], "formats": ["<f4"] * 3, "offsets": [4, 8, 12], "itemsize": 20})
+    values = np.zeros(len(points), kind)
+    for axis, name in enumerate("xyz"):
+        values[name] = np.asarray(points)[:, axis]
+    field = get_message("sensor_msgs/msg/PointField")
+    message.fields = [field(name=name, offset=4 + 4 * axis, datatype=7, count=1) for axis, name in enumerate("xyz")]
+    message.height, message.width, message.point_step, message.row_step = 1, len(points), 20, 20 * len(points)
+    message.data = np.frombuffer(values.tobytes(), np.uint8)
+    return message
+
+
+def place(test, parent, child, rpy):
+    batch = TransformBatch((parent,), (child,), 0, np.array([[0.0, 0.0, 0.5, *quaternion_from_rpy(rpy)]]))
+    test.publish("/tf_static", TFMessage(batch=batch), STATIC_TF_PUBLISHER_QOS)
+
+
+async def test_a_cloud_becomes_a_scan_of_the_target_frame(test):
+    parameters = {"angle_increment": pi / 2, "min_height": 0.0, "max_height": 1.0, "range_max": 10.0}
+    start(test, PointCloudToLaserScan, target_frame="base_link", **parameters)
+    scan = test.record("/scan")
+    await send(test, "/cloud_in", cloud(test, [[0.1, 1.0, 0.0]]))
+    assert len(scan) == 0
+    assert said(test, "WARN")[0].startswith("Transform failure:")
+    place(test, "base_link", "camera", (0.0, 0.0, -pi / 2))
+    await test.settle()
+    await send(test, "/cloud_in", cloud(test, [[0.1, 1.0, 0.0], [0.1, 3.0, 0.0], [0.1, 0.5, 2.0]]))
+    assert list(scan.last.ranges) == pytest.approx([inf, hypot(1.0, 0.1), inf, inf])
+    assert scan.last.header.frame_id == "base_link"
+
+
+async def test_rays_without_points_may_be_beyond_the_range(test):
+    start(test, PointCloudToLaserScan, angle_increment=pi / 2, range_max=10.0, use_inf=False, inf_epsilon=2.0)
+    scan = test.record("/scan")
+    await send(test, "/cloud_in", cloud(test, np.zeros((0, 3))))
+    await send(test, "/cloud_in", cloud(test, np.zeros((0, 3))))
+    assert list(scan.last.ranges) == [12.0] * 4
+
+
+async def test_a_scan_becomes_a_cloud(test):
+    start(test, LaserScanToPointCloud, target_frame="base_link")
+    clouds = test.record("/cloud")
+    place(test, "base_link", "laser", (0.0, 0.0, pi / 2))
+    message = headed(test, "sensor_msgs/msg/LaserScan", "laser")
+    message.angle_increment, message.range_min, message.range_max = 0.1, 0.1, 5.0
+    message.ranges, message.intensities = [1.0, inf, 2.0], [7.0, 8.0, 9.0]
+    await send(test, "/scan_in", message)
+    await send(test, "/scan_in", message)
+    points = points_of(clouds.last)
+    assert points[0] == pytest.approx([0.0, 1.0, 0.5], abs=1e-6)
+    assert len(points) == 2
+    assert [field.name for field in clouds.last.fields] == ["x", "y", "z", "intensity", "index"]
+    values = np.frombuffer(bytes(clouds.last.data), np.dtype([("xyz", "<3f4"), ("intensity", "<f4"), ("index", "<i4")]))
+    assert values["intensity"].tolist() == [7.0, 9.0]
+    assert values["index"].tolist() == [0, 2]
+
+
+async def test_values_that_mean_nothing(test):
+    with pytest.raises(LinkwrightError, match="'angle_increment' of 'pointcloud_to_laserscan' cannot be '0"):
+        start(test, PointCloudToLaserScan, angle_increment=0.0)
+    with pytest.raises(LinkwrightError, match="parameter 'scan_height' of 'depthimage_to_laserscan' cannot be '0'"):
+        start(test, DepthImageToLaserScan, scan_height=0)

@@ -1,0 +1,185 @@
+from __future__ import annotations
+
+from math import inf, nan, pi
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.single import quaternion_from_rpy
+from linkwright.perception.scans.neighbours import ScanShadowsFilter, SpeckleFilter
+from linkwright.perception.scans.places import (
+    AngularBoundsFilter,
+    AngularBoundsInPlaceFilter,
+    BoxFilter,
+    FootprintFilter,
+    PolygonFilter,
+    SectorFilter,
+)
+from linkwright.perception.scans.scan import Scan
+from linkwright.perception.scans.values import (
+    ArrayFilter,
+    IntensityFilter,
+    InterpolationFilter,
+    MaskFilter,
+    RangeFilter,
+)
+
+
+def scan(*ranges, intensities=(), angle_min=0.0, increment=0.1, time_increment=0.0):
+    return Scan(
+        ranges=np.array(ranges, np.float32),
+        intensities=np.array(intensities, np.float32),
+        angle_min=angle_min,
+        angle_max=angle_min + increment * (len(ranges) - 1),
+        angle_increment=increment,
+        range_min=0.1,
+        range_max=10.0,
+        time_increment=time_increment,
+        stamp_ns=5_000_000_000,
+        frame="laser",
+    )
+
+
+def nowhere(target, source, time_ns):
+    return None
+
+
+def ranges(made):
+    return pytest.approx(np.array(made, np.float32), nan_ok=True)
+
+
+def applied(each, given, lookup=nowhere):
+    return list(each.apply(given, lookup).ranges)
+
+
+def test_ranges_beyond_thresholds_are_replaced():
+    assert applied(RangeFilter(1.0, 5.0), scan(0.5, 1.0, 3.0, 5.0, inf, nan)) == ranges([nan, nan, 3.0, nan, nan, nan])
+    replacing = RangeFilter(use_message_range_limits=True, lower_replacement_value=-inf, upper_replacement_value=inf)
+    assert applied(replacing, scan(0.05, 3.0, 11.0)) == ranges([-inf, 3.0, inf])
+
+
+def test_rays_that_shine_too_little_or_too_much():
+    given = scan(1.0, 2.0, 3.0, intensities=(5.0, 50.0, 500.0))
+    assert applied(IntensityFilter(10.0, 100.0), given) == ranges([nan, 2.0, nan])
+    given = scan(1.0, 2.0, 3.0, intensities=(5.0, 50.0, 500.0))
+    assert applied(IntensityFilter(10.0, 100.0, invert=True), given) == ranges([1.0, nan, 3.0])
+    assert applied(IntensityFilter(10.0, 100.0), scan(1.0, 2.0)) == ranges([1.0, 2.0])
+
+
+def test_gaps_have_the_mean_of_both_sides():
+    assert applied(InterpolationFilter(), scan(2.0, inf, nan, 4.0)) == ranges([2.0, 3.0, 3.0, 4.0])
+    assert applied(InterpolationFilter(), scan(inf, 4.01, 0.0)) == ranges([7.0, 4.01, 7.0])
+
+
+def test_masked_rays_of_a_frame():
+    each = MaskFilter({"laser": [0, 2, 99], "other": [1]})
+    assert applied(each, scan(1.0, 2.0, 3.0)) == ranges([nan, 2.0, nan])
+
+
+def test_the_median_and_the_mean_of_the_last_scans():
+    median = {"filter1": {"type": "filters/MultiChannelMedianFilterFloat", "params": {"number_of_observations": 3}}}
+    mean = {"filter1": {"type": "filters/MultiChannelMeanFilterFloat", "params": {"number_of_observations": 2}}}
+    each = ArrayFilter(median, mean)
+    each.apply(scan(1.0, 5.0, intensities=(1.0, 1.0)), nowhere)
+    each.apply(scan(9.0, 6.0, intensities=(2.0, 4.0)), nowhere)
+    last = each.apply(scan(2.0, 7.0, intensities=(4.0, 8.0)), nowhere)
+    assert list(last.ranges) == ranges([2.0, 6.0])
+    assert list(last.intensities) == ranges([3.0, 6.0])
+    assert list(each.apply(scan(8.0), nowhere).ranges) == ranges([8.0])
+    with pytest.raises(LinkwrightError, match="there is no filter 'Magic' of 1 observations for lists of numbers"):
+        ArrayFilter({"filter1": {"type": "Magic"}})
+
+
+def test_rays_between_two_angles_are_left():
+    given = scan(0.0, 1.0, 2.0, 3.0, 4.0, intensities=range(5), time_increment=0.5)
+    made = AngularBoundsFilter(0.05, 0.35).apply(given, nowhere)
+    assert list(made.ranges) == ranges([1.0, 2.0, 3.0])
+    assert list(made.intensities) == ranges([1.0, 2.0, 3.0])
+    assert (made.angle_min, made.angle_max, made.stamp_ns) == (pytest.approx(0.1), pytest.approx(0.3), 5_500_000_000)
+    assert AngularBoundsFilter(2.0, 3.0).apply(scan(1.0), nowhere) is None
+
+
+def test_rays_between_two_angles_are_taken_away():
+    given = scan(1.0, 2.0, 3.0, intensities=(7.0, 8.0, 9.0))
+    made = AngularBoundsInPlaceFilter(0.05, 0.15).apply(given, nowhere)
+    assert list(made.ranges) == ranges([1.0, 11.0, 3.0])
+    assert list(made.intensities) == ranges([7.0, 0.0, 9.0])
+
+
+def test_a_sector_may_go_over_the_back():
+    behind = SectorFilter(angle_min=2.5, angle_max=-2.5, range_min=0.2, range_max=2.0)
+    given = scan(1.0, 1.0, 3.0, 1.0, angle_min=-3.0, increment=1.9)  # -3.0, -1.1, 0.8, 2.7
+    assert applied(behind, given) == ranges([11.0, 1.0, 3.0, 11.0])
+    given = scan(1.0, 1.0, 3.0, 1.0, angle_min=-3.0, increment=1.9)
+    behind.invert = True
+    assert applied(behind, given) == ranges([1.0, 11.0, 11.0, 1.0])
+
+
+def turned(target, source, time_ns):
+    """The laser looks to the left of the body, half a metre ahead of its middle."""
+    assert (target, source, time_ns) == ("base_link", "laser", 5_000_000_000)
+    return (0.5, 0.0, 0.3, *quaternion_from_rpy((0.0, 0.0, pi / 2)))
+
+
+def test_a_box_of_another_frame():
+    box = BoxFilter("base_link", min_x=0.0, max_x=1.0, min_y=0.0, max_y=2.0, min_z=0.0, max_z=1.0)
+    assert applied(box, scan(1.0, 3.0, nan, increment=0.0), turned) == ranges([nan, 3.0, nan])
+    box.invert = True
+    assert applied(box, scan(1.0, 3.0, inf, increment=0.0), turned) == ranges([1.0, nan, inf])
+    assert box.apply(scan(1.0), nowhere) is None
+
+
+def test_the_footprint_and_a_polygon():
+    assert applied(FootprintFilter(0.6), scan(0.5, 0.7, increment=0.0), turned) == ranges([nan, 0.7])
+    triangle = PolygonFilter("[[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]]")
+    assert applied(triangle, scan(0.5, 1.5, increment=0.0), turned) == ranges([nan, 1.5])
+    square = "[[0.4, 0.4], [0.4, -0.4], [-0.4, -0.4], [-0.4, 0.4]]"
+    assert applied(PolygonFilter(square), scan(0.3, increment=0.0), turned) == ranges([0.3])
+    assert applied(PolygonFilter(square, polygon_padding=0.2), scan(0.3, increment=0.0), turned) == ranges([nan])
+    with pytest.raises(LinkwrightError, match="has no three corners"):
+        PolygonFilter("[[0.0, 0.0]]")
+
+
+def test_a_point_between_an_edge_and_a_wall_is_a_shadow():
+    each = ScanShadowsFilter(min_angle=10.0, max_angle=170.0, window=1, neighbors=1)
+    near, wall = [1.0] * 5, [3.0] * 5
+    made = applied(each, scan(*near, 2.0, *wall, increment=0.01))
+    assert made == ranges([1.0] * 5 + [nan, nan] + [3.0] * 4)
+    flat = scan(*(1.0 / np.cos(np.arange(-5, 6) * 0.01)), angle_min=-0.05, increment=0.01)
+    assert not np.isnan(applied(each, flat)).any()
+    starts = ScanShadowsFilter(10.0, 170.0, 1, 0, remove_shadow_start_point=True)
+    assert np.flatnonzero(np.isnan(applied(starts, scan(*near, 2.0, *wall, increment=0.01)))).tolist() == [4, 5, 6]
+    with pytest.raises(LinkwrightError, match="min_angle 95 and max_angle 170 must be"):
+        ScanShadowsFilter(95.0, 170.0, 1)
+
+
+def test_speckles_are_points_without_others_beside_them():
+    given = scan(1.0, 1.02, 1.5, 1.9, 1.05, 1.06, 5.0, 1.0)
+    assert applied(SpeckleFilter(), given) == ranges([1.0, 1.02, nan, nan, 1.05, 1.06, 5.0, nan])
+    assert SpeckleFilter().apply(scan(1.0, 1.0, 1.0), nowhere) is None
+    with pytest.raises(LinkwrightError, match="filter_type 3 and filter_window 2"):
+        SpeckleFilter(filter_type=3)
+
+
+def test_speckles_by_how_many_points_are_near():
+    each = SpeckleFilter(filter_type=1, max_range_difference=0.2, filter_window=2)
+    given = scan(1.0, 1.0, 1.0, 1.9, 1.0, nan, nan, 1.5, nan, nan, increment=0.05)
+    made = applied(each, given)
+    assert np.isnan(made[7])
+    assert made[1] == 1.0
+
+
+@settings(max_examples=60)
+@given(st.lists(st.sampled_from([0.5, 1.0, 1.05, 1.5, 3.0, inf, nan]), min_size=5, max_size=12), st.integers(1, 3))
+def test_speckles_as_a_loop_over_windows_finds_them(values, window):
+    made = applied(SpeckleFilter(filter_window=window), scan(*values))
+    kept = [value > 2.0 for value in values]
+    for start in range(len(values) - window + 1):
+        group = values[start : start + window]
+        alike = all(value == group[0] or abs(value - group[0]) <= 0.1 for value in group)
+        if alike and not any(np.isnan(group)) and (window == 1 or not np.isinf(group).any()):
+            kept[start : start + window] = [True] * window
+    assert made == ranges([value if keep else nan for value, keep in zip(values, kept, strict=True)])

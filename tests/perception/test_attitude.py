@@ -1,0 +1,122 @@
+from __future__ import annotations
+
+from math import atan2, cos, pi, sin
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linkwright.geometry.single import (
+    quaternion_from_rpy,
+    quaternion_inverse,
+    quaternion_multiply,
+    rotate,
+    rpy_from_quaternion,
+)
+from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, World, attitude
+
+angles = st.floats(-1.4, 1.4)
+DIP = 1.0
+"""How far below the horizon the magnetic field points, rad."""
+
+
+def felt(orientation, world=World.ENU):
+    """What an accelerometer measures at rest."""
+    return rotate(quaternion_inverse(orientation), (0.0, 0.0, GRAVITY * world.up))
+
+
+def field(orientation, world=World.ENU):
+    """What a magnetometer measures."""
+    level, down = cos(DIP), -sin(DIP) * world.up
+    return rotate(quaternion_inverse(orientation), (0.0, level, down) if world is World.ENU else (level, 0.0, down))
+
+
+def apart(first, second):
+    """The angle between two orientations."""
+    x, y, z, w = quaternion_multiply(quaternion_inverse(first), second)
+    return 2.0 * atan2((x * x + y * y + z * z) ** 0.5, abs(w))
+
+
+@settings(max_examples=50)
+@given(angles, angles, angles, st.sampled_from(World))
+def test_a_body_at_rest_knows_how_it_is_turned(roll, pitch, yaw, world):
+    orientation = quaternion_from_rpy((roll, pitch, yaw))
+    assert apart(attitude(felt(orientation, world), field(orientation, world), world), orientation) < 1e-6
+    without = rpy_from_quaternion(attitude(felt(orientation, world), None, world))
+    assert without == pytest.approx((roll, pitch, 0.0), abs=1e-9)
+
+
+def test_where_nothing_tells_a_direction():
+    assert attitude((0.0, 0.0, 0.0), None, World.ENU) is None
+    assert attitude((0.0, 0.0, 9.8), (0.0, 0.0, 1.0), World.ENU) is None
+    assert attitude((0.0, 0.0, 9.8), (0.0, 0.0, 0.0), World.ENU) is None
+
+
+@pytest.mark.parametrize("world", World)
+def test_madgwick_finds_the_attitude_from_afar(world):
+    orientation = quaternion_from_rpy((0.4, -0.3, 1.0))
+    each = MadgwickFilter(gain=0.5, world=world)
+    for _ in range(1000):
+        each.update((0.0, 0.0, 0.0), felt(orientation, world), field(orientation, world), 0.01)
+    assert apart(each.orientation, orientation) < 0.01
+
+
+def test_madgwick_without_a_magnetometer_finds_roll_and_pitch():
+    orientation = quaternion_from_rpy((0.4, -0.3, 0.0))
+    each = MadgwickFilter(gain=0.5)
+    for _ in range(500):
+        each.update((0.0, 0.0, 0.0), felt(orientation), None, 0.01)
+    assert rpy_from_quaternion(each.orientation)[:2] == pytest.approx((0.4, -0.3), abs=0.01)
+
+
+FILTERS = pytest.mark.parametrize("kind", [MadgwickFilter, ComplementaryFilter])
+
+
+@FILTERS
+def test_the_gyroscope_turns_the_attitude(kind):
+    each = kind()
+    for _ in range(1000):
+        each.update((0.0, 0.0, 0.5), (0.0, 0.0, GRAVITY), None, 0.002)
+    assert rpy_from_quaternion(each.orientation) == pytest.approx((0.0, 0.0, 1.0), abs=1e-3)
+
+
+def test_madgwick_learns_the_drift_of_the_gyroscope():
+    each = MadgwickFilter(gain=0.2, zeta=0.1)
+    for _ in range(6000):
+        each.update((0.1, 0.0, 0.0), (0.0, 0.0, GRAVITY), None, 0.01)
+    assert each.drift[0] == pytest.approx(0.1, abs=0.02)
+    assert abs(rpy_from_quaternion(each.orientation)[0]) < 0.05
+
+
+def test_the_complementary_filter_finds_the_attitude_and_north():
+    orientation = quaternion_from_rpy((0.3, -0.2, 0.8))
+    each = ComplementaryFilter(gain_acc=0.05, gain_mag=0.05)
+    for _ in range(500):
+        each.update((0.0, 0.0, 0.0), felt(orientation, World.NWU), field(orientation, World.NWU), 0.01)
+    assert apart(each.orientation, orientation) < 0.01
+
+
+def test_the_complementary_filter_learns_the_bias_at_rest():
+    each = ComplementaryFilter()
+    for _ in range(1500):
+        each.update((0.0, 0.0, 0.05), (0.0, 0.0, GRAVITY), None, 0.01)
+    assert each.bias[2] == pytest.approx(0.05, abs=1e-3)
+    still = ComplementaryFilter(do_bias_estimation=False)
+    still.update((0.0, 0.0, 0.05), (0.0, 0.0, GRAVITY), None, 0.01)
+    assert still.bias == (0.0, 0.0, 0.0)
+
+
+def test_an_accelerating_body_is_not_taken_for_a_tilted_one():
+    careful, trusting = ComplementaryFilter(gain_acc=0.05), ComplementaryFilter(gain_acc=0.05, do_adaptive_gain=False)
+    for _ in range(100):
+        for each in (careful, trusting):
+            each.update((0.0, 0.0, 0.0), (8.0, 0.0, GRAVITY), None, 0.01)
+    assert abs(rpy_from_quaternion(careful.orientation)[1]) < 1e-9
+    assert abs(rpy_from_quaternion(trusting.orientation)[1]) > 0.5
+
+
+def test_half_a_turn_is_found_too():
+    each = MadgwickFilter(gain=1.0, orientation=quaternion_from_rpy((pi - 0.1, 0.0, 0.0)))
+    for _ in range(2000):
+        each.update((0.0, 0.0, 0.0), (0.0, 0.0, GRAVITY), None, 0.005)
+    assert abs(rpy_from_quaternion(each.orientation)[0]) < 0.02

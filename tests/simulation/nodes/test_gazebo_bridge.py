@@ -1,0 +1,294 @@
+"""parameter_bridge and image_bridge: what is written differently on the two sides is handed on."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import DurabilityPolicy, QoSProfile
+from linkwright.messages import get_message
+from linkwright.nodes import NodeOptions
+from linkwright.simulation.nodes.bridge import BridgedTopic, ImageBridge, ParameterBridge, topic_of_word, topics_of_file
+from linkwright.simulation.plugins.bridged import gz_side
+from tests.outside import Outside, Stranger
+from tests.places import GAZEBO_PACKAGE
+
+SCAN = "/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan"
+
+
+def heard(stage, kind, topic):
+    messages = []
+    stage.node.create_subscription(get_message(kind), topic, messages.append, 10)
+    return messages
+
+
+def publisher(stage, kind, topic):
+    return stage.node.create_publisher(get_message(kind), topic, 10)
+
+
+@pytest.mark.parametrize(
+    ("word", "topic"),
+    [
+        (SCAN, BridgedTopic("/scan", "/scan", "sensor_msgs/msg/LaserScan", "gz.msgs.LaserScan", "GZ_TO_ROS")),
+        (
+            "/a@geometry_msgs/Twist]ignition.msgs.Twist",
+            BridgedTopic("/a", "/a", "geometry_msgs/msg/Twist", "gz.msgs.Twist", "ROS_TO_GZ"),
+        ),
+        (
+            "/a@std_msgs/msg/String@gz.msgs.StringMsg",
+            BridgedTopic("/a", "/a", "std_msgs/msg/String", "gz.msgs.StringMsg", "BIDIRECTIONAL"),
+        ),
+    ],
+)
+def test_arguments(word, topic):
+    assert topic_of_word(word) == topic
+
+
+@pytest.mark.parametrize("word", ["", "/scan", "/scan@", "/scan@sensor_msgs/msg/LaserScan", "@a@b", "/scan@a["])
+def test_an_argument_that_is_none(word):
+    with pytest.raises(LinkwrightError, match="does not describe a topic to bridge"):
+        topic_of_word(word)
+
+
+def test_the_file_of_our_own_package():
+    topics = {each.gz_topic: each for each in topics_of_file(str(GAZEBO_PACKAGE / "config" / "bridge.yaml"))}
+    assert topics["kinect/image"].ros_topic == "kinect/image_raw"
+    assert topics["cmd_vel"].direction == "ROS_TO_GZ"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a: 1", "it is not a list"),
+        ("- 1", "entry 1 is not a mapping"),
+        ("- topic_name: a\n  ros_type_name: b", "entry 1 has no 'gz_type_name'"),
+        ("- ros_type_name: a\n  gz_type_name: b", "entry 1 has no 'ros_topic_name'"),
+        ("- topic_name: a\n  ros_type_name: b\n  gz_type_name: c\n  direction: UP", "no such direction as 'UP'"),
+        ("- [", "is not YAML"),
+    ],
+)
+def test_a_file_that_does_not_say_it(text, message, tmp_path: Path):
+    path = tmp_path / "bridge.yaml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(LinkwrightError, match=message):
+        topics_of_file(str(path))
+    with pytest.raises(LinkwrightError, match="cannot read"):
+        topics_of_file(str(tmp_path / "nothing.yaml"))
+
+
+async def test_what_has_one_name_is_there_already(stage):
+    scans = heard(stage, "sensor_msgs/msg/LaserScan", "/scan")
+    ParameterBridge(stage.graph, NodeOptions(arguments=[SCAN]))
+    publisher(stage, "sensor_msgs/msg/LaserScan", "/scan").publish(get_message("sensor_msgs/msg/LaserScan")())
+    await stage.graph.settle()
+    assert len(scans) == 1
+
+
+async def test_topics_are_there_before_the_simulation_has_them(stage):
+    words = (SCAN, "/odom@nav_msgs/msg/Odometry[gz.msgs.Odometry", "/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist")
+    ParameterBridge(stage.graph, NodeOptions(arguments=[*words, "/both@std_msgs/msg/String@gz.msgs.StringMsg"]))
+    topics = dict(stage.graph.get_topic_names_and_types())
+    assert {"/scan", "/odom", "/cmd_vel", "/both"} <= topics.keys()
+    counts = {name: (stage.node.count_publishers(name), stage.node.count_subscribers(name)) for name in topics}
+    assert [counts[name] for name in ("/scan", "/cmd_vel", "/both")] == [(1, 0), (0, 1), (1, 1)]
+
+
+@pytest.mark.parametrize("types", ["", "@gz.msgs.WorldControl@gz.msgs.Boolean"])
+async def test_a_service_among_the_topics_is_told_of_and_the_topics_are_bridged(stage, said, types):
+    words = [f"/world/empty/control@ros_gz_interfaces/srv/ControlWorld{types}", SCAN]
+    ParameterBridge(stage.graph, NodeOptions(arguments=words))
+    assert "/scan" in stage.graph.topics()
+    assert said("WARN") == ["/world/empty/control is not bridged: services of gz are not here"]
+
+
+async def test_a_remapped_name_is_bridged(stage):
+    kind = "nav_msgs/msg/Odometry"
+    moved = heard(stage, kind, "/odom")
+    word = f"/model/mbot/odometry@{kind}[gz.msgs.Odometry"
+    ParameterBridge(stage.graph, NodeOptions(arguments=[word], remappings=[("/model/mbot/odometry", "/odom")]))
+    publisher(stage, kind, "/model/mbot/odometry").publish(get_message(kind)(child_frame_id="base"))
+    await stage.graph.settle()
+    assert [message.child_frame_id for message in moved] == ["base"]
+
+
+async def test_messages_go_both_ways_and_not_round(stage):
+    kind = "std_msgs/msg/String"
+    ros, gz = heard(stage, kind, "/ros"), heard(stage, kind, "/gz")
+    word = f"/gz@{kind}@gz.msgs.StringMsg"
+    ParameterBridge(stage.graph, NodeOptions(arguments=[word], remappings=[("/gz", "/ros")]))
+    to_ros, to_gz = publisher(stage, kind, "/gz"), publisher(stage, kind, "/ros")
+    for number in range(3):
+        to_ros.publish(get_message(kind)(data=f"up {number}"))
+        to_gz.publish(get_message(kind)(data=f"down {number}"))
+        await stage.graph.settle()
+    expected = sorted(f"{way} {number}" for way in ("up", "down") for number in range(3))
+    assert sorted(message.data for message in ros) == expected
+    assert sorted(message.data for message in gz) == expected
+
+
+async def test_a_twist_with_a_header_becomes_one_without(stage, tmp_path: Path):
+    twists = heard(stage, "geometry_msgs/msg/Twist", gz_side("/cmd_vel"))
+    path = tmp_path / "bridge.yaml"
+    path.write_text(
+        "- topic_name: cmd_vel\n  ros_type_name: geometry_msgs/msg/TwistStamped\n"
+        "  gz_type_name: gz.msgs.Twist\n  direction: ROS_TO_GZ\n",
+        encoding="utf-8",
+    )
+    ParameterBridge(stage.graph, stage.options({"config_file": str(path)}))
+    stamped = get_message("geometry_msgs/msg/TwistStamped")()
+    stamped.twist.linear.x = 0.25
+    publisher(stage, "geometry_msgs/msg/TwistStamped", "/cmd_vel").publish(stamped)
+    await stage.graph.settle()
+    assert [message.linear.x for message in twists] == [0.25]
+    assert stage.graph.topics()["/cmd_vel"] == ["geometry_msgs/msg/TwistStamped"]
+
+
+async def test_a_type_that_is_not_known_is_named_and_the_rest_is_bridged(stage, said):
+    kind = "std_msgs/msg/String"
+    ros = heard(stage, kind, "/ros")
+    words = ["/a@strange_msgs/msg/Thing[gz.msgs.Thing", f"/gz@{kind}[gz.msgs.StringMsg"]
+    ParameterBridge(stage.graph, NodeOptions(arguments=words, remappings=[("/gz", "/ros")]))
+    publisher(stage, kind, "/gz").publish(get_message(kind)(data="hello"))
+    await stage.graph.settle()
+    assert said("WARN") == ["/a is not bridged: there is no type strange_msgs/msg/Thing"]
+    assert [message.data for message in ros] == ["hello"]
+
+
+async def test_images(stage):
+    kind = "sensor_msgs/msg/Image"
+    images = heard(stage, kind, "/camera/color")
+    bridge = ImageBridge(stage.graph, NodeOptions(arguments=["/camera"], remappings=[("/camera", "/camera/color")]))
+    publisher(stage, kind, "/camera").publish(get_message(kind)(width=4))
+    await stage.graph.settle()
+    assert [message.width for message in images] == [4]
+    bridge.close()
+
+
+async def test_a_lazy_bridge_listens_only_while_somebody_hears_it(stage, tmp_path: Path):
+    kind = "std_msgs/msg/String"
+    path = tmp_path / "bridge.yaml"
+    path.write_text(
+        f"- ros_topic_name: ros\n  gz_topic_name: gz\n  ros_type_name: {kind}\n  gz_type_name: gz.msgs.StringMsg\n"
+        "  direction: GZ_TO_ROS\n  lazy: true\n  publisher_queue: 3\n  subscriber_queue: 4\n",
+        encoding="utf-8",
+    )
+    ParameterBridge(stage.graph, stage.options({"config_file": str(path)}))
+    source = publisher(stage, kind, "/gz")
+    await stage.graph.settle()
+    assert source.get_subscription_count() == 0
+    heard_by = stage.node.create_subscription(get_message(kind), "/ros", lambda message: None, 10)
+    await stage.graph.settle()
+    assert source.get_subscription_count() == 1
+    (told,) = stage.node.get_publishers_info_by_topic("/ros")
+    assert told.qos_profile.depth == 3
+    stage.node.destroy_subscription(heard_by)
+    await stage.graph.settle()
+    assert source.get_subscription_count() == 0
+
+
+async def test_parameters_override_the_quality_of_service(stage):
+    kind = "tf2_msgs/msg/TFMessage"
+    word = f"/model/robot/pose_static@{kind}[gz.msgs.Pose_V"
+    overrides = {"qos_overrides": {"/tf_static": {"publisher": {"durability": "transient_local"}}}}
+    options = NodeOptions(
+        arguments=[word], remappings=[("/model/robot/pose_static", "/tf_static")], parameters=overrides
+    )
+    ParameterBridge(stage.graph, options)
+    publisher(stage, kind, "/model/robot/pose_static").publish(get_message(kind)())
+    await stage.graph.settle()
+    late = []
+    latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    stage.node.create_subscription(get_message(kind), "/tf_static", late.append, latched)
+    await stage.graph.settle()
+    assert len(late) == 1
+
+
+async def test_poses_become_what_is_asked_for(stage, said):
+    transform = get_message("geometry_msgs/msg/TransformStamped")()
+    transform.header.frame_id, transform.transform.translation.x = "robot", 2.0
+    kinds = ("Pose", "PoseStamped", "Transform", "PoseArray")
+    results = {kind: heard(stage, f"geometry_msgs/msg/{kind}", f"/{kind}") for kind in kinds}
+    words = [f"/one@geometry_msgs/msg/{kind}[gz.msgs.Pose" for kind in kinds[:3]]
+    for kind, word in zip(kinds[:3], words, strict=True):
+        name = f"bridge_{kind.lower()}"
+        ParameterBridge(stage.graph, NodeOptions(name=name, arguments=[word], remappings=[("/one", f"/{kind}")]))
+    word = "/many@geometry_msgs/msg/PoseArray[gz.msgs.Pose_V"
+    ParameterBridge(stage.graph, NodeOptions(arguments=[word], remappings=[("/many", "/PoseArray")]))
+    publisher(stage, "geometry_msgs/msg/TransformStamped", "/one").publish(transform)
+    publisher(stage, "tf2_msgs/msg/TFMessage", "/many").publish(get_message("tf2_msgs/msg/TFMessage")([transform]))
+    await stage.graph.settle()
+    assert results["Pose"][0].position.x == results["PoseStamped"][0].pose.position.x == 2.0
+    assert results["Transform"][0].translation.x == results["PoseArray"][0].poses[0].position.x == 2.0
+    assert results["PoseStamped"][0].header.frame_id == results["PoseArray"][0].header.frame_id == "robot"
+    word = "/one@geometry_msgs/msg/Pose]gz.msgs.Pose"
+    ParameterBridge(stage.graph, NodeOptions(name="back", arguments=[word]))
+    assert said("WARN") == [
+        "/one is not bridged: geometry_msgs/msg/Pose does not become geometry_msgs/msg/TransformStamped"
+    ]
+
+
+async def test_names_of_gz_may_be_in_the_namespace_of_the_bridge(stage):
+    kind = "std_msgs/msg/String"
+    ros = heard(stage, kind, "/ros")
+    options = NodeOptions(
+        arguments=[f"chatter@{kind}[gz.msgs.StringMsg"],
+        namespace="/demo",
+        parameters={"expand_gz_topic_names": True},
+        remappings=[("chatter", "/ros")],
+    )
+    ParameterBridge(stage.graph, options)
+    publisher(stage, kind, "/demo/chatter").publish(get_message(kind)(data="hello"))
+    await stage.graph.settle()
+    assert [message.data for message in ros] == ["hello"]
+
+
+@pytest.mark.parametrize(("encoding", "pixel"), [("rgb8", [200, 100, 50]), ("bgr8", [50, 100, 200]), ("mono8", [120])])
+async def test_images_are_there_as_jpeg_while_somebody_listens(stage, encoding, pixel):
+    images = pytest.importorskip("PIL.Image")
+    kind = "sensor_msgs/msg/Image"
+    ImageBridge(stage.graph, NodeOptions(arguments=["/camera"]))
+    camera = publisher(stage, kind, "/camera")
+    await stage.graph.settle()
+    assert camera.get_subscription_count() == 0
+    pictures = heard(stage, "sensor_msgs/msg/CompressedImage", "/camera/compressed")
+    await stage.graph.settle()
+    step = 8 * len(pixel)
+    camera.publish(get_message(kind)(width=8, height=8, encoding=encoding, step=step, data=pixel * 64))
+    await stage.graph.settle()
+    camera.publish(get_message(kind)(width=8, height=8, encoding="16UC1", step=16, data=[0] * 128))
+    await stage.graph.settle()
+    (picture,) = pictures
+    assert picture.format.startswith(f"{encoding}; jpeg compressed")
+    shown = images.open(BytesIO(bytes(picture.data)))
+    found = shown.getpixel((4, 4))
+    expected = [120] if encoding == "mono8" else [200, 100, 50]
+    assert list(found if isinstance(found, tuple) else (found,)) == pytest.approx(expected, abs=6)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [("publisher_queue: many", "'publisher_queue' is not a number"), ("lazy: 3", "'lazy' is neither")],
+)
+def test_settings_of_a_topic_that_are_none(more, message, tmp_path: Path):
+    path = tmp_path / "bridge.yaml"
+    path.write_text(f"- topic_name: a\n  ros_type_name: b/msg/C\n  gz_type_name: c\n  {more}\n", encoding="utf-8")
+    with pytest.raises(LinkwrightError, match=message):
+        topics_of_file(str(path))
+
+
+@pytest.mark.parametrize("ros_type", ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"])
+async def test_the_drive_behind_a_bridge_is_stopped_when_who_drives_is_lost(stage, ros_type):
+    word = f"/cmd_vel@{ros_type}]gz.msgs.Twist"
+    bridge = ParameterBridge(stage.graph, NodeOptions(arguments=[word, "--ros-args", "-r", "/cmd_vel:=/drive"]))
+    driven = heard(stage, "geometry_msgs/msg/Twist", "/cmd_vel")
+    driver = Stranger(Outside(stage.graph), "/drive", msg_type=ros_type)
+    message = get_message(ros_type)()
+    getattr(message, "twist", message).linear.x = 0.3
+    driver.send(message)
+    driver.be_lost()
+    await stage.graph.settle()
+    assert [each.linear.x for each in driven] == [0.3, 0.0]
+    bridge.close()

@@ -1,0 +1,295 @@
+"""spawn_entity.py and create, against a simulator that only takes note of what it is asked for."""
+
+from __future__ import annotations
+
+import io
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import get_service
+from linkwright.nodes import NodeOptions
+from linkwright.simulation.nodes.create import Create
+from linkwright.simulation.nodes.entities import DeleteEntity, Remove, SetEntityPose
+from linkwright.simulation.nodes.spawn_entity import SpawnEntity, parse
+from tests.nodes.stage import Stage
+
+ROBOT = "<robot name='r'><link name='base'/></robot>"
+
+
+class Simulator:
+    """Takes note of requests.
+
+    Attributes:
+        spawned: the requests for entities.
+        deleted: the names of those that were to be taken out.
+        put: the states that were asked for.
+        names: the models of the world.
+        calls: other services that were called.
+    """
+
+    def __init__(self, stage: Stage, namespace: str = "") -> None:
+        self.spawned: list[Any] = []
+        self.deleted: list[str] = []
+        self.put: list[Any] = []
+        self.names = ["ground"]
+        self.calls: list[str] = []
+        self.refuses = False
+        node = stage.graph.create_node("gazebo", namespace=namespace or "/")
+        node.create_service(get_service("gazebo_msgs/srv/SpawnEntity"), "spawn_entity", self._spawn)
+        node.create_service(get_service("gazebo_msgs/srv/DeleteEntity"), "delete_entity", self._delete)
+        node.create_service(get_service("gazebo_msgs/srv/SetEntityState"), "set_entity_state", self._put)
+        node.create_service(get_service("gazebo_msgs/srv/GetModelList"), "get_model_list", self._list)
+        node.create_service(get_service("std_srvs/srv/Empty"), "unpause_physics", self._unpause)
+
+    def _spawn(self, request: Any, response: Any) -> Any:
+        self.spawned.append(request)
+        response.success = not self.refuses
+        response.status_message = "Entity already exists" if self.refuses else f"spawned {request.name}"
+        return response
+
+    def _delete(self, request: Any, response: Any) -> Any:
+        self.deleted.append(request.name)
+        response.success = request.name in self.names
+        return response
+
+    def _put(self, request: Any, response: Any) -> Any:
+        self.put.append(request.state)
+        response.success = request.state.name in self.names
+        return response
+
+    def _list(self, _: Any, response: Any) -> Any:
+        response.model_names = self.names
+        return response
+
+    def _unpause(self, _: Any, response: Any) -> Any:
+        self.calls.append("unpause")
+        return response
+
+
+def spawn_entity(stage: Stage, *words: str, **options: Any) -> SpawnEntity:
+    return SpawnEntity(stage.graph, NodeOptions(arguments=list(words), **options))
+
+
+def create(stage: Stage, *words: str, **parameters: Any) -> Create:
+    return Create(stage.graph, NodeOptions(arguments=list(words), parameters=parameters))
+
+
+async def test_what_is_published_is_spawned_where_it_is_wanted(stage, said):
+    simulator = Simulator(stage)
+    place = ("-x", "1.5", "-y", "-2", "-z", "0.1", "-Y", str(math.pi / 2))
+    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", *place)
+    await stage.graph.settle()
+    assert simulator.spawned == []
+    await stage.describe(ROBOT)
+    (request,) = simulator.spawned
+    assert (request.name, request.xml, request.reference_frame) == ("mbot", ROBOT, "")
+    pose = request.initial_pose
+    assert (pose.position.x, pose.position.y, pose.position.z) == (1.5, -2.0, 0.1)
+    assert (pose.orientation.z, pose.orientation.w) == pytest.approx((math.sqrt(0.5), math.sqrt(0.5)))
+    assert node.finished.result() == 0
+    assert said("INFO")[-1] == "Spawn status: spawned mbot"
+
+
+async def test_a_description_that_was_published_before_is_heard(stage):
+    simulator = Simulator(stage)
+    await stage.describe(ROBOT)
+    node = create(stage, "-name", "mbot", "-topic", "robot_description", "-z=0.5")
+    await stage.graph.settle()
+    assert simulator.spawned[0].initial_pose.position.z == 0.5
+    assert node.finished.result() == 0
+
+
+async def test_only_the_first_description_counts(stage):
+    await stage.describe(ROBOT)
+    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot")
+    await stage.graph.settle()
+    await stage.describe(ROBOT.replace("base", "other"))
+    simulator = Simulator(stage)
+    await stage.graph.settle()
+    assert [request.xml for request in simulator.spawned] == [ROBOT]
+    assert node.finished.result() == 0
+
+
+async def test_it_waits_for_the_simulator_and_gives_up_in_the_end(stage, said):
+    await stage.describe(ROBOT)
+    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-timeout", "7")
+    await stage.clock.advance(6.9)
+    assert not node.finished.done()
+    assert said("INFO")[-1] == "Waiting for service /spawn_entity, timeout = 7"
+    await stage.clock.advance(0.2)
+    assert node.finished.result() == 1
+    assert said("ERROR") == ["Service /spawn_entity unavailable. Was the simulation started?"]
+
+
+async def test_what_the_simulator_refuses_ends_with_status_1(stage, said):
+    simulator = Simulator(stage)
+    simulator.refuses = True
+    await stage.describe(ROBOT)
+    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot")
+    await stage.graph.settle()
+    assert node.finished.result() == 1
+    assert said("ERROR") == ["Spawning 'mbot' failed: Entity already exists"]
+
+
+async def test_namespaces(stage):
+    simulator = Simulator(stage, "/sim")
+    await stage.describe(ROBOT)
+    words = ("-topic", "/robot_description", "-entity", "a", "-gazebo_namespace", "/sim")
+    spawn_entity(stage, *words, namespace="/one")
+    spawn_entity(stage, *words, "-robot_namespace", "two")
+    await stage.graph.settle()
+    assert [request.robot_namespace for request in simulator.spawned] == ["/one", "two"]
+
+
+async def test_files_models_and_standard_input(stage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    simulator = Simulator(stage)
+    model = tmp_path / "models" / "box"
+    model.mkdir(parents=True)
+    (model / "model.sdf").write_text("<sdf version='1.6'><model name='box'/></sdf>", encoding="utf-8")
+    (tmp_path / "robot.urdf").write_text(ROBOT.replace("base", "package://p/m.dae"), encoding="utf-8")
+    monkeypatch.setenv("GAZEBO_MODEL_PATH", str(tmp_path / "models"))
+    monkeypatch.setattr("sys.stdin", io.StringIO(ROBOT))
+    spawn_entity(stage, "-file", str(tmp_path / "robot.urdf"), "-entity", "a", "-package_to_model")
+    spawn_entity(stage, "-database", "box", "-entity", "b")
+    spawn_entity(stage, "-stdin", "-entity", "c")
+    create(stage, "-file", "model://box", "-name", "d")
+    create(stage, "--string", ROBOT, "--name=e")
+    create(stage, "-param", "text", "-name", "f", text=ROBOT)
+    await stage.graph.settle()
+    box = (model / "model.sdf").read_text(encoding="utf-8")
+    sent = {request.name: request.xml for request in simulator.spawned}
+    assert sent == {
+        "a": ROBOT.replace("base", "model://p/m.dae"),
+        "b": box,
+        "c": ROBOT,
+        "d": box,
+        "e": ROBOT,
+        "f": ROBOT,
+    }
+
+
+async def test_the_physics_is_started_where_that_is_asked_for(stage):
+    simulator = Simulator(stage)
+    await stage.describe(ROBOT)
+    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-unpause")
+    await stage.graph.settle()
+    assert simulator.calls == ["unpause"]
+    assert node.finished.result() == 0
+
+
+async def test_it_waits_for_another_entity(stage):
+    simulator = Simulator(stage)
+    await stage.describe(ROBOT)
+    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-wait", "table")
+    await stage.clock.advance(2.0)
+    assert simulator.spawned == []
+    simulator.names.append("table")
+    await stage.clock.advance(1.0)
+    assert len(simulator.spawned) == 1
+    assert node.finished.result() == 0
+
+
+async def test_an_entity_that_is_bound_goes_with_the_node(stage):
+    simulator = Simulator(stage)
+    await stage.describe(ROBOT)
+    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-b")
+    await stage.graph.settle()
+    assert not node.finished.done()
+    node.close()
+    await stage.graph.settle()
+    assert simulator.deleted == ["mbot"]
+
+
+async def test_create_finds_a_free_name(stage):
+    simulator = Simulator(stage)
+    simulator.names = ["mbot", "mbot_0"]
+    create(stage, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "true")
+    create(stage, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "false")
+    create(stage, "-allow_renaming", "-string", ROBOT, "-name", "other")
+    await stage.graph.settle()
+    assert sorted(request.name for request in simulator.spawned) == ["mbot", "mbot_1", "other"]
+
+
+async def test_create_takes_its_options_as_parameters_too_and_passes_over_what_it_does_not_know(stage):
+    simulator = Simulator(stage)
+    create(stage, "-wonder", "1", name="mbot", string=ROBOT, x=1.0, Y=0.0)
+    await stage.graph.settle()
+    assert (simulator.spawned[0].name, simulator.spawned[0].initial_pose.position.x) == ("mbot", 1.0)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["-topic", "t"], "the following arguments are required: -entity"),
+        (["-entity", "a"], "one of the arguments -file -topic -database -stdin is required"),
+        (["-entity", "a", "-topic", "t", "-file", "f"], "not allowed with argument"),
+        (["-entity", "a", "-topic", "t", "-x", "far"], "invalid float value: 'far'"),
+        (["-entity", "a", "-topic", "t", "-wonder"], "unrecognized arguments: -wonder"),
+    ],
+)
+def test_a_command_line_that_is_none(words, message):
+    with pytest.raises(LinkwrightError) as caught:
+        parse(words)
+    (finding,) = caught.value.diagnostics
+    assert finding.code == "NODE810"
+    assert message in str(finding.message)
+
+
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        (["-name", "a"], "NODE812"),
+        (["-string", ROBOT, "-name", "a", "-x", "far"], "NODE812"),
+        (["-file", "/nowhere/a.sdf", "-name", "a"], "NODE811"),
+        (["-file", "model://nothing", "-name", "a"], "NODE811"),
+    ],
+)
+async def test_create_says_what_is_wrong(stage, words, code):
+    with pytest.raises(LinkwrightError) as caught:
+        create(stage, *words)
+    assert caught.value.diagnostics[0].code == code
+
+
+@pytest.mark.parametrize(("name", "status"), [("ground", 0), ("nothing", 1)])
+async def test_remove_and_delete_entity_take_a_model_out_and_end(stage, name, status):
+    simulator = Simulator(stage)
+    remove = Remove(stage.graph, NodeOptions(parameters={"entity_name": name, "world": "any"}))
+    delete = DeleteEntity(stage.graph, NodeOptions(arguments=["--name", name]))
+    await stage.graph.settle()
+    assert (remove.finished.result(), delete.finished.result()) == (status, status)
+    assert simulator.deleted == [name, name]
+
+
+async def test_set_entity_pose_puts_a_model_elsewhere_and_ends(stage):
+    simulator = Simulator(stage)
+    words = ["--name", "ground", "--pos", "-1", "2", "3", "--euler", "0", "0", str(math.pi)]
+    turned = SetEntityPose(stage.graph, NodeOptions(arguments=words))
+    plain = SetEntityPose(
+        stage.graph, NodeOptions(arguments=["--name", "link", "--type", "2", "--quat", "1", "0", "0", "0"])
+    )
+    await stage.graph.settle()
+    assert (turned.finished.result(), plain.finished.result()) == (0, 1)
+    first, second = simulator.put
+    position = first.pose.position
+    assert (position.x, position.y, position.z) == (-1.0, 2.0, 3.0)
+    assert first.pose.orientation.z == pytest.approx(1.0)
+    assert (second.name, second.pose.orientation.x, second.pose.orientation.w) == ("link", 1.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("node", "words"),
+    [
+        (Remove, []),
+        (DeleteEntity, ["--id", "3"]),
+        (SetEntityPose, ["--name", "a", "--pos", "1"]),
+        (SetEntityPose, ["--name", "a", "--type", "5"]),
+    ],
+)
+async def test_programs_that_are_not_told_what_to_do_say_so(stage, node, words):
+    with pytest.raises(LinkwrightError) as error:
+        node(stage.graph, NodeOptions(arguments=words))
+    assert error.value.diagnostics[0].code == "NODE812"

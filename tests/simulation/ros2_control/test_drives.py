@@ -1,0 +1,204 @@
+"""Drives in a simulated world: controllers turn motors, wheels roll on the ground, and odometry is beside the truth."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.control.odometry import yaw_of
+from linkwright.kinematics.planar import PlanarPose
+from tests.control.controllers.driving import stamped
+from tests.simulation.ros2_control.test_plugin import PLUGINS, Controlled
+from tests.simulation.test_ackermann import BASE, RADIUS, TRACK, car
+from tests.simulation.test_gz_drives import LENGTH, WIDTH, mecanum
+from tests.simulation.test_plugins import served
+from tests.simulation.worlds import GROUND, mbot
+
+TIMEOUT = 0.2
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot: its model, which joints have which command, and the controller with its parameters."""
+
+    model: str
+    text: str
+    joints: Mapping[str, str]
+    type: str
+    parameters: Mapping[str, Any]
+    command: str = "/base/reference"
+    odometry: str = "/base/odometry"
+
+    def described(self, plugin: str) -> str:
+        """Its description."""
+        moving = "".join(
+            f"<link name='{name}_link'/><joint name='{name}' type='continuous'><parent link='base'/>"
+            f"<child link='{name}_link'/></joint>"
+            for name in self.joints
+        )
+        hardware = "".join(
+            f"<joint name='{name}'><command_interface name='{kind}'/><state_interface name='position'/>"
+            "<state_interface name='velocity'/></joint>"
+            for name, kind in self.joints.items()
+        )
+        return (
+            f"<robot name='{self.model}'><link name='base'/>{moving}<ros2_control name='drive' type='system'>"
+            f"<hardware><plugin>{plugin}</plugin></hardware>{hardware}</ros2_control></robot>"
+        )
+
+    def controllers(self) -> str:
+        """Its parameter file; JSON is YAML."""
+        manager = {"update_rate": 100, "base": {"type": self.type}}
+        return json.dumps(
+            {
+                name: {"ros__parameters": said}
+                for name, said in (("controller_manager", manager), ("base", self.parameters))
+            }
+        )
+
+
+DIFFERENTIAL = Robot(
+    "mbot",
+    mbot(),
+    dict.fromkeys(("left_joint", "right_joint"), "velocity"),
+    "diff_drive_controller/DiffDriveController",
+    {
+        "left_wheel_names": ["left_joint"],
+        "right_wheel_names": ["right_joint"],
+        "wheel_separation": 0.38,
+        "wheel_radius": 0.06,
+        "cmd_vel_timeout": TIMEOUT,
+        "publish_rate": 100.0,
+        "linear": {"x": {"max_acceleration": 2.0}},
+    },
+    "/base/cmd_vel",
+    "/base/odom",
+)
+_REAR, _STEERING = ["rear_right_joint", "rear_left_joint"], ["right_steering_joint", "left_steering_joint"]
+ACKERMANN = Robot(
+    "car",
+    car(""),
+    dict.fromkeys(_REAR, "velocity") | dict.fromkeys(_STEERING, "position"),
+    "ackermann_steering_controller/AckermannSteeringController",
+    {
+        "traction_joints_names": _REAR,
+        "steering_joints_names": _STEERING,
+        "wheelbase": BASE,
+        "traction_track_width": TRACK,
+        "traction_wheels_radius": RADIUS,
+        "reference_timeout": TIMEOUT,
+        "position_feedback": True,
+    },
+)
+_CORNERS = {
+    "front_left": "front_left",
+    "front_right": "front_right",
+    "rear_left": "back_left",
+    "rear_right": "back_right",
+}
+MECANUM = Robot(
+    "robot",
+    mecanum().partition("<plugin")[0] + "</model>",
+    {f"{corner}_joint": "velocity" for corner in _CORNERS.values()},
+    "mecanum_drive_controller/MecanumDriveController",
+    {
+        **{f"{name}_wheel_command_joint_name": f"{corner}_joint" for name, corner in _CORNERS.items()},
+        "kinematics": {
+            "wheels_radius": RADIUS,
+            "sum_of_robot_center_projection_on_X_Y_axis": (LENGTH + WIDTH) / 2.0,
+        },
+        "reference_timeout": TIMEOUT,
+    },
+)
+ALL = pytest.mark.parametrize("robot", [DIFFERENTIAL, ACKERMANN, MECANUM], ids=["differential", "ackermann", "mecanum"])
+
+
+class Drive(Controlled):
+    """A robot that is driven in a world."""
+
+    def __init__(self, server: Any, graph: Any, robot: Robot) -> None:
+        super().__init__(server, graph)
+        self.robot = robot
+        self._publisher = self.node.create_publisher("geometry_msgs/msg/TwistStamped", robot.command, 10)
+        self._told: list[Any] = []
+        self.node.create_subscription("nav_msgs/msg/Odometry", robot.odometry, self._told.append, 1000)
+
+    async def drive(self, seconds: float, *velocity: float) -> None:
+        """Tell a velocity as often as it has to be, for so long."""
+        for _ in range(round(seconds / 0.1)):
+            self._publisher.publish(stamped(self.server.simulation.time, *velocity))
+            await self.go_on(0.1)
+
+    @property
+    def truth(self) -> PlanarPose:
+        """Where the robot is in the world."""
+        pose = self.server.simulation.model_pose(self.robot.model)
+        return PlanarPose(pose[0], pose[1], yaw_of(pose))
+
+    @property
+    def odometry(self) -> PlanarPose:
+        """Where its odometry says that it is."""
+        place = self._told[-1].pose.pose
+        turn = place.orientation
+        return PlanarPose(place.position.x, place.position.y, yaw_of((0.0, 0.0, 0.0, turn.x, turn.y, turn.z, turn.w)))
+
+
+@asynccontextmanager
+async def driven(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
+    """A robot at rest in a world, whose controller is active."""
+    file = folder / "controllers.yaml"
+    file.write_text(robot.controllers())
+    filename, name, hardware = PLUGINS["gz"]
+    plugin = f'<plugin filename="{filename}" name="{name}"><parameters>{file}</parameters></plugin>'
+    async with served(GROUND, robot.text.replace("</model>", f"{plugin}</model>")) as (server, graph, log):
+        drive = Drive(server, graph, robot)
+        await drive.describe(robot.described(hardware))
+        await drive.start("base")
+        await drive.go_on(0.5)
+        yield drive
+        assert not [each.text for each in log if each.level.name in ("WARN", "ERROR")]
+
+
+@ALL
+async def test_five_metres_straight(robot, tmp_path):
+    async with driven(robot, tmp_path) as drive:
+        await drive.drive(5.0, 1.0)
+        await drive.go_on(1.0)
+        truth, odometry = drive.truth, drive.odometry
+        assert odometry.x == pytest.approx(5.0 + TIMEOUT / 2.0, abs=0.02)
+        assert (truth.x, truth.y) == pytest.approx((odometry.x, 0.0), abs=0.05)
+
+
+@pytest.mark.parametrize("robot", [DIFFERENTIAL, ACKERMANN], ids=["differential", "ackermann"])
+async def test_an_arc(robot, tmp_path):
+    async with driven(robot, tmp_path) as drive:
+        await drive.drive(6.0, 0.4, 0.3)
+        await drive.go_on(1.0)
+        truth, odometry = drive.truth, drive.odometry
+        assert odometry.yaw == pytest.approx(0.3 * (6.0 + TIMEOUT / 2.0), abs=0.05)
+        assert (odometry.x, odometry.y, odometry.yaw) == pytest.approx((truth.x, truth.y, truth.yaw), abs=0.04)
+
+
+@ALL
+async def test_a_robot_stops_when_commands_stop(robot, tmp_path):
+    async with driven(robot, tmp_path) as drive:
+        await drive.drive(1.0, 0.5)
+        await drive.go_on(0.09)
+        moving = drive.truth
+        await drive.go_on(1.0)
+        stopped = drive.truth
+        await drive.go_on(0.5)
+        assert 0.0 < stopped.x - moving.x < 0.1
+        assert drive.truth.x == pytest.approx(stopped.x, abs=1e-3)
+
+
+async def test_the_wheels_of_a_robot_cost_one_new_model_together(tmp_path):
+    """MuJoCo's model is made anew for motors; many robots would begin slowly if each wheel were to need one."""
+    async with driven(DIFFERENTIAL, tmp_path) as drive:
+        assert drive.server.simulation.revision <= 1

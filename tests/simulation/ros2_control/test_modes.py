@@ -1,0 +1,81 @@
+"""What joints of a world do by which interface commands them, and while none does."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.simulation.ros2_control.test_plugin import Controlled, controlled, description, wheel
+from tests.simulation.test_plugins import served
+
+EFFORTS = (
+    "controller_manager: {ros__parameters: {arm: {type: effort_controllers/JointGroupEffortController}}}\n"
+    "arm: {ros__parameters: {joints: [left_joint]}}\n"
+)
+POSITIONS = (
+    "controller_manager: {ros__parameters: {arm: {type: position_controllers/JointGroupPositionController}}}\n"
+    "arm: {ros__parameters: {joints: [left_joint]}}\n"
+)
+
+
+@pytest.fixture
+def written(tmp_path):
+    """A file of parameters with a text."""
+
+    def write(text: str):
+        path = tmp_path / "controllers.yaml"
+        path.write_text(text)
+        return path
+
+    return write
+
+
+def angle(server) -> float:
+    return server.simulation.joint_state("mbot::left_joint")[0]
+
+
+@pytest.mark.parametrize(
+    ("more", "way"),
+    [("", 0.5), ("<command_interface name='velocity'/>", 0.03)],  # the rotor of a motor turns with the joint
+    ids=["effort", "effort and velocity"],
+)
+async def test_a_joint_that_takes_efforts_is_held_while_no_controller_has_it_and_free_then(written, more, way):
+    text = description(wheel("left_joint", "effort").replace("<state", f"{more}<state", 1))
+    async with served(controlled(written(EFFORTS))) as (server, graph, _):
+        world = Controlled(server, graph)
+        await world.describe(text)
+        server.simulation.push("mbot::left_wheel", (0.0, 0.0, 0.0), (0.0, 0.01, 0.0), by="test")
+        await world.go_on(0.3)
+        assert angle(server) == pytest.approx(0.0, abs=0.01)
+        await world.start("arm")
+        begin = angle(server)
+        await world.command(0.01, topic="/arm/commands")
+        await world.go_on(0.3)
+        assert angle(server) - begin > way
+        assert (await world.ask("switch_controller", deactivate_controllers=["arm"], strictness=2)).ok
+        stopped = angle(server)
+        await world.go_on(0.5)
+        assert angle(server) == pytest.approx(stopped, abs=0.3)
+
+
+@pytest.mark.parametrize(("kind", "way"), [("effort", 0.5), ("velocity", 0.01)])
+async def test_with_hold_joints_false_it_turns_as_it_will(written, kind, way):
+    text = controlled(written(EFFORTS), more="<hold_joints>false</hold_joints>")
+    async with served(text) as (server, graph, _):
+        world = Controlled(server, graph)
+        await world.describe(description(wheel("left_joint", kind)))
+        server.simulation.push("mbot::left_wheel", (0.0, 0.0, 0.0), (0.0, 0.01, 0.0), by="test")
+        await world.go_on(0.3)
+        assert angle(server) > way
+
+
+async def test_with_a_gain_a_position_is_approached_by_a_part_of_what_is_missing(written):
+    more = "<position_proportional_gain>0.1</position_proportional_gain>"
+    async with served(controlled(written(POSITIONS), "gz", more)) as (server, graph, _):
+        world = Controlled(server, graph)
+        await world.describe(description(wheel("left_joint", "position")))
+        await world.start("arm")
+        await world.command(1.0, topic="/arm/commands")
+        await world.go_on(0.08)
+        assert 0.3 < angle(server) < 1.0 - 0.9**10  # and 0.9 without the gain
+        await world.go_on(1.0)
+        assert angle(server) == pytest.approx(1.0, abs=0.01)

@@ -1,0 +1,132 @@
+"""audio_capture publishes files and microphones as audio_common does."""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import LogLevel
+from linkwright.nodes import NodeOptions
+from linkwright.speech.nodes.audio_capture import AudioCapture, RobotAudioCapture
+from linkwright.speech.sound.wav import write_wav
+from linkwright.testing.stepped import AsyncSteppedGraph
+from tests.speech.nodes import fake_sounddevice
+
+TONE = (np.arange(4_000) % 200 * 100 - 10_000).astype(np.int16)
+
+
+@pytest.fixture
+async def test():
+    async with AsyncSteppedGraph() as graph:
+        yield graph
+
+
+@pytest.fixture
+def wav(tmp_path):
+    write_wav(tmp_path / "said.wav", TONE)
+    return str(tmp_path / "said.wav")
+
+
+@pytest.fixture
+def sounddevice(monkeypatch):
+    monkeypatch.setitem(sys.modules, "sounddevice", fake_sounddevice)
+    yield fake_sounddevice
+    assert fake_sounddevice.OPEN == []
+
+
+def start(test, kind=AudioCapture, namespace="/", **parameters):
+    return kind(test.graph, NodeOptions(namespace=namespace, parameters=parameters))
+
+
+def samples(messages):
+    return np.concatenate([np.frombuffer(bytes(message), "<i2") for message in messages])
+
+
+async def test_a_file_in_the_time_of_the_clock(test, wav):
+    start(test, file=wav)
+    await test.advance(1.0)  # nobody listens
+    info, plain, stamped = (test.record(f"/{name}") for name in ("audio_info", "audio", "audio_stamped"))
+    await test.advance(0.5)
+    assert len(plain) == len(stamped) == 5
+    assert np.array_equal(samples([each.data for each in plain])[:4_000], TONE)
+    assert not samples([each.data for each in plain])[4_000:].any()  # silence follows
+    assert np.array_equal(samples([each.audio.data for each in stamped])[:4_000], TONE)
+    assert len({(each.header.stamp.sec, each.header.stamp.nanosec) for each in stamped}) == 5
+    assert (info.last.channels, info.last.sample_rate, info.last.sample_format) == (1, 16_000, "S16LE")
+
+
+async def test_a_file_over_and_over(test, wav):
+    start(test, RobotAudioCapture, file=wav, loop=True, chunk=2_000)
+    heard = test.record("/audio/audio")
+    await test.advance(0.6)
+    assert np.array_equal(samples([each.data for each in heard])[:8_000], np.concatenate((TONE, TONE)))
+
+
+async def test_topics_are_in_the_nodes_namespace(test, wav):
+    start(test, RobotAudioCapture, namespace="/ears", file=wav)
+    heard = test.record("/ears/audio_stamped")
+    await test.advance(0.2)
+    assert len(heard) == 2
+
+
+async def test_other_forms_are_told_not_to_be_published(test, wav):
+    start(test, file=wav, format="mp3", sample_rate=44_100)
+    await test.settle()
+    warned = [each.text for each in test.log if each.level is LogLevel.WARN]
+    assert warned == [
+        "sound is published with sample_rate 16000, not 44100",
+        "sound is published with format wave, not mp3",
+    ]
+
+
+async def test_the_microphone(test, sounddevice):
+    node = start(test)
+    heard = test.record("/audio_stamped")
+    await test.settle()
+    (stream,) = sounddevice.OPEN
+    assert (stream.rate, stream.block, stream.started) == (16_000, 1_600, True)
+    for first in (0, 1_600):
+        stream.say(TONE[first : first + 1_600])
+    await test.settle()
+    assert np.array_equal(samples([each.audio.data for each in heard]), TONE[:3_200])
+    node.close()
+
+
+async def test_a_microphone_of_another_rate_is_resampled(test, sounddevice, monkeypatch):
+    monkeypatch.setattr(sounddevice, "RATES", {48_000})
+    node = start(test, device="microphone")
+    heard = test.record("/audio")
+    await test.settle()
+    (stream,) = sounddevice.OPEN
+    assert (stream.rate, stream.block) == (48_000, 4_800)
+    stream.say(np.full(9_600, 1_000))
+    await test.settle()
+    sound = samples([each.data for each in heard])
+    assert 3_100 < len(sound) <= 3_200
+    assert np.abs(sound[200:-200] - 1_000).max() <= 1
+    node.close()
+
+
+@pytest.mark.parametrize(
+    ("parameters", "code"),
+    [({"file": "nowhere.wav"}, "VOICE401"), ({"chunk": 0}, "VOICE414"), ({"device": "trumpet"}, "VOICE413")],
+)
+async def test_what_is_wrong_is_told(parameters, code, test, sounddevice):
+    with pytest.raises(LinkwrightError) as caught:
+        start(test, **parameters)
+    assert caught.value.diagnostics[0].code == code
+
+
+async def test_without_portaudio_the_browsers_microphone_is_named(test, tmp_path, monkeypatch):
+    (tmp_path / "sounddevice.py").write_text("raise OSError('PortAudio library not found')\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "sounddevice", raising=False)
+    with pytest.raises(LinkwrightError) as caught:
+        start(test)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "VOICE412"
+    assert "PortAudio library not found" in str(diagnostic.message)
+    assert "the browser" in str(diagnostic.hint)

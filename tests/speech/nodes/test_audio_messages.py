@@ -1,0 +1,88 @@
+"""Sound on topics is read in every form that audio_capture may publish."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import Time, get_message
+from linkwright.speech.nodes.audio_messages import AudioForm, AudioReader, audio_data, audio_info, audio_stamped
+
+TONE = np.sin(np.arange(1_600) * 2 * np.pi * 440 / 16_000) * 0.5
+
+
+def coded(values, sample_format):
+    """Values with full scale at 1 in a format of GStreamer's."""
+    kind, order = sample_format[0], ">" if sample_format.endswith("BE") else "<"
+    bits = int(sample_format[1:].rstrip("LBE"))
+    if kind == "F":
+        return values.astype(f"{order}f{bits // 8}").tobytes()
+    whole = np.rint(values * 2.0 ** (bits - 1)).astype(np.int64) + (2 ** (bits - 1) if kind == "U" else 0)
+    size = bits // 8
+    return b"".join(int(each).to_bytes(size, "big" if order == ">" else "little", signed=kind == "S") for each in whole)
+
+
+WHOLE = [f"{kind}{bits}{order}" for kind in "SU" for bits in (16, 24, 32) for order in ("LE", "BE")]
+
+
+@pytest.mark.parametrize("name", ["S8", "U8", "F32LE", "F32BE", "F64LE", "F64BE", *WHOLE])
+def test_every_sample_format(name):
+    samples = AudioReader(AudioForm(sample_format=name)).read(coded(TONE, name))
+    assert samples.dtype == np.int16
+    assert np.abs(samples - TONE * 32_768).max() <= (256 if name.endswith("8") else 1)
+
+
+def test_channels_are_averaged():
+    both = np.column_stack((TONE, -TONE / 2)).reshape(-1)
+    samples = AudioReader(AudioForm(channels=2)).read(coded(both, "S16LE"))
+    assert np.abs(samples - TONE / 4 * 32_768).max() <= 1
+
+
+@pytest.mark.parametrize("rate", [8_000, 44_100, 48_000])
+def test_rates_are_brought_to_that_of_the_engines(rate):
+    tone = np.sin(np.arange(rate) * 2 * np.pi * 440 / rate) * 0.5
+    samples = AudioReader(AudioForm(rate=rate)).read(coded(tone, "S16LE"))
+    expected = np.sin(np.arange(len(samples)) * 2 * np.pi * 440 / 16_000) * 0.5 * 32_768
+    assert 15_900 < len(samples) <= 16_000
+    assert np.abs(samples - expected)[200:-200].max() < 100
+
+
+@pytest.mark.parametrize("channels", [1, 2])
+def test_messages_may_cut_samples_anywhere(channels):
+    data = coded(np.column_stack((TONE,) * channels).reshape(-1), "S16LE")
+    reader = AudioReader(AudioForm(channels=channels))
+    pieces = [reader.read(data[at : at + 33]) for at in range(0, len(data), 33)]
+    assert np.array_equal(np.concatenate(pieces), AudioReader(AudioForm(channels=channels)).read(data))
+    assert np.abs(np.concatenate(pieces) - TONE * 32_768).max() <= 1
+
+
+def test_messages_as_they_are_published():
+    data = coded(TONE, "S16LE")
+    reader = AudioReader(AudioForm.of(audio_info(AudioForm())))
+    stamped = audio_stamped(data, Time(sec=3), "microphone")
+    assert (stamped.header.stamp.sec, stamped.header.frame_id) == (3, "microphone")
+    assert np.array_equal(reader.read(stamped.audio.data), reader.read(audio_data(data).data))
+    info = audio_info(AudioForm())
+    assert (info.channels, info.sample_rate, info.sample_format) == (1, 16_000, "S16LE")
+    assert (info.coding_format, info.bitrate) == ("wave", 256)
+
+
+@pytest.mark.parametrize(
+    ("changed", "word"),
+    [
+        ({"coding_format": "mp3"}, "mp3"),
+        ({"sample_format": "S17LE"}, "S17LE"),
+        ({"channels": 0}, "0 channels"),
+        ({"sample_rate": 7}, "7 Hz"),
+    ],
+)
+def test_what_is_not_read_is_told(changed, word):
+    info = get_message("audio_common_msgs/msg/AudioInfo")()
+    for name, value in {"channels": 1, "sample_rate": 16_000, "sample_format": "S16LE", **changed}.items():
+        setattr(info, name, value)
+    with pytest.raises(LinkwrightError) as caught:
+        AudioForm.of(info)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "VOICE411"
+    assert word in str(diagnostic.message)

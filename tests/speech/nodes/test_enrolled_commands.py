@@ -1,0 +1,96 @@
+"""From sound to velocities with the engine of enrolled words itself: audio messages in, Twist out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.speech.enrolled.enrolment import enrol
+from linkwright.speech.enrolled.words import Words
+from linkwright.speech.nodes.audio_messages import audio_stamped
+from linkwright.speech.sound.samples import BLOCK, RATE
+from tests.speech.nodes.fakes import Talk
+from tests.speech.voices import WORDS, say
+from tests.waiting import eventually
+
+AFTER = 0.8
+"""Seconds of silence before and after a word."""
+
+
+@pytest.fixture(scope="module")
+def words_file(tmp_path_factory):
+    words = Words()
+    for name, phones in WORDS.items():
+        for number in range(3):
+            said = say(phones, speed=0.95 + 0.05 * number, pitch=115 + 5 * number, seed=number)
+            assert enrol(words, name, said) == ()
+    path = tmp_path_factory.mktemp("voice") / "words.json"
+    words.write(path)
+    return path
+
+
+@pytest.fixture
+async def robot(stage, words_file):
+    talk = Talk(stage, engine="enrolled", words_file=str(words_file), open_listening=True)
+    yield talk
+    talk.running.close()
+    await stage.graph.settle()
+
+
+async def play(robot, samples):
+    """Publish sound as a microphone does, in blocks of 100 ms."""
+    for at in range(0, len(samples), BLOCK):
+        robot.sound.publish(
+            audio_stamped(samples[at : at + BLOCK].tobytes(), robot.stage.node.get_clock().now().to_msg())
+        )
+        await robot.stage.graph.settle()
+
+
+async def obeyed(robot, *commands):
+    """Wait until these are all that was done; the engine hears in a thread of its own."""
+    await eventually(lambda: len(robot.said["command"]) >= len(commands), what=lambda: robot.said)
+    assert robot.said["command"] == list(commands)
+    await robot.stage.graph.settle()
+
+
+def spoken(name):
+    return say(WORDS[name], speed=1.04, pitch=122, level=2000, silence=AFTER, seed=21)
+
+
+@pytest.mark.parametrize(
+    ("name", "speed"),
+    [
+        ("forward", (0.2, 0.0, 0.0)),
+        ("back", (-0.2, 0.0, 0.0)),
+        ("turn left", (0.0, 0.0, 0.6)),
+        ("turn right", (0.0, 0.0, -0.6)),
+    ],
+)
+async def test_an_enrolled_word_drives_the_robot(robot, name, speed):
+    await play(robot, spoken(name))
+    await eventually(lambda: robot.velocities)
+    assert robot.speed == speed
+    assert robot.said["text"] == [name]
+
+
+async def test_stop_is_done_300_ms_after_the_word(robot):
+    await play(robot, spoken("forward"))
+    await obeyed(robot, "forward")
+    sound = spoken("stop")
+    end = len(sound) - int(AFTER * RATE)
+    await play(robot, sound[: end + int(0.3 * RATE)])  # no more is heard: it is known by then
+    await obeyed(robot, "forward", "stop")
+    assert robot.speed == (0.0, 0.0, 0.0)
+
+
+async def test_noise_and_other_words_drive_nothing(robot):
+    noise = 300 * np.random.default_rng(22).normal(size=2 * RATE)
+    await play(robot, np.concatenate((noise.astype(np.int16), np.zeros(RATE, np.int16))))
+    for phones in ("mumi", "se.pifu", "moramifu"):
+        before = len(robot.said["text"])
+        await play(robot, say(phones, silence=AFTER, seed=23))
+        await eventually(lambda count=before: len(robot.said["text"]) > count, what=lambda: robot.said)
+    # What is heard in order is done in order: so this is the first command of all.
+    await play(robot, spoken("back"))
+    await obeyed(robot, "backward")
+    assert set(robot.said["text"]) == {"", "back"}

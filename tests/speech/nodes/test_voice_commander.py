@@ -1,0 +1,535 @@
+"""voice_commander: what is said becomes what the robot does."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import ClassVar
+
+import pytest
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.graph import ActionServer
+from linkwright.graph.actions.goal import CancelResponse, GoalEvent
+from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.messages import get_action, get_message, get_service
+from linkwright.speech.nodes.audio_messages import audio_stamped
+from tests.speech.nodes.fakes import STRING, final, partial
+from tests.waiting import eventually
+
+ODOMETRY = get_message("nav_msgs/msg/Odometry")
+
+
+def commands(tmp_path, text):
+    file = tmp_path / "commands.yaml"
+    file.write_text(text, encoding="utf-8")
+    return str(file)
+
+
+# --- driving -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "speed"),
+    [
+        ("forward", (0.2, 0.0, 0.0)),
+        ("后退", (-0.2, 0.0, 0.0)),
+        ("左转", (0.0, 0.0, 0.6)),
+        ("turn right", (0.0, 0.0, -0.6)),
+    ],
+)
+async def test_it_drives(stage, talk, text, speed):
+    robot = talk()
+    assert await robot.type(text) == text
+    assert robot.speed == speed
+    await stage.clock.advance(1.0)
+    assert robot.speed == speed
+    assert len(robot.velocities) > 10, "who obeys may want to hear of it again and again"
+    assert robot.said["text"] == [text]
+
+
+async def test_commands_replace_each_other_and_stop_ends_them(stage, talk):
+    robot = talk()
+    await robot.type("forward")
+    await robot.type("left")
+    assert robot.speed == (0.0, 0.0, 0.6)
+    await robot.type("停")
+    assert robot.speed == (0.0, 0.0, 0.0)
+    robot.velocities.clear()
+    await stage.clock.advance(2.0)
+    assert robot.velocities == []
+    assert robot.said["command"] == ["forward", "left", "stop"]
+
+
+async def test_nobody_says_anything_and_it_stops(stage, talk):
+    robot = talk(silence_timeout=3.0)
+    await robot.type("forward")
+    await stage.clock.advance(2.9)
+    assert robot.speed == (0.2, 0.0, 0.0)
+    await stage.clock.advance(0.2)
+    assert robot.speed == (0.0, 0.0, 0.0)
+    assert robot.said["response"][-1] == "I hear nothing, so I stop"
+
+
+def travelled(robot):
+    """Metres and radians that the velocities make, each for the 50 ms between them."""
+    return sum(velocity.linear.x for velocity in robot.velocities) * 0.05, sum(
+        velocity.angular.z for velocity in robot.velocities
+    ) * 0.05
+
+
+@pytest.mark.parametrize(
+    ("text", "distance", "angle"),
+    [
+        ("drive forward half a metre", 0.5, 0.0),
+        ("后退 一米", -1.0, 0.0),
+        ("左转九十度", 0.0, pi / 2),
+        ("转两圈", 0.0, 4 * pi),
+    ],
+)
+async def test_ways_without_odometry_are_speed_times_time(stage, talk, text, distance, angle):
+    robot = talk()
+    await robot.type(text)
+    await stage.clock.advance(40.0)
+    assert robot.speed == (0.0, 0.0, 0.0)
+    assert travelled(robot) == pytest.approx((distance, angle), abs=0.02)
+
+
+class Slipping:
+    """A robot whose wheels slip: it goes half as far as it is told."""
+
+    def __init__(self, stage, robot, part=0.5):
+        self.publisher = stage.node.create_publisher(ODOMETRY, "/odom", 10)
+        self.robot, self.part, self.x = robot, part, 0.0
+        stage.node.create_timer(0.02, self.move)
+
+    def move(self):
+        self.x += (self.robot.speed[0] if self.robot.velocities else 0.0) * 0.02 * self.part
+        message = ODOMETRY()
+        message.pose.pose.position.x = self.x
+        message.pose.pose.orientation.w = 1.0
+        self.publisher.publish(message)
+
+
+async def test_a_way_is_measured_by_odometry(stage, talk):
+    robot = talk()
+    body = Slipping(stage, robot)
+    await stage.clock.advance(0.1)
+    await robot.type("前进一点五米")
+    await stage.clock.advance(30.0)
+    assert robot.speed == (0.0, 0.0, 0.0)
+    assert body.x == pytest.approx(1.5, abs=0.02)
+
+
+async def test_who_is_stuck_stops_and_says_so(stage, talk):
+    robot = talk()
+    Slipping(stage, robot, part=0.0)
+    await stage.clock.advance(0.1)
+    await robot.type("forward one metre")
+    await stage.clock.advance(30.0)
+    assert robot.speed == (0.0, 0.0, 0.0)
+    assert robot.said["response"][-1] == "I am stuck, and stop"
+
+
+async def test_faster_slower_and_a_speed(talk):
+    robot = talk()
+    await robot.type("加速")
+    await robot.type("forward")
+    assert robot.speed[0] == pytest.approx(0.25)
+    await robot.type("slower")
+    await robot.type("forward")
+    assert robot.speed[0] == pytest.approx(0.2)
+    await robot.type("drive at half a metre per second")
+    await robot.type("forward")
+    assert robot.speed[0] == pytest.approx(0.5)
+    for _ in range(20):
+        await robot.type("faster")
+    await robot.type("forward")
+    assert robot.speed[0] == pytest.approx(0.8), "four times as fast, and no faster"
+
+
+async def test_it_stands_still_when_it_ends(stage, talk):
+    robot = talk()
+    await robot.type("forward")
+    robot.running.close()
+    await stage.graph.settle()
+    assert robot.speed == (0.0, 0.0, 0.0)
+
+
+# --- sound -----------------------------------------------------------------------------------------------------------
+
+
+async def test_the_engine_is_told_what_can_be_said(engine, talk, tmp_path):
+    robot = talk(engine="told", language="zh", words_file="/words.json", model=str(tmp_path))
+    await eventually(lambda: engine.made)
+    (options,) = engine.made
+    assert (options.language, options.model) == ("zh", tmp_path)
+    assert "左转九十度" in options.phrases
+    assert robot.said["text"] == []
+
+
+async def test_sound_counts_while_the_button_is_held(engine, talk):
+    robot = talk(engine="told")
+    await robot.say()
+    await robot.hold(True)
+    await robot.say(partial("for"), final("forward"))
+    assert robot.said["partial_text"] == ["for"]
+    assert robot.said["command"] == ["forward"]
+    assert robot.speed == (0.2, 0.0, 0.0)
+    await robot.hold(False)
+    await eventually(lambda: engine.finished)
+
+
+async def test_listening_may_be_open(engine, talk):
+    robot = talk(engine="told", open_listening=True)
+    await robot.say(final("forward"))
+    assert robot.said["command"] == ["forward"]
+
+
+async def test_what_is_uncertain_is_not_done(engine, talk):
+    robot = talk(engine="told", open_listening=True, confidence=0.7)
+    await robot.say(final("forward", 0.6))
+    await robot.say(final("", 0.9))
+    assert robot.said["command"] == []
+    assert robot.velocities == []
+
+
+@pytest.mark.parametrize("asked_for", [0.5, 0.8])
+async def test_who_held_the_button_is_told_what_was_heard_with_too_little_certainty(engine, talk, asked_for):
+    robot = talk(engine="told", confidence=asked_for, language="zh")
+    await robot.hold(True)
+    engine.says_at_end.append(final("前进", 0.6 * asked_for))
+    await robot.hold(False)
+    await eventually(lambda: robot.said["response"])
+    assert robot.said["response"] == ["我不确定听到的是“前进”，请再说一遍"]
+    assert robot.said["text"] == ["前进"]
+    assert robot.said["command"] == []
+
+
+async def test_of_what_is_hardly_a_word_nothing_is_said(engine, talk):
+    robot = talk(engine="told")
+    await robot.hold(True)
+    await robot.say(final("forward", 0.2), final("", 0.4))
+    assert robot.said["response"] == []
+
+
+async def test_who_listens_to_all_does_not_answer_what_is_uncertain_without_the_button(engine, talk):
+    robot = talk(engine="told", open_listening=True)
+    await robot.say(final("forward", 0.4))
+    assert robot.said["response"] == []
+    await robot.hold(True)
+    await robot.say(final("forward", 0.4, start=2.0))
+    assert robot.said["response"] == ["I am not sure that I heard 'forward': please repeat"]
+
+
+async def test_what_has_a_gap_is_asked_for_again_and_stop_is_done(engine, talk):
+    robot = talk(engine="told")
+    await robot.hold(True)
+    for each in range(5):
+        await robot.say(stamp=10.0 + 0.1 * each)
+    await robot.say(final("forward", start=-0.5), stamp=11.0)  # half a second is missing
+    assert robot.said["text"] == ["forward"]
+    assert robot.said["command"] == []
+    assert robot.said["response"] == ["I did not hear all of that: please repeat"]
+    await robot.say(final("forward", start=0.8), stamp=11.1)
+    assert robot.said["command"] == ["forward"]
+    for each in range(3):
+        await robot.say(stamp=11.2 + 0.1 * each)
+    await robot.say(final("stop", start=0.5), stamp=13.0)
+    assert robot.said["command"] == ["forward", "stop"]
+    assert robot.speed == (0.0, 0.0, 0.0)
+
+
+async def test_with_a_small_gap_it_is_done_if_it_is_certain_and_asked_for_again_if_nothing_was_understood(engine, talk):
+    robot = talk(engine="told")
+    await robot.hold(True)
+    for each in range(5):
+        await robot.say(stamp=10.0 + 0.1 * each)
+    await robot.say(final("forward"), final(""), stamp=10.6)  # a tenth of a second is missing
+    assert robot.said["command"] == ["forward"]
+    assert robot.said["response"][-1] == "I did not hear all of that: please repeat"
+
+
+async def test_the_next_press_of_the_button_has_no_gap_before_it(engine, talk):
+    robot = talk(engine="told")
+    await robot.hold(True)
+    for each in range(5):
+        await robot.say(stamp=10.0 + 0.1 * each)
+    await robot.hold(False)
+    await robot.hold(True)
+    await robot.say(final("forward", start=0.0), stamp=15.0)
+    assert robot.said["command"] == ["forward"]
+
+
+async def test_stop_is_done_from_what_is_heard_so_far_and_once(engine, talk):
+    robot = talk(engine="told", open_listening=True)
+    await robot.say(final("forward"))
+    await robot.say(partial("[unk] stop", start=2.0))
+    assert robot.speed == (0.0, 0.0, 0.0)
+    await robot.say(partial("stop", start=2.0), final("stop", start=2.0))
+    assert robot.said["command"] == ["forward", "stop"]
+
+
+async def test_a_stop_counts_again_when_the_robot_moves_again(engine, talk):
+    robot = talk(engine="told", open_listening=True)
+    for _ in range(2):
+        await robot.type("forward")
+        await robot.say(partial("stop"))
+        assert robot.speed == (0.0, 0.0, 0.0)
+
+
+async def test_after_a_stop_nothing_else_of_the_utterance_is_done(engine, talk):
+    robot = talk(engine="told", open_listening=True)
+    await robot.say(final("left"))
+    await robot.say(partial("stop"), final("forward"))
+    assert robot.said["command"] == ["left", "stop"]
+    await robot.hold(True)
+    await robot.say(partial("go to the stop"), final("go to the stop sign"))
+    assert robot.said["command"] == ["left", "stop", "stop", "go_to_object object=stop_sign"]
+
+
+async def test_it_is_told_why_an_engine_hears_nothing(engine, talk, said):
+    engine.trouble.append(Diagnostic("VOICE201", phrase("nothing is enrolled"), hint=phrase("enrol something")))
+    robot = talk(engine="told")
+    await eventually(lambda: said("WARN"))
+    assert said("WARN") == ["nothing is enrolled", "enrol something"]
+    assert not robot.running.finished.done()
+
+
+async def test_a_stop_that_is_uncertain_stops_a_robot_that_moves_and_tells_nobody_else(engine, talk):
+    robot = talk(engine="told", open_listening=True)
+    await robot.say(final("stop", 0.1))
+    assert robot.said["command"] == []
+    await robot.say(final("forward", start=2.0))
+    await robot.say(final("stop", 0.1, start=4.0))
+    assert robot.speed == (0.0, 0.0, 0.0)
+
+
+async def test_it_stops_when_the_microphone_is_gone(engine, stage, talk):
+    robot = talk(engine="told", open_listening=True)
+    await robot.say(final("forward"))
+    robot.mouth.destroy_node()
+    await stage.clock.advance(1.0)
+    assert robot.speed == (0.0, 0.0, 0.0)
+    assert robot.said["response"][-1] == "the audio source is gone, so I stop"
+
+
+async def test_an_engine_that_is_not_there_ends_the_node(engine, talk, said):
+    robot = talk(engine="tolt")
+    await eventually(robot.running.finished.done)
+    assert robot.running.finished.result() == 1
+    assert said("FATAL") == ["there is no speech engine 'tolt'", "did you mean 'told'?"]
+
+
+async def test_an_engine_that_fails_stops_the_robot_and_ends_the_node(engine, talk, said):
+    robot = talk(engine="told", open_listening=True)
+    await robot.say(final("forward"))
+    robot.sound.publish(audio_stamped(b"\xff\x7f", robot.stage.node.get_clock().now().to_msg()))
+    await eventually(robot.running.finished.done)
+    await robot.stage.graph.settle()
+    assert robot.speed == (0.0, 0.0, 0.0)
+    assert said("FATAL") == ["the speech engine failed: KeyError: 32767"]
+
+
+# --- others ----------------------------------------------------------------------------------------------------------
+
+QUESTION = """
+commands:
+  reset: {phrases: {en: reset, zh: 复位}, confirm: true,
+          publish: {topic: /reset, type: std_msgs/msg/String, message: {data: now}}}
+  forward: {phrases: forward, drive: {x: 1}}
+"yes": "yes"
+"no": "no"
+"""
+
+
+@pytest.mark.parametrize(("answer", "count"), [("yes", 1), ("no", 0), ("forward", 0), (None, 0)])
+async def test_a_question_is_answered_first(stage, talk, tmp_path, answer, count):
+    robot = talk(commands_file=commands(tmp_path, QUESTION))
+    reset = []
+    stage.node.create_subscription(STRING, "/reset", reset.append, 10)
+    assert await robot.type("reset") == "are you sure?"
+    if answer:
+        await robot.type(answer)
+    else:
+        await stage.clock.advance(11.0)
+        assert robot.said["response"][-1] == "there is no answer, so I leave it"
+    assert len(reset) == count
+    await robot.type("yes")
+    assert len(reset) == count
+
+
+async def test_answers_are_in_the_language_of_the_node_until_somebody_speaks(talk):
+    robot = talk(language="zh")
+    assert await robot.type("唱歌") == "我没听懂“唱歌”"
+
+
+async def test_answers_are_in_the_language_that_was_spoken_last(talk, tmp_path):
+    told = """
+commands:
+  stop: {phrases: {en: stop, zh: 停}, stop: true, response: {en: stopped, zh: 停下了}}
+  forward: {phrases: {en: [forward], zh: [前进]}, drive: {x: 1}, response: {en: I drive, zh: 我走}}
+"""
+    robot = talk(commands_file=commands(tmp_path, told))
+    assert await robot.type("前进") == "我走"
+    assert await robot.type("sing") == "我没听懂“sing”"
+    assert await robot.type("停") == "停下了"
+    assert await robot.type("forward") == "I drive"
+    assert await robot.type("stop") == "stopped"
+
+
+PLACES = """
+places: {kitchen: {x: 1.5, y: -2, yaw: 3.14159, names: {en: kitchen, zh: 厨房}}}
+commands:
+  go: {phrases: {en: "go to the {place}", zh: "去{place}"}, go_to: "{place}"}
+  stop: {phrases: [stop, 停], stop: true}
+  forward: {phrases: forward, drive: {x: 1}}
+"""
+
+
+class Navigator:
+    """A server of NavigateToPose that goes on until it is told that it is there."""
+
+    def __init__(self, stage):
+        self.goals, self.canceled = [], 0
+        kind = get_action("nav2_msgs/action/NavigateToPose")
+        self.result = kind.Result
+        self.server = ActionServer(
+            stage.node,
+            kind,
+            "navigate_to_pose",
+            lambda goal: None,
+            handle_accepted_callback=self.accept,
+            cancel_callback=self.cancel,
+        )
+
+    def accept(self, goal):
+        goal.update(GoalEvent.EXECUTE)
+        self.goals.append(goal)
+
+    def cancel(self, goal):
+        self.canceled += 1
+        return CancelResponse.ACCEPT
+
+
+async def test_it_goes_to_places_and_says_when_it_is_there(stage, talk, tmp_path):
+    navigator = Navigator(stage)
+    robot = talk(commands_file=commands(tmp_path, PLACES))
+    await stage.graph.settle()
+    assert await robot.type("去厨房") == "去厨房"
+    (goal,) = navigator.goals
+    pose = goal.request.pose
+    assert (pose.header.frame_id, pose.pose.position.x, pose.pose.position.y) == ("map", 1.5, -2.0)
+    assert pose.pose.orientation.z == pytest.approx(1.0)
+    assert robot.said["command"] == ["go place=kitchen"]
+    goal.succeed(navigator.result())
+    await stage.graph.settle()
+    assert robot.said["response"][-1] == "完成了"
+
+
+@pytest.mark.parametrize("text", ["stop", "forward"])
+async def test_goals_are_canceled(stage, talk, tmp_path, text):
+    navigator = Navigator(stage)
+    robot = talk(commands_file=commands(tmp_path, PLACES))
+    await stage.graph.settle()
+    await robot.type("go to the kitchen")
+    await robot.type(text)
+    assert navigator.canceled >= 1
+
+
+async def test_without_a_server_it_says_so(talk, tmp_path):
+    robot = talk(commands_file=commands(tmp_path, PLACES))
+    assert await robot.type("go to the kitchen") == "I cannot: no node serves 'navigate_to_pose'"
+
+
+async def test_what_a_service_answers_is_said(stage, talk):
+    kind = get_service("std_srvs/srv/Trigger")
+    stage.node.create_service(kind, "/vision/describe/en", lambda request, response: kind.Response(True, "a red ball"))
+    robot = talk()
+    await stage.graph.settle()
+    await robot.type("what do you see")
+    await eventually(lambda: robot.said["response"][-1] == "a red ball")
+
+
+def clients(stage):
+    return [endpoint.name for endpoint in stage.graph.endpoints() if endpoint.kind is EndpointKind.CLIENT]
+
+
+async def test_a_service_that_only_some_commands_need_is_not_waited_for(stage, talk):
+    robot = talk()
+    await stage.graph.settle()
+    assert [client for client in clients(stage) if "/_action/" not in client] == []
+    assert await robot.type("what do you see") == "I cannot: no node serves '/vision/describe/en'"
+    kind = get_service("std_srvs/srv/Trigger")
+    stage.node.create_service(kind, "/vision/describe/en", lambda request, response: kind.Response(True, "a red ball"))
+    await robot.type("what do you see")
+    await eventually(lambda: robot.said["response"][-1] == "a red ball")
+    assert "/vision/describe/en" not in clients(stage)
+
+
+async def test_a_service_of_another_type_is_not_called(stage, talk):
+    stage.node.create_service("std_srvs/srv/Empty", "/vision/describe/en", lambda request, response: response)
+    assert await talk().type("what do you see") == "I cannot: no node serves '/vision/describe/en'"
+
+
+LAUNCH = """
+commands:
+  follow: {phrases: "follow the {object}",
+           launch: {package: p, file: f.launch.py, arguments: {target: "{object}", k: 2}}}
+  stop: {phrases: stop, stop: true}
+objects: {red ball: {en: red ball}}
+"""
+
+
+class Launched:
+    """A process that ends when it is interrupted."""
+
+    started: ClassVar[list[Launched]] = []
+
+    def __init__(self, command, **options):
+        self.command, self.signals = command, []
+        Launched.started.append(self)
+
+    def poll(self):
+        return 0 if self.signals else None
+
+    def wait(self, timeout=None):
+        return 0
+
+    def send_signal(self, number):
+        self.signals.append(number)
+
+    def terminate(self):
+        self.signals.append(15)
+
+
+async def test_a_launch_file_is_started_without_a_shell_and_ended_by_stop(talk, tmp_path, monkeypatch):
+    Launched.started.clear()
+    monkeypatch.setattr("linkwright.speech.nodes.requests.subprocess.Popen", Launched)
+    robot = talk(commands_file=commands(tmp_path, LAUNCH))
+    await robot.type("follow the red ball")
+    (process,) = Launched.started
+    assert process.command[-6:] == ["linkwright", "launch", "p", "f.launch.py", "target:=red ball", "k:=2"]
+    assert not process.signals
+    await robot.type("stop")
+    assert len(process.signals) == 1
+
+
+async def test_who_drives_to_objects_is_told_where_and_to_stop(stage, talk):
+    heard = []
+    stage.node.create_subscription(STRING, "/vision/go_to/en", lambda message: heard.append(message.data), 10)
+    stage.node.create_subscription(STRING, "/vision/go_to/zh", lambda message: heard.append(("zh", message.data)), 10)
+    stage.node.create_subscription("std_msgs/msg/Empty", "/vision/stop", lambda message: heard.append("stop"), 10)
+    robot = talk()
+    await robot.type("forward")
+    await robot.type("go to the red ball")
+    assert robot.speed == (0.0, 0.0, 0.0)
+    await robot.type("stop")
+    await robot.type("去红球那里")
+    assert heard == ["stop", "red ball", "stop", ("zh", "red ball")]
+
+
+async def test_a_file_of_commands_that_is_wrong_ends_it(talk, tmp_path, said):
+    with pytest.raises(LinkwrightError) as caught:
+        talk(commands_file=commands(tmp_path, "commands: {a: {phrases: b}}"))
+    assert caught.value.diagnostics[0].code == "VOICE302"
+    assert said("FATAL") == ["the command 'a' does nothing"]

@@ -1,0 +1,158 @@
+"""mbot in an empty world with red balls, and the nodes that find them, in one thread and in lock-step."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from linkwright.geometry.single import compose, invert
+from linkwright.messages import Time, get_message
+from linkwright.nodes import NodeOptions
+from linkwright.testing import SteppedSimulation
+from linkwright.vision.nodes.detect_3d_node import Detect3DNode
+from linkwright.vision.nodes.object_seeker import ObjectSeeker
+from linkwright.vision.nodes.tracking_node import TrackingNode
+from linkwright.vision.places.camera import camera_model
+from tests.places import GAZEBO_PACKAGE
+from tests.vision.nodes.red_things import ColourDetector, detection
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
+RADIUS = 0.15
+_BALL = """<sdf version="1.6"><model name="ball"><link name="link">
+  <inertial><mass>0.5</mass><inertia><ixx>0.0075</ixx><iyy>0.0075</iyy><izz>0.0075</izz></inertia></inertial>
+  <collision name="ball"><geometry><sphere><radius>0.15</radius></sphere></geometry></collision>
+  <visual name="ball"><geometry><sphere><radius>0.15</radius></sphere></geometry>
+  <material><ambient>0.78 0.05 0.06 1</ambient><diffuse>0.78 0.05 0.06 1</diffuse></material></visual>
+</link></model></sdf>"""
+_SIMULATED = {"use_sim_time": True}
+_FOCAL, _WIDTH, _HEIGHT = 381.36, 640, 480
+_IMAGE_PERIOD = 0.1
+
+
+class SeekingRobot(SteppedSimulation):
+    """mbot, and a ball.
+
+    Args:
+        folder: for the model of the ball.
+        ball: where it lies, metres.
+        images: whether a camera sees it; else its boxes are worked out, which is much quicker.
+        laser: whether there is one.
+        seeker: parameters of the seeker.
+        object: the class that the ball is found as.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        ball: tuple[float, float],
+        *,
+        images: bool = False,
+        laser: bool = False,
+        seeker: dict[str, Any] | None = None,
+        thing: str = "ball",
+    ) -> None:
+        arguments = {"camera": True, "laser": laser}
+        world = GAZEBO_PACKAGE / "worlds" / "empty.world"
+        super().__init__(world, ROBOT, arguments=arguments, robot_state_publisher=True, period=0.02)
+        self._model = folder / "ball.sdf"
+        self._model.write_text(_BALL)
+        self._ball, self._images, self._seeker = ball, images, seeker or {}
+        self._thing = thing
+        self._visible = True
+
+    def __enter__(self) -> Self:
+        super().__enter__()
+        self.put_ball(*self._ball)
+        where = {"target_frame": "odom", "ground_frame": "base_footprint", **_SIMULATED}
+        names = [("detections", "tracking"), ("camera_info", "/camera/camera_info")]
+        TrackingNode(self.graph, NodeOptions(namespace="/yolo", parameters=_SIMULATED))
+        Detect3DNode(self.graph, NodeOptions(namespace="/yolo", parameters=where, remappings=names))
+        self.seeker = ObjectSeeker(
+            self.graph,
+            NodeOptions(
+                parameters={**_SIMULATED, **self._seeker},
+                remappings=[
+                    ("tracking", "/yolo/tracking"),
+                    ("detections_3d", "/yolo/detections_3d"),
+                    ("image_raw", "/camera/image_raw" if self._images else "/nothing"),
+                ],
+            ),
+        )
+        self.said_messages = self.record("/voice/response")
+        self.commands = self.record("/cmd_vel")
+        self.places = self.record("/yolo/detections_3d")
+        if self._images:
+            ColourDetector(self.graph)
+        else:
+            self.detector = self.node.create_timer(_IMAGE_PERIOD, self._detect)
+            self._detections = self.node.create_publisher(
+                get_message("vision_msgs/msg/Detection2DArray"), "/yolo/detections", 10
+            )
+            self._info = self.node.create_publisher(
+                get_message("sensor_msgs/msg/CameraInfo"), "/camera/camera_info", 10
+            )
+            self._numbers = np.random.default_rng(3)
+        self.advance(0.5)
+        return self
+
+    def put_ball(self, x: float, y: float) -> None:
+        """Put a ball into the world."""
+        self.spawn(self._model, "ball", pose=(x, y, RADIUS, 0.0, 0.0, 0.0))
+
+    def hide(self) -> None:
+        """Nobody sees the ball any more."""
+        self._visible = False
+
+    def tell(self, topic: str, text: str) -> None:
+        """Publish a text."""
+        self.publish(topic, get_message("std_msgs/msg/String")(data=text))
+
+    def tell_to_stop(self) -> None:
+        """What ends all seeking."""
+        self.publish("/vision/stop", get_message("std_msgs/msg/Empty")())
+
+    def said(self) -> list[str]:
+        """What the robot has said."""
+        return [said_message.data for said_message in self.said_messages]
+
+    def go_on_until_said(self, word: str, seconds: float = 60.0) -> bool:
+        """Let time pass until the robot says something with a word in it."""
+        for _ in range(round(seconds / 0.5)):
+            self.advance(0.5)
+            if any(word in text for text in self.said()):
+                return True
+        return False
+
+    def distance(self) -> float:
+        """Between the middles of the robot and of the ball, metres."""
+        x, y, *_ = self.robot_pose()
+        ball = self.simulation.model_pose("ball")
+        return math.dist((x, y), ball[:2])
+
+    def _detect(self) -> None:
+        """The box of the ball, as a detector would see it: give or take a pixel."""
+        header = get_message("std_msgs/msg/Header")(frame_id="camera_optical_frame")
+        now_ns = self.simulation.time
+        header.stamp = Time(*divmod(now_ns, 10**9))
+        info = get_message("sensor_msgs/msg/CameraInfo")(header=header, width=_WIDTH, height=_HEIGHT)
+        info.k = [_FOCAL, 0.0, 319.5, 0.0, _FOCAL, 239.5, 0.0, 0.0, 1.0]
+        self._info.publish(info)
+        array = get_message("vision_msgs/msg/Detection2DArray")(header=header)
+        x, y, z, *_ = compose(invert(compose(self.robot_pose(), _CAMERA)), self.simulation.model_pose("ball"))
+        camera = camera_model(_WIDTH, _HEIGHT, info.k)
+        if self._visible and x > RADIUS:
+            corners = np.array([[-y - RADIUS, -z - RADIUS, x], [-y + RADIUS, -z + RADIUS, x]])
+            pixels = camera.pixels(corners).ravel() + self._numbers.normal(0, 0.7, 4)
+            left, top, right, bottom = np.clip(pixels, 0, [_WIDTH, _HEIGHT] * 2)
+            if right - left > 5 and bottom - top > 5:
+                array.detections.append(detection(header, left, top, right, bottom, self._thing))
+        self._detections.publish(array)
+
+
+_CAMERA = (0.17, 0.0, 0.21, 0.0, 0.0, 0.0, 1.0)

@@ -1,0 +1,178 @@
+"""detect_3d_node: boxes in images become boxes in metres."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.graph import STATIC_TF_PUBLISHER_QOS
+from linkwright.messages import TFMessage, Time, TransformBatch, get_message
+from linkwright.nodes import NodeOptions
+from linkwright.testing import SteppedGraph
+from linkwright.vision.nodes.detect_3d_node import Detect3DNode, YoloDetect3DNode
+from tests.vision.nodes.red_things import detection, yolo_detection
+
+NOW = Time.from_nanoseconds(10**9)
+
+
+@pytest.fixture
+def test():
+    with SteppedGraph() as graph:
+        yield graph
+
+
+def start(test, kind=Detect3DNode, **parameters):
+    node = kind(test.graph, NodeOptions(parameters=parameters))
+    found = test.record("/detections_3d")
+    markers = test.record("/markers")
+    test.settle()
+    # A camera that looks forward, half a metre above the ground.
+    batch = TransformBatch(("base_link",), ("camera",), 0, np.array([[0.1, 0.0, 0.5, -0.5, 0.5, -0.5, 0.5]]))
+    test.publish("/tf_static", TFMessage(batch=batch), STATIC_TF_PUBLISHER_QOS)
+    test.settle()
+    return node, found, markers
+
+
+def header(frame="camera", stamp=NOW):
+    return get_message("std_msgs/msg/Header")(frame_id=frame, stamp=stamp)
+
+
+def camera(test, topic, width=640, height=480, **more):
+    info = get_message("sensor_msgs/msg/CameraInfo")(header=header(), width=width, height=height, **more)
+    info.k = [500.0, 0.0, width / 2 - 0.5, 0.0, 500.0, height / 2 - 0.5, 0.0, 0.0, 1.0]
+    test.publish(topic, info)
+    test.settle()
+
+
+def depth(test, values, encoding="32FC1", **more):
+    rows = np.ascontiguousarray(values, "<f4" if encoding == "32FC1" else "<u2")
+    image = get_message("sensor_msgs/msg/Image")(header=header(**more), encoding=encoding)
+    image.height, image.width = rows.shape
+    image.step, image.data = rows.strides[0], np.frombuffer(rows.tobytes(), np.uint8)
+    test.publish("/depth_image", image)
+    test.settle()
+
+
+def boxes(test, *given, frame="camera"):
+    array = get_message("vision_msgs/msg/Detection2DArray")(header=header(frame))
+    array.detections = [detection(array.header, *box, "ball") for box in given]
+    for number, each in enumerate(array.detections):
+        each.id = str(number + 7)
+    test.publish("/detections", array)
+    test.settle()
+
+
+WALL = np.full((480, 640), 5.0)
+WALL[220:260, 300:340] = 2.0
+BOX = (300.0, 220.0, 340.0, 260.0)
+
+
+def said(test):
+    return [record.text for record in test.log if record.level.name == "WARN"]
+
+
+@pytest.mark.parametrize(
+    ("encoding", "factor", "divisor"), [("32FC1", 1.0, 1000), ("16UC1", 1000.0, 1000), ("16UC1", 5000.0, 5000)]
+)
+def test_a_depth_image_gives_places_in_the_target_frame(test, encoding, factor, divisor):
+    _, found, markers = start(test, depth_image_units_divisor=divisor)
+    camera(test, "/depth_info")
+    depth(test, WALL * factor, encoding)
+    boxes(test, BOX)
+    (each,) = found.last.detections
+    at, size = each.bbox.center.position, each.bbox.size
+    assert (at.x, at.y, at.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
+    assert (size.y, size.z) == pytest.approx((0.16, 0.16), abs=0.01)
+    assert found.last.header.frame_id == each.header.frame_id == "base_link"
+    assert each.id == "7"
+    assert each.results[0].hypothesis.class_id == "ball"
+    assert each.results[0].pose.pose.position.x == at.x
+    turn = each.bbox.center.orientation
+    assert abs(turn.w) == pytest.approx(1.0), "x of the box is along the view, z is up"
+    _, box, label = markers.last.markers
+    assert (box.type, box.scale.y) == (box.CUBE, size.y)
+    assert (label.type, label.text) == (label.TEXT_VIEW_FACING, "ball 7 2.0 m")
+
+
+def test_a_depth_image_of_half_the_size(test):
+    _, found, _ = start(test)
+    camera(test, "/camera_info")
+    camera(test, "/depth_info", 320, 240)
+    depth(test, WALL[::2, ::2])
+    boxes(test, BOX)
+    assert found.last.detections[0].bbox.center.position.x == pytest.approx(2.1, abs=0.02)
+
+
+def test_without_depth_things_are_where_they_stand_on_the_ground(test):
+    _, found, _ = start(test, ground_frame="base_link")
+    camera(test, "/camera_info")
+    boxes(test, (295.0, 320.0, 345.0, 365.0), (300.0, 100.0, 340.0, 140.0))
+    (each,) = found.last.detections
+    assert each.id == "7", "the other one is above the horizon"
+    assert each.bbox.center.position.x == pytest.approx(2.1, abs=0.02)
+    assert each.bbox.center.position.z == pytest.approx(0.09, abs=0.02)
+    assert said(test) == []
+
+
+def test_where_there_is_no_depth_in_the_box_the_ground_counts(test):
+    _, found, _ = start(test, ground_frame="base_link")
+    camera(test, "/camera_info")
+    depth(test, np.full((480, 640), np.nan))
+    boxes(test, (295.0, 320.0, 345.0, 365.0))
+    assert found.last.detections[0].bbox.center.position.x == pytest.approx(2.1, abs=0.02)
+
+
+def test_nothing_is_found_and_it_is_said(test):
+    _, found, markers = start(test)
+    boxes(test)
+    assert found.last.detections == []
+    assert [each.action for each in markers.last.markers] == [markers.last.markers[0].DELETEALL]
+
+
+def test_what_is_missing_is_named(test):
+    _, found, _ = start(test)
+    boxes(test, BOX)
+    assert said(test) == ["detections have no place: no camera_info has arrived"]
+    camera(test, "/camera_info")
+    test.advance(6.0)
+    boxes(test, BOX)
+    assert said(test)[-1].endswith("no depth image has arrived with a stamp near that of the detections")
+    depth(test, WALL, frame="elsewhere")
+    test.advance(6.0)
+    boxes(test, BOX)
+    assert "must be registered" in said(test)[-1]
+    test.advance(6.0)
+    boxes(test, BOX, frame="nowhere")
+    assert "nowhere" in said(test)[-1]
+    test.advance(6.0)
+    depth(test, WALL, frame="camera", stamp=Time.from_nanoseconds(5 * 10**9))
+    boxes(test, BOX)
+    assert len(found) == 5
+    assert all(message.detections == [] for message in found)
+
+
+def test_a_lens_that_is_not_known_is_said(test):
+    start(test)
+    camera(test, "/camera_info", distortion_model="equidistant", d=[0.1, 0.0, 0.0, 0.0])
+    assert "equidistant" in said(test)[-1]
+
+
+def test_as_yolo_ros_with_its_messages_and_parameters(test):
+    parameters = {"maximum_detection_threshold": 0.3, "depth_image_reliability": 2, "depth_info_reliability": 2}
+    _, found, markers = start(test, YoloDetect3DNode, **parameters)
+    camera(test, "/depth_info")
+    depth(test, WALL)
+    array = get_message("yolo_msgs/msg/DetectionArray")(header=header())
+    array.detections = [yolo_detection(*BOX, "ball", 0.9)]
+    array.detections[0].id = "7"
+    test.publish("/detections", array)
+    test.settle()
+    (each,) = found.last.detections
+    at, size = each.bbox3d.center.position, each.bbox3d.size
+    assert (at.x, at.y, at.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
+    assert (size.y, size.z) == pytest.approx((0.16, 0.16), abs=0.01)
+    assert found.last.header.frame_id == each.bbox3d.frame_id == "base_link"
+    assert (each.id, each.class_name, each.bbox.center.position.x) == ("7", "ball", 320.0)
+    assert array.detections[0].bbox3d.frame_id == "", "what others hear, too, stays as it is"
+    _, box, label = markers.last.markers
+    assert (box.scale.y, label.text) == (size.y, "ball 7 2.0 m")

@@ -1,0 +1,467 @@
+"""The node that finds objects in images, under all of its names."""
+
+from __future__ import annotations
+
+import threading
+from io import BytesIO
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.graph import LogLevel, Parameter, QoSProfile, ReliabilityPolicy
+from linkwright.messages import Time, get_message, get_service
+from linkwright.nodes import NodeOptions
+from linkwright.testing.stepped import AsyncSteppedGraph
+from linkwright.vision.detector import Detector
+from linkwright.vision.nodes import detector
+from linkwright.vision.nodes.detector import (
+    DarknetRosNode,
+    DetectorNode,
+    YoloRosNode,
+    Yolov5Ros2Node,
+    Yolov5RosNode,
+)
+from tests.vision.detectors.networks import columns
+from tests.waiting import SECONDS, eventually, is_waiting, wait_until
+
+
+@pytest.fixture
+async def test():
+    async with AsyncSteppedGraph() as graph:
+        yield graph
+
+
+@pytest.fixture
+def start(test):
+    running = []
+
+    async def begin(kind=DetectorNode, remappings=(), namespace="/yolo", loads=True, **parameters):
+        options = NodeOptions(namespace=namespace, parameters=parameters, remappings=list(remappings))
+        running.append(kind(test.graph, options))
+        if loads:
+            await eventually(lambda: running[-1].loaded.done() or running[-1].finished.done())
+        return running[-1]
+
+    yield begin
+    for each in running:
+        each.close()
+
+
+def scene(encoding="rgb8"):
+    pixels = np.full((120, 160, 3), 150, np.uint8)
+    pixels[40:80, 100:130] = (20, 60, 200)
+    pixels[40:80, 20:60] = (200, 20, 30)
+    return np.ascontiguousarray(pixels[:, :, ::-1]) if encoding == "bgr8" else pixels
+
+
+def image(encoding="rgb8", seconds=7):
+    pixels = scene(encoding)
+    message = get_message("sensor_msgs/msg/Image")(height=120, width=160, encoding=encoding, step=480)
+    message.header.stamp, message.header.frame_id = Time.from_nanoseconds(seconds * 10**9), "camera"
+    message.data = pixels.reshape(-1)
+    return message
+
+
+def compressed():
+    file = BytesIO()
+    Image.fromarray(scene()).save(file, "PNG")
+    message = get_message("sensor_msgs/msg/CompressedImage")(format="rgb8; png compressed rgb8", data=file.getvalue())
+    message.header.frame_id = "camera"
+    return message
+
+
+async def seen(test, recording, topic, message):
+    """What is published for an image."""
+    before = len(recording)
+    test.publish(topic, message)
+    await test.settle()
+
+    def came():
+        return len(recording) > before
+
+    await eventually(came)
+    return recording.last
+
+
+def classes(message):
+    return sorted(detection.results[0].hypothesis.class_id for detection in message.detections)
+
+
+@pytest.mark.parametrize("encoding", ["rgb8", "bgr8"])
+async def test_detections_have_names_centres_sizes_and_the_header_of_the_image(test, start, encoding):
+    await start(model="colours")
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    message = await seen(test, recording, "/yolo/image_raw", image(encoding))
+    assert (message.header.stamp.sec, message.header.frame_id) == (7, "camera")
+    assert classes(message) == ["blue", "red"]
+    (blue,) = [detection for detection in message.detections if detection.results[0].hypothesis.class_id == "blue"]
+    assert (blue.bbox.center.position.x, blue.bbox.center.position.y) == (115.0, 60.0)
+    assert (blue.bbox.size_x, blue.bbox.size_y, blue.bbox.center.theta) == (30.0, 40.0, 0.0)
+    assert blue.results[0].hypothesis.score == pytest.approx(1.0)
+    assert blue.header == message.header
+
+
+async def test_compressed_images(test, start):
+    await start(model="colours", input_image_topic="/camera/image_raw/compressed")
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    message = await seen(test, recording, "/camera/image_raw/compressed", compressed())
+    assert classes(message) == ["blue", "red"]
+
+
+async def test_a_network(test, start, tmp_path):
+    names = {"names": "{0: 'ball', 1: 'box', 2: 'cat'}"}
+    await start(model=str(columns(tmp_path / "v8.onnx", metadata=names)), threshold=0.6, max_det=5)
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    message = await seen(test, recording, "/yolo/image_raw", image())
+    assert len(message.detections) == 5
+    assert set(classes(message)) <= {"ball", "box", "cat"}
+
+
+async def test_the_image_with_boxes_is_made_when_somebody_wants_it(test, start):
+    await start(model="colours")
+    recording = test.record("/yolo/debug_image")
+    await test.settle()
+    message = await seen(test, recording, "/yolo/image_raw", image())
+    assert (message.encoding, message.width, message.height, message.step) == ("rgb8", 160, 120, 480)
+    assert message.header.frame_id == "camera"
+    assert (np.frombuffer(bytes(message.data), np.uint8) != scene().reshape(-1)).any()
+
+
+async def test_images_are_taken_only_while_somebody_listens(test, start):
+    await start(model="colours")
+    await test.settle()
+    assert test.graph.count_subscribers("/yolo/image_raw") == 0
+    test.record("/yolo/detections")
+    await test.settle()
+    assert test.graph.count_subscribers("/yolo/image_raw") == 1
+
+
+async def test_limits_change_while_it_runs(test, start):
+    node = (await start(model="colours")).node
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    for name, value, expected in [
+        ("classes", ["red"], ["red"]),
+        ("classes", [""], ["blue", "red"]),
+        ("max_det", 1, ["red"]),
+    ]:
+        (result,) = node.set_parameters([Parameter(name, value=value)])
+        assert result.successful, result.reason
+        assert classes(await seen(test, recording, "/yolo/image_raw", image())) == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("threshold", 1.5, ""),
+        ("max_det", 0, "cannot be '0'"),
+        ("classes", ["blu"], "did you mean 'blue'?"),
+        ("model", "aruco", ""),
+    ],
+)
+async def test_values_that_cannot_be_are_refused(test, start, name, value, words):
+    node = (await start(model="colours")).node
+    (result,) = node.set_parameters([Parameter(name, value=value)])
+    assert not result.successful
+    assert words in result.reason
+
+
+async def test_services_enable_and_set_classes(test, start):
+    await start(model="colours")
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    switch, choose = get_service("std_srvs/srv/SetBool"), get_service("yolo_msgs/srv/SetClasses")
+    assert (await test.call("/yolo/set_classes", choose.Request(classes=["red"]))).success
+    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["red"]
+    assert "did you mean 'red'?" in (await test.call("/yolo/set_classes", choose.Request(classes=["rd"]))).message
+    assert (await test.call("/yolo/set_classes", choose.Request(classes=[]))).success
+    assert (await test.call("/yolo/enable", switch.Request(data=False))).success
+    before = len(recording)
+    test.publish("/yolo/image_raw", image(seconds=8))
+    await test.settle()
+    assert (await test.call("/yolo/enable", switch.Request(data=True))).success
+    message = await seen(test, recording, "/yolo/image_raw", image(seconds=9))
+    assert (message.header.stamp.sec, len(recording) - before) == (9, 1)
+
+
+async def test_no_more_images_a_second_than_wanted(test, start):
+    await start(model="colours", max_rate=10.0)
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    await seen(test, recording, "/yolo/image_raw", image(seconds=1))
+    await test.advance(0.05)
+    test.publish("/yolo/image_raw", image(seconds=2))
+    await test.settle()
+    await test.advance(0.05)
+    message = await seen(test, recording, "/yolo/image_raw", image(seconds=3))
+    assert (message.header.stamp.sec, len(recording)) == (3, 2)
+
+
+async def test_a_broken_image_is_told_of_and_the_next_one_looked_at(test, start):
+    await start(model="colours")
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    broken = image()
+    broken.encoding = "rainbow8"
+    test.publish("/yolo/image_raw", broken)
+    await test.settle()
+    await eventually(lambda: any("rainbow8" in record.text for record in test.log))
+    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
+
+
+async def test_colours_of_ones_own(test, start):
+    await start(model="colours", colours={"sky": [95, 110, 50, 130, 255, 255]}, least_area=10.0)
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["sky"]
+
+
+async def test_as_yolo_ros_with_its_messages_and_its_older_topic(test, start):
+    await start(YoloRosNode, model="colours", remappings=[("image_raw", "/camera/rgb/image_raw")])
+    recording, debug_images = test.record("/yolo/detections"), test.record("/yolo/dbg_image")
+    await test.settle()
+    message = await seen(test, recording, "/camera/rgb/image_raw", image())
+    (blue,) = [detection for detection in message.detections if detection.class_name == "blue"]
+    assert (blue.class_id, blue.score) == (4, pytest.approx(1.0))
+    assert (blue.bbox.center.position.x, blue.bbox.size.y) == (115.0, 40.0)
+    await eventually(lambda: len(debug_images) == 1)
+
+
+@pytest.mark.parametrize(
+    ("kind", "parameters", "topic", "output"),
+    [
+        (
+            Yolov5RosNode,
+            {"weights": "colours", "confidence_threshold": 0.5, "input_image_topic": "/image", "output_topic": "/out"},
+            "/image",
+            "/out",
+        ),
+        (Yolov5Ros2Node, {"model": "colours", "image_topic": "/camera/image_raw"}, "/camera/image_raw", "/yolo_result"),
+        (
+            DarknetRosNode,
+            {"network": {"weights": "colours"}, "detection": {"threshold": 0.5, "nms_threshold": 0.4}},
+            "/detector_node/images",
+            "/detector_node/detections",
+        ),
+    ],
+)
+async def test_as_other_packages_name_things(test, start, kind, parameters, topic, output):
+    await start(kind, namespace="/", **parameters)
+    recording = test.record(output)
+    await test.settle()
+    assert classes(await seen(test, recording, topic, image())) == ["blue", "red"]
+    assert not any("no parameter" in record.text or "not read" in record.text for record in test.log)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "code"),
+    [
+        ({"model": "colours", "image_transport": "theora"}, "NODE433"),
+        ({"model": "colours", "image_reliability": 9}, "NODE433"),
+        ({"model": "colours", "max_det": 0}, "NODE433"),
+        ({"model": "colours", "threshold": 2.0}, "GRAPH204"),
+        ({"model": "colours", "max_rate": -5.0}, "GRAPH204"),
+        ({"model": "things", "imgsz_height": -3, "imgsz_width": 320}, "GRAPH204"),
+        ({"model": "things", "imgsz_width": 320}, "VISION109"),
+    ],
+)
+async def test_parameters_that_it_cannot_start_with(test, start, parameters, code):
+    with pytest.raises(LinkwrightError) as caught:
+        await start(**parameters)
+    assert [diagnostic.code for diagnostic in caught.value.diagnostics] == [code]
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ({"model": "gone.onnx"}, "there is neither a file nor a detector 'gone.onnx'"),
+        ({"model": "yolov8n.pt"}, "'yolov8n.pt' is not an ONNX file"),
+        ({"model": "aruco", "dictionary": "5X"}, "'dictionary' of the detector cannot be '5X'"),
+        ({"model": "things", "device": "gpu"}, "'device' of the detector cannot be 'gpu'"),
+        ({"model": "colours", "classes": ["blu"]}, "parameter 'classes' of 'yolo_node' cannot be 'blu'"),
+    ],
+)
+async def test_detectors_that_cannot_be_loaded_end_the_node_with_one_error_and_what_to_do(
+    test, start, parameters, words
+):
+    running = await start(**parameters)
+    assert running.finished.result() == 1
+    said = [record.text for record in test.log if record.level is LogLevel.FATAL]
+    assert len(said) == 2, "the error, and the hint"
+    assert words in said[0]
+
+
+# --- where no images come -----------------------------------------------------------------------------------------
+
+
+IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
+
+
+@pytest.fixture
+def warnings(test):
+    """What was warned of."""
+    return lambda: [record.text for record in test.log if record.level is LogLevel.WARN]
+
+
+async def test_a_topic_that_nobody_publishes_is_told_once_with_those_that_have_images(test, start, warnings):
+    await start(model="colours")
+    test.record("/yolo/detections")
+    test.record("/yolo/debug_image")
+    test.node.create_publisher(get_message(IMAGE), "/camera/image_raw", 1)
+    await test.advance(30.0)
+    assert warnings() == [
+        "no images arrive: no node publishes '/yolo/image_raw'",
+        "there are images on '/camera/image_raw'; set the topic with the parameter 'input_image_topic'",
+    ]
+
+
+async def test_a_topic_of_another_type_is_told(test, start, warnings):
+    await start(DarknetRosNode, namespace="/", network={"weights": "colours"}, remappings=[("~/images", "/camera")])
+    test.record("/detector_node/detections")
+    test.node.create_publisher(get_message(COMPRESSED), "/camera", 1)
+    test.node.create_publisher(get_message(IMAGE), "/kinect/image_raw", 1)
+    await test.advance(11.0)
+    assert warnings()[-2:] == [
+        f"no images arrive: '/camera' has '{COMPRESSED}', not '{IMAGE}'",
+        "there are images on '/kinect/image_raw'; remap '/camera'",
+    ]
+
+
+async def test_qos_that_does_not_fit_is_told(test, start, warnings):
+    await start(model="colours", image_reliability=1)
+    test.record("/yolo/detections")
+    offered = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    test.node.create_publisher(get_message(IMAGE), "/yolo/image_raw", offered)
+    await test.advance(11.0)
+    assert warnings()[-2:] == [
+        "no images arrive: '/yolo/image_raw' is published best effort, and this node requests reliable",
+        "set 'image_reliability' to 2",
+    ]
+
+
+async def test_a_camera_that_stops_and_goes_on_is_told_of_and_the_next_time_later(test, start, warnings):
+    await start(model="colours")
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    stopped = "no image has arrived on '/yolo/image_raw' for {} s".format
+    await seen(test, recording, "/yolo/image_raw", image())
+    await test.advance(9.0)
+    assert warnings() == []
+    await test.advance(3.0)
+    assert warnings() == [stopped(5)]
+    await seen(test, recording, "/yolo/image_raw", image())
+    await test.advance(5.0)
+    assert [record.text for record in test.log][-1] == "images arrive now"
+    await test.advance(7.0)
+    assert warnings() == [stopped(5)]
+    await test.advance(5.0)
+    assert warnings() == [stopped(5), stopped(10)]
+
+
+async def test_where_nobody_wants_detections_nothing_is_missed(test, start, warnings):
+    await start(model="colours")
+    await test.advance(30.0)
+    assert warnings() == []
+
+
+# --- while the detector is loaded -----------------------------------------------------------------------------------
+
+
+class Slow:
+    """Has detectors loaded when it is told to."""
+
+    def __init__(self, make):
+        self._make, self.go_on, self.begun = make, threading.Event(), threading.Event()
+
+    def __call__(self, model, options):
+        self.begun.set()
+        assert self.go_on.wait(SECONDS)
+        return self._make(model, options)
+
+
+@pytest.fixture
+def slow(monkeypatch):
+    made = Slow(detector.make_detector)
+    monkeypatch.setattr(detector, "make_detector", made)
+    yield made
+    made.go_on.set()
+
+
+async def test_the_node_answers_while_its_detector_is_loaded(test, start, slow):
+    running = await start(model="colours", loads=False)
+    recording = test.record("/yolo/detections")
+    await eventually(slow.begun.is_set)
+    switch = get_service("std_srvs/srv/SetBool")
+    assert (await test.call("/yolo/enable", switch.Request(data=False))).success
+    assert (await test.call("/yolo/enable", switch.Request(data=True))).success
+    (result,) = running.node.set_parameters([Parameter("threshold", value=0.2)])
+    assert result.successful
+    (result,) = running.node.set_parameters([Parameter("classes", value=["red"])])
+    assert (result.successful, "is being loaded" in result.reason) == (False, True)
+    assert test.graph.count_subscribers("/yolo/image_raw") == 0
+    slow.go_on.set()
+    await eventually(running.loaded.done)
+    await test.settle()
+    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
+
+
+async def test_classes_that_are_chosen_while_the_detector_is_loaded_count_when_it_is_there(test, start, slow):
+    await start(model="colours", loads=False)
+    recording = test.record("/yolo/detections")
+    await eventually(slow.begun.is_set)
+    choose = get_service("yolo_msgs/srv/SetClasses")
+    client = test.node.create_client(choose, "/yolo/set_classes")
+    answers = [client.call_async(choose.Request(classes=[name])) for name in ("rd", "red")]
+    await test.settle()
+    assert not any(answer.done() for answer in answers)
+    slow.go_on.set()
+    await eventually(lambda: all(answer.done() for answer in answers))
+    assert [answer.result().success for answer in answers] == [False, True]
+    assert "did you mean 'red'?" in answers[0].result().message
+    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["red"]
+
+
+async def test_a_node_that_ends_while_its_detector_is_loaded_waits_for_it_and_says_nothing(test, start, monkeypatch):
+    main, begun = threading.current_thread(), threading.Event()
+
+    def load(model, options):
+        begun.set()
+        wait_until(lambda: is_waiting(main))
+        raise LinkwrightError(Diagnostic("VISION102", phrase("gone")))
+
+    monkeypatch.setattr(detector, "make_detector", load)
+    running = await start(model="colours", loads=False)
+    await eventually(begun.is_set)
+    running.close()
+    await test.settle()
+    assert not running.finished.done()
+    assert [record.text for record in test.log if record.level >= LogLevel.ERROR] == []
+
+
+class Odd(Detector):
+    """A user's own, which fails as it should not."""
+
+    @property
+    def names(self):
+        return ("red",)
+
+    def detect(self, image, limits):
+        raise KeyError("odd")
+
+
+async def test_what_a_detector_of_others_raises_is_told_of(test, start, monkeypatch):
+    monkeypatch.setattr(detector, "make_detector", lambda model, options: Odd())
+    await start(model="odd")
+    test.record("/yolo/detections")
+    await test.settle()
+    test.publish("/yolo/image_raw", image())
+    await eventually(lambda: any("the detector failed: KeyError: 'odd'" in record.text for record in test.log))
+    monkeypatch.setattr(detector, "make_detector", lambda model, options: {}["odder"])
+    running = await start(model="odder", namespace="/other")
+    assert running.finished.result() == 1
+    assert any("the detector failed: KeyError: 'odder'" in record.text for record in test.log)

@@ -1,0 +1,79 @@
+"""object_seeker sends nav2 to what it sees, where it is told to and nav2 is there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from linkwright.graph import ActionServer, CancelResponse
+from linkwright.messages import get_action
+from tests.vision.nodes.seeking_robot import RADIUS, SeekingRobot
+
+pytest.importorskip("mujoco")
+
+NAVIGATE = "nav2_msgs/action/NavigateToPose"
+
+
+class Navigator:
+    """A server of the action: keeps the goals that it is given, and ends them when it is told to."""
+
+    def __init__(self, test: SeekingRobot) -> None:
+        self.goals: list[Any] = []
+        self.canceled = 0
+        self._server = ActionServer(
+            test.node,
+            NAVIGATE,
+            "navigate_to_pose",
+            execute_callback=lambda goal: get_action(NAVIGATE).Result(),
+            handle_accepted_callback=self.goals.append,
+            cancel_callback=self._cancel,
+        )
+
+    def _cancel(self, _goal: Any) -> CancelResponse:
+        self.canceled += 1
+        return CancelResponse.ACCEPT
+
+    def end(self, reached: bool) -> None:
+        def finish(goal: Any) -> Any:
+            (goal.succeed if reached else goal.abort)()
+            return get_action(NAVIGATE).Result()
+
+        self.goals[-1].execute(finish)
+
+
+@pytest.mark.parametrize(("reached", "said"), [(True, "I am at the ball."), (False, "Something is between")])
+def test_nav2_goes_there(tmp_path, reached, said):
+    with SeekingRobot(tmp_path, (2.0, 0.0), seeker={"use_nav2": True}) as test:
+        navigator = Navigator(test)
+        test.tell("/vision/go_to", "ball")
+        test.advance(2.0)
+        (goal,) = navigator.goals
+        pose = goal.request.pose
+        assert pose.header.frame_id == "odom"
+        assert pose.pose.position.x == pytest.approx(2.0 - RADIUS - 0.5, abs=0.1)
+        assert pose.pose.orientation.w == pytest.approx(1.0, abs=0.01)
+        assert test.commands.last.linear.x == 0.0, "nav2 drives"
+        navigator.end(reached)
+        test.advance(0.5)
+        assert test.said()[-1].startswith(said)
+        commands = len(test.commands)
+        test.advance(1.0)
+        assert len(test.commands) == commands
+
+
+def test_a_stop_cancels_the_goal(tmp_path):
+    with SeekingRobot(tmp_path, (2.0, 0.0), seeker={"use_nav2": True}) as test:
+        navigator = Navigator(test)
+        test.tell("/vision/go_to", "ball")
+        test.advance(2.0)
+        test.tell_to_stop()
+        test.advance(0.5)
+        assert navigator.canceled == 1
+        assert test.said()[-1] == "I stop."
+
+
+def test_without_nav2_it_drives_itself(tmp_path):
+    with SeekingRobot(tmp_path, (1.5, 0.0), seeker={"use_nav2": True}) as test:
+        test.tell("/vision/go_to", "ball")
+        assert test.go_on_until_said("I am at the ball")
