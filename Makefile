@@ -203,7 +203,7 @@ format: $(VENV)/.dev
 	$(BIN)/ruff format
 
 clean:
-	rm -rf .venv .venv-* .build dist site frontend/node_modules src/linkwright/viewer/page
+	rm -rf .venv .venv-* .build dist site frontend/node_modules src/linkwright/page/built
 
 .build/uv/bin/uv:
 	$(PYTHON) -m venv .build/uv

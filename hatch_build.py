@@ -36,7 +36,7 @@ class GeneratedFiles(BuildHookInterface):
         catalogues.compile_catalogues()
         standin_stubs.write()
         build_data["artifacts"] += [
-            "src/linkwright/viewer/page/**",
+            "src/linkwright/page/built/**",
             "src/linkwright/standins/stubs/**",
             "src/linkwright/diagnostics/translation/*.mo",
         ]

@@ -35,7 +35,8 @@ from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.packages import PackageFinder
-from linkwright.viewer import RvizConfig, Viewer
+from linkwright.rviz import RvizConfig
+from linkwright.viewer import Viewer
 
 LINKS = 500
 RATE = 30

@@ -21,7 +21,8 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, TF_QOS, Graph
 from linkwright.messages import String, TFMessage, TransformBatch, get_message
 from linkwright.packages import PackageFinder
-from linkwright.viewer import RvizConfig, Viewer
+from linkwright.rviz import RvizConfig
+from linkwright.viewer import Viewer
 
 TOPIC = "/data"
 FRAME = "link_0"

@@ -15,7 +15,7 @@ export default defineConfig({
   plugins: [withoutThemes()],
   base: "./",
   build: {
-    outDir: "../src/linkwright/viewer/page",
+    outDir: "../src/linkwright/page/built",
     emptyOutDir: true,
     target: "es2022",
     assetsInlineLimit: 0,

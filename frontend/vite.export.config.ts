@@ -5,7 +5,7 @@ export default defineConfig({
   base: "./",
   publicDir: false,
   build: {
-    outDir: "../src/linkwright/viewer/page/export",
+    outDir: "../src/linkwright/page/built/export",
     emptyOutDir: true,
     target: "es2022",
     cssCodeSplit: false,

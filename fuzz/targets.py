@@ -17,6 +17,7 @@ from fuzz.expressions import expression
 from linkwright.diagnostics import LinkwrightError, has_errors, render, to_data
 from linkwright.kinematics import KinematicTree
 from linkwright.packages import PackageFinder
+from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.sdf.frames import placed_links
 from linkwright.sdf.includes import resolve_includes
 from linkwright.sdf.listing import sdf_text
@@ -27,7 +28,6 @@ from linkwright.sdf.saved import as_saved
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.urdf import read, save, to_gv, tree_text
 from linkwright.urdf.plaintext import parse_as_urdfdom
-from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.xacro import expand, sources
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.expressions.yamldata import YamlError, load

@@ -17,7 +17,7 @@ from linkwright.geometry.meshes import read_mesh
 from linkwright.graph.parameters.files import read_parameter_file
 from linkwright.input_files import NoWriterError, read_file, read_text
 from linkwright.launch.frontend.python_file import read_launch_file
-from linkwright.viewer.config.file import read as read_configuration
+from linkwright.rviz.config.file import read as read_configuration
 from linkwright.xmltree.reader import read_bytes
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")

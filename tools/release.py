@@ -32,7 +32,7 @@ SCRATCH = ROOT / ".build" / "release"
 RESULTS = ROOT / "dist"
 VERSION = Path("src", "linkwright", "_version.py")
 RECIPE = Path("packaging", "conda", "recipe.yaml")
-_GENERATED = ("src/linkwright/viewer/page", "src/linkwright/standins/stubs")
+_GENERATED = ("src/linkwright/page/built", "src/linkwright/standins/stubs")
 _DIFFERENT = (
     {"TZ": "UTC", "LC_ALL": "C", "PYTHONHASHSEED": "1"},
     {"TZ": "Asia/Tokyo", "LC_ALL": "C.UTF-8", "PYTHONHASHSEED": "2"},

@@ -12,7 +12,8 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS, Graph
 from linkwright.messages import TFMessage, get_message
 from linkwright.packages import PackageFinder
-from linkwright.viewer import RvizConfig, Viewer
+from linkwright.rviz import RvizConfig
+from linkwright.viewer import Viewer
 from tests.waiting import wait_until
 
 Result = TypeVar("Result")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.viewer import RvizConfig
+from linkwright.rviz import RvizConfig
 from tests.browser.conftest import state, until
 
 pytestmark = pytest.mark.browser

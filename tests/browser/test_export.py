@@ -14,8 +14,8 @@ from tests.browser.conftest import becomes, state, until
 from tests.browser.golden import link, mesh, robot_of
 from tests.browser.live import configuration
 from tests.browser.mesh_writers import dae, obj, png, stl_binary
-from tests.viewer.features.export.robots import GRIPPER
-from tests.viewer.features.export.test_glb import textured_dae
+from tests.panels.export.robots import GRIPPER
+from tests.panels.export.test_glb import textured_dae
 
 pytestmark = pytest.mark.browser
 

@@ -11,7 +11,7 @@ from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_message
 from tests.browser.conftest import becomes, state, until
 from tests.browser.live import configuration
-from tests.viewer.displays.test_geometry_displays import message, pose
+from tests.rviz.displays.test_geometry_displays import message, pose
 
 pytestmark = pytest.mark.browser
 

@@ -7,7 +7,7 @@ import pytest
 
 from tests.browser.conftest import until
 from tests.browser.live import configuration
-from tests.viewer.displays.test_grid_map import grid
+from tests.rviz.displays.test_grid_map import grid
 
 pytestmark = pytest.mark.browser
 

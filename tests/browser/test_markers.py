@@ -8,9 +8,9 @@ import pytest
 
 from tests.browser.conftest import until
 from tests.browser.live import configuration
-from tests.viewer.displays.test_interactive_markers import Control, Feedback, Server
-from tests.viewer.displays.test_interactive_markers import marker as interactive_marker
-from tests.viewer.displays.test_markers import ColorRGBA, Marker, MarkerArray, marker
+from tests.rviz.displays.test_interactive_markers import Control, Feedback, Server
+from tests.rviz.displays.test_interactive_markers import marker as interactive_marker
+from tests.rviz.displays.test_markers import ColorRGBA, Marker, MarkerArray, marker
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser

@@ -12,7 +12,7 @@ from linkwright.messages import get_message
 from tests.browser.conftest import until
 from tests.browser.live import configuration
 from tests.browser.test_markers import CUBE_STL
-from tests.viewer.displays.moveit.arm import (
+from tests.rviz.displays.moveit.arm import (
     ARM,
     SolidPrimitive,
     attached,

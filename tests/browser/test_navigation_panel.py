@@ -7,7 +7,7 @@ import pytest
 from tests.browser.axe import violations
 from tests.browser.conftest import until
 from tests.browser.live import configuration
-from tests.viewer.features.test_navigation_panel import Nav2
+from tests.navigation.page.test_navigation_panel import Nav2
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.viewer import RvizConfig
+from linkwright.rviz import RvizConfig
 from tests.browser.conftest import becomes
 from tests.browser.live import configuration
-from tests.viewer.panels import RVIZ_PANELS, panels_of, window_state
+from tests.panels.panels import RVIZ_PANELS, panels_of, window_state
 
 pytestmark = pytest.mark.browser
 

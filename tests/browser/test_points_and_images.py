@@ -12,9 +12,9 @@ from linkwright.messages import get_message
 from tests.browser.conftest import becomes, frames_drawn_meanwhile, state, until
 from tests.browser.pixels import Color, colors_at
 from tests.images.test_images import image
-from tests.viewer.clouds.test_clouds import cloud, depth_image, scan, xyz
-from tests.viewer.displays.test_cloud_displays import camera_info, placed
-from tests.viewer.displays.test_map_displays import cell_grid, grid, update
+from tests.rviz.clouds.test_clouds import cloud, depth_image, scan, xyz
+from tests.rviz.displays.test_cloud_displays import camera_info, placed
+from tests.rviz.displays.test_map_displays import cell_grid, grid, update
 from tests.viewer.packed_images import depth_message, jpeg, packed
 from tests.waiting import wait_until
 

@@ -10,8 +10,8 @@ import pytest
 
 from tests.browser.conftest import SECONDS, until
 from tests.browser.live import configuration
+from tests.page.test_slow_lines import cloud, image
 from tests.viewer.throttle import slow_line
-from tests.viewer.web.test_slow_lines import cloud, image
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser

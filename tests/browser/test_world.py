@@ -9,8 +9,8 @@ import pytest
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS, DurabilityPolicy, QoSProfile
 from linkwright.messages import String, TFMessage, get_message, get_service
-from linkwright.viewer.features.modelling import things
-from linkwright.viewer.protocol.modelling import ModelChoices
+from linkwright.page.protocol.modelling import ModelChoices
+from linkwright.simulation.page.modelling import things
 from tests.browser.conftest import SECONDS, becomes, state, until
 from tests.browser.live import configuration
 from tests.waiting import wait_until

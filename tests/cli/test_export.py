@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.cli import main
-from linkwright.viewer.features.export import html
+from linkwright.panels.export import html
 
 MODEL = """\
 <robot name="box" xmlns:xacro="http://www.ros.org/wiki/xacro">

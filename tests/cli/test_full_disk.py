@@ -17,8 +17,8 @@ from linkwright.cli.command import VERBS
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph
 from linkwright.messages import String, serialize
-from linkwright.viewer import RvizConfig
-from linkwright.viewer.config.locations import RecentFiles
+from linkwright.rviz import RvizConfig
+from linkwright.rviz.config.locations import RecentFiles
 from tests.full_disk import full_disk, needs_limits
 from tests.places import REPOSITORY
 from tests.recordings import needs_rosbags

@@ -10,7 +10,7 @@ import pytest
 from linkwright.cli import main
 from linkwright.hosting import bag_view, view
 from linkwright.hosting.plans import HostOptions
-from tests.viewer.features.test_timeline import recorded
+from tests.panels.test_timeline import recorded
 
 RVIZ = "Panels: []\nVisualization Manager:\n  Displays: []\n  Global Options:\n    Fixed Frame: odom\n"
 

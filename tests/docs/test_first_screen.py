@@ -18,7 +18,7 @@ from tests.docs.pages import READMES, blocks
 from tests.places import REPOSITORY
 from tests.waiting import wait_until
 
-PAGE = Path("src", "linkwright", "viewer", "page")
+PAGE = Path("src", "linkwright", "page", "built")
 
 
 def first_screen(readme: Path) -> list[str]:

@@ -11,8 +11,8 @@ import pytest
 
 from linkwright import extensions
 from linkwright.messages import get_message
-from linkwright.viewer import RvizConfig
-from linkwright.viewer.displays import catalogue
+from linkwright.rviz import RvizConfig
+from linkwright.rviz.displays import catalogue
 from tests.docs.pages import DOCS, blocks
 from tests.toml_files import read_toml
 from tests.viewer.contents import shown_markers

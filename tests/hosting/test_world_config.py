@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.hosting.world_config import show_world
-from linkwright.viewer import RvizConfig
+from linkwright.rviz import RvizConfig
 
 CONFIG = """
 Visualization Manager:

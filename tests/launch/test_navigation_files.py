@@ -20,7 +20,7 @@ from linkwright.messages import get_message, get_service
 from linkwright.nodes import EXECUTABLES, NodeOptions
 from linkwright.nodes.options import SingleNode, create_node
 from linkwright.packages import PackageFinder, is_substitute
-from linkwright.viewer.config.rviz_config import RvizConfig
+from linkwright.rviz.config.rviz_config import RvizConfig
 
 Launch = Callable[..., Any]
 LOCALIZATION = [("nav2_map_server", "map_server"), ("nav2_amcl", "amcl")]

@@ -8,7 +8,7 @@ from pathlib import Path
 import yaml
 
 from linkwright.messages import get_message
-from linkwright.viewer import RvizConfig
+from linkwright.rviz import RvizConfig
 from tests.viewer.scene import page, world
 
 PointStamped = get_message("geometry_msgs/msg/PointStamped")

@@ -17,7 +17,8 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph, LogRecord
 from linkwright.messages import String, TFMessage, TransformBatch
 from linkwright.packages import PackageFinder
-from linkwright.viewer import RvizConfig, Viewer
+from linkwright.rviz import RvizConfig
+from linkwright.viewer import Viewer
 from tests.skipping import graph_clock
 from tests.waiting import SECONDS
 

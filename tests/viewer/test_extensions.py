@@ -9,14 +9,14 @@ from importlib.metadata import entry_points
 import pytest
 
 from linkwright import extensions
-from linkwright.viewer import RvizConfig
-from linkwright.viewer.displays import catalogue
+from linkwright.rviz import RvizConfig
+from linkwright.rviz.displays import catalogue
 from tests.viewer.scene import page, world
 
 MODULE = """\
-from linkwright.viewer.displays.geometry import PolygonDisplay
-from linkwright.viewer.features.page_feature import PageFeature
-from linkwright.viewer.protocol.message import PageMessage, ServerMessage
+from linkwright.rviz.displays.geometry import PolygonDisplay
+from linkwright.panels.page_feature import PageFeature
+from linkwright.page.protocol.message import PageMessage, ServerMessage
 
 
 class Fence(PolygonDisplay):

@@ -26,17 +26,17 @@ def test_panels_and_displays_are_imported_when_they_are_asked_for():
     root = Path(__file__).parents[2]
     done = subprocess.run([sys.executable, "-c", OPENING], capture_output=True, text=True, cwd=root, check=True)
     opened, watching = (set(line.split()) for line in done.stdout.splitlines())
-    room = "linkwright.viewer."
-    late = {f"{room}features.monitor.{name}" for name in ("node_graph", "parameters", "plots", "teleop", "topics")}
-    late |= {f"{room}displays.{name}" for name in ("image", "map", "marker", "point_clouds")}
-    assert not opened & {*late, f"{room}features.export.feature", "linkwright.sdf.reader", "linkwright.sdf.writer"}
-    assert watching & late == {f"{room}features.monitor.node_graph"}
+    panels, displays = "linkwright.panels", "linkwright.rviz.displays"
+    late = {f"{panels}.monitor.{name}" for name in ("node_graph", "parameters", "plots", "teleop", "topics")}
+    late |= {f"{displays}.{name}" for name in ("image", "map", "marker", "point_clouds")}
+    assert not opened & {*late, f"{panels}.export.feature", "linkwright.sdf.reader", "linkwright.sdf.writer"}
+    assert watching & late == {f"{panels}.monitor.node_graph"}
 
 
 GIVING_OUT = """
 import asyncio, sys
 import linkwright.hosting.view
-from linkwright.viewer.web.page_server import PageServer
+from linkwright.page.page_server import PageServer
 
 async def main():
     server = PageServer("127.0.0.1", 0)
@@ -51,5 +51,5 @@ asyncio.run(main())
 def test_a_page_is_given_out_before_what_shows_the_robot_is_imported():
     root = Path(__file__).parents[2]
     done = subprocess.run([sys.executable, "-c", GIVING_OUT], capture_output=True, text=True, cwd=root, check=True)
-    rooms = {f"linkwright.{room}" for room in ("graph", "messages", "urdf", "viewer.viewer", "viewer.protocol")}
+    rooms = {f"linkwright.{room}" for room in ("graph", "messages", "urdf", "viewer.viewer", "page.protocol")}
     assert not set(done.stdout.split()) & {*rooms, "numpy", "yaml", "msgspec"}

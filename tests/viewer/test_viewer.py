@@ -19,11 +19,12 @@ from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.packages import PackageFinder
-from linkwright.viewer import RvizConfig, Viewer
-from linkwright.viewer.features.joints import JointsFeature
-from linkwright.viewer.protocol.session import PROTOCOL_VERSION
-from linkwright.viewer.web import server
-from linkwright.viewer.web.server import listen
+from linkwright.page import server
+from linkwright.page.protocol.session import PROTOCOL_VERSION
+from linkwright.page.server import listen
+from linkwright.panels.joints import JointsFeature
+from linkwright.rviz import RvizConfig
+from linkwright.viewer import Viewer
 from tests.places import TUTORIAL_PACKAGES, without_meshes
 from tests.skipping import graph_clock, skipping
 from tests.viewer.scene import ARM, World, page, world

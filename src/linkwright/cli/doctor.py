@@ -99,7 +99,7 @@ def _fixed_frames(arguments: argparse.Namespace) -> list[FixedFrame]:
 
     frames = [FixedFrame(name, phrase("the command line")) for name in arguments.fixed_frame]
     if arguments.rviz:
-        from linkwright.viewer.config.rviz_config import RvizConfig
+        from linkwright.rviz.config.rviz_config import RvizConfig
 
         frames += [
             FixedFrame(RvizConfig.load(file).options.text("Fixed Frame"), quoted(display_path(file)))

@@ -42,7 +42,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the file and print its name."""
-    from linkwright.viewer.features.export.feature import FORMATS, format_of
+    from linkwright.panels.export.feature import FORMATS, format_of
 
     if format_of(arguments.out) is None:
         endings = " or ".join(f".{ending}" for ending in FORMATS)
@@ -70,7 +70,7 @@ def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
     from linkwright.descriptions import DescriptionLibrary, examine
     from linkwright.descriptions.pairs import text_of_old
     from linkwright.packages import PackageFinder
-    from linkwright.viewer.features.export.feature import export_snapshot
+    from linkwright.panels.export.feature import export_snapshot
     from linkwright.viewer.model_snapshot import OldDescription, snapshot_of_model
 
     library = DescriptionLibrary()

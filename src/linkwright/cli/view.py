@@ -132,7 +132,7 @@ def _readable(rviz: Path) -> Path:
     Raises:
         LinkwrightError: it cannot be read; see `linkwright.viewer.RvizConfig.load`.
     """
-    from linkwright.viewer import RvizConfig
+    from linkwright.rviz import RvizConfig
 
     RvizConfig.load(rviz)
     return rviz.absolute()

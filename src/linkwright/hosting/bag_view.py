@@ -18,8 +18,9 @@ from linkwright.hosting.xacro_calls import XacroCall
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
+    from linkwright.rviz import RvizConfig
     from linkwright.urdf import Robot
-    from linkwright.viewer import RvizConfig, Viewer
+    from linkwright.viewer import Viewer
 
 
 def run_bag_view(files: Sequence[Path], options: HostOptions, *, foxglove: int | None = None) -> int:

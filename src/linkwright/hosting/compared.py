@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from linkwright.descriptions.pairs import Model, Pair
     from linkwright.diagnostics import Diagnostic
     from linkwright.packages import PackageFinder
-    from linkwright.viewer import RvizConfig, Viewer
+    from linkwright.rviz import RvizConfig
+    from linkwright.viewer import Viewer
 
 
 def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None = None) -> int:
@@ -78,7 +79,7 @@ class ComparedView(ModelView):
         self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._attach)
 
     def _viewer_config(self) -> RvizConfig:
-        from linkwright.viewer.features.comparison.feature import show_old
+        from linkwright.panels.comparison.feature import show_old
 
         config = super()._viewer_config()
         show_old(config, self._pair.old.title)

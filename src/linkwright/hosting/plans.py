@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from linkwright.hosting.xacro_calls import Descriptions
     from linkwright.nodes import NodeOptions
     from linkwright.packages import PackageFinder
-    from linkwright.viewer import RvizConfig, Viewer
+    from linkwright.rviz import RvizConfig
+    from linkwright.viewer import Viewer
 
 VIEWER = ("rviz2", "rviz2")
 """Package and executable of RViz, which our viewer replaces."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase
 
 if TYPE_CHECKING:
-    from linkwright.viewer import RvizConfig
+    from linkwright.rviz import RvizConfig
 
 _CONFIG = ("-d", "--display-config")
 _FIXED_FRAME = ("-f", "--fixed-frame")
@@ -49,7 +49,7 @@ def read_viewer_config(arguments: Sequence[str]) -> tuple[RvizConfig, list[Diagn
 
     As in RViz, a file that cannot be read is reported, and the default configuration replaces it.
     """
-    from linkwright.viewer import RvizConfig
+    from linkwright.rviz import RvizConfig
 
     path, fixed_frame, findings = _read(arguments)
     config: RvizConfig | None = None

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from linkwright.bag import BagWriter
     from linkwright.descriptions import Description
     from linkwright.inference import Inference
+    from linkwright.rviz import RvizConfig
     from linkwright.urdf import Robot
-    from linkwright.viewer import RvizConfig
 
 _SIMULATOR = ("gazebo_ros", "gzserver")
 _CLOCK_RATE = 100.0

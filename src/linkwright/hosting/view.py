@@ -23,8 +23,9 @@ from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from linkwright.bag import BagWriter, Recorder
-    from linkwright.viewer import RvizConfig, Viewer
-    from linkwright.viewer.protocol.arguments import ArgumentForm
+    from linkwright.page.protocol.arguments import ArgumentForm
+    from linkwright.rviz import RvizConfig
+    from linkwright.viewer import Viewer
 
 _PUBLISH_FREQUENCY = 60.0
 """Hz; at robot_state_publisher's default of 20 a dragged slider lags visibly."""
@@ -235,8 +236,8 @@ class ModelView:
             self._show_form()
 
     def _show_form(self) -> None:
-        from linkwright.viewer.features.arguments import ArgumentsFeature
-        from linkwright.viewer.protocol.arguments import NOTHING_ASKED
+        from linkwright.page.protocol.arguments import NOTHING_ASKED
+        from linkwright.panels.arguments import ArgumentsFeature
 
         if self._viewer is not None:
             feature = self._viewer.add_feature(ArgumentsFeature)
@@ -284,7 +285,7 @@ class ModelView:
 
     def _viewer_config(self) -> RvizConfig:
         """Return a Grid, a RobotModel, and a TF (enabled without visuals); the root link is the fixed frame."""
-        from linkwright.viewer import RvizConfig, has_visuals, size_of
+        from linkwright.rviz import RvizConfig, has_visuals, size_of
 
         library = self.descriptions.library
         robot = None if self._text is None else library.read(self._text).robot
@@ -352,7 +353,7 @@ class ModelView:
 
 
 def _config_of(rviz: Path) -> RvizConfig:
-    from linkwright.viewer import RvizConfig
+    from linkwright.rviz import RvizConfig
 
     return RvizConfig.load(rviz)
 

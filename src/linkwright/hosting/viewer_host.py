@@ -15,8 +15,8 @@ from linkwright.hosting.plans import HostedPlan, Supervisor
 if TYPE_CHECKING:
     from linkwright.graph import Graph
     from linkwright.nodes import RunningNode
+    from linkwright.page.page_server import PageServer
     from linkwright.viewer import Viewer
-    from linkwright.viewer.web.page_server import PageServer
 
 _CLOSE_SECONDS = 0.8
 
@@ -67,7 +67,7 @@ class ViewerHost:
         Raises:
             LinkwrightError: VIEW101 to VIEW103, it cannot listen at the address.
         """
-        from linkwright.viewer.web.page_server import PageServer
+        from linkwright.page.page_server import PageServer
 
         server = PageServer(self._session.options.host, self._port_for(plan))
         try:
@@ -97,9 +97,10 @@ class ViewerHost:
         Raises:
             LinkwrightError: it cannot start.
         """
-        from linkwright.viewer import Viewer, find_unsaved
+        from linkwright.page.page_server import PageServer
+        from linkwright.rviz import find_unsaved
+        from linkwright.viewer import Viewer
         from linkwright.viewer.guests import GuestRecordings
-        from linkwright.viewer.web.page_server import PageServer
 
         session = self._session
         if plan.viewer_config is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from linkwright.viewer import RvizConfig
+    from linkwright.rviz import RvizConfig
 
 _DISPLAY, _FRAME = "linkwright/World", "world"
 _MAP = "rviz_default_plugins/Map"
@@ -23,7 +23,7 @@ def world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
         x: of the focal point, in m.
         y: likewise.
     """
-    from linkwright.viewer import RvizConfig
+    from linkwright.rviz import RvizConfig
 
     config = RvizConfig.for_model(_FRAME, name=name)
     for display in config.displays:

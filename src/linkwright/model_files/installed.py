@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import shutil
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, foreign, phrase
+from linkwright.files.user_folders import data_folder
 from linkwright.model_files.table import ModelEntry
 
 _AT_ONCE = 1 << 20
@@ -18,8 +18,7 @@ def models_folder() -> Path:
 
     It is not a cache: an offline user cannot download models again.
     """
-    base = os.environ.get("XDG_DATA_HOME")
-    return (Path(base) if base else Path.home() / ".local" / "share") / "linkwright" / "models"
+    return data_folder() / "models"
 
 
 def is_installed(entry: ModelEntry, folder: Path | None = None) -> bool:

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from linkwright.packages.cache import SHARES, cache_folder
+from linkwright.files.user_folders import SHARES, cache_folder
 from linkwright.packages.readers.installed_file import InstalledFile
 
 _MOST_LINKS = 5000

@@ -15,8 +15,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
+from linkwright.files.user_folders import SHARES
 from linkwright.lean_typing import TYPE_CHECKING
-from linkwright.packages.cache import SHARES
 from linkwright.packages.substituted import substituted_files
 
 if TYPE_CHECKING:

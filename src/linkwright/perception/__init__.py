@@ -1,1 +1,1 @@
-"""What sensors give, made usable: filters and conversions of scans, images and inertial measurements."""
+"""Filters and conversions of sensor data: scans, images, inertial measurements."""

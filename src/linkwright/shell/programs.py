@@ -11,9 +11,9 @@ from collections.abc import MutableMapping
 from contextlib import suppress
 from pathlib import Path
 
+from linkwright.files.user_folders import cache_folder
 from linkwright.messages.distribution import ASSUMED
 from linkwright.packages.ament import ROS_VARIABLES
-from linkwright.packages.cache import cache_folder
 
 PROGRAMS = {
     "ros2": ("linkwright.cli.tools", "ros2"),

@@ -19,7 +19,7 @@ from linkwright.viewer.viewer import Viewer
 
 if TYPE_CHECKING:
     from linkwright.bag import BagReader
-    from linkwright.viewer.web.audience import Audience
+    from linkwright.page.audience import Audience
 
 PATIENCE = 60.0
 """Seconds without a page after which a recording is no longer shown."""

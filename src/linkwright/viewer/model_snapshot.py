@@ -14,12 +14,12 @@ from linkwright.nodes.joint_layout import layout_of
 from linkwright.nodes.joint_settings import JointSettings
 from linkwright.nodes.robot_transforms import RobotTransforms
 from linkwright.packages import PackageFinder
+from linkwright.panels.comparison.feature import show_old
+from linkwright.panels.export.snapshot import Snapshot, snapshot_of
+from linkwright.rviz.config.rviz_config import RvizConfig
+from linkwright.rviz.robot import has_visuals
+from linkwright.rviz.size import size_of
 from linkwright.urdf import Robot
-from linkwright.viewer.config.rviz_config import RvizConfig
-from linkwright.viewer.features.comparison.feature import show_old
-from linkwright.viewer.features.export.snapshot import Snapshot, snapshot_of
-from linkwright.viewer.robot import has_visuals
-from linkwright.viewer.size import size_of
 from linkwright.viewer.viewer import Viewer
 
 if TYPE_CHECKING:

@@ -16,9 +16,9 @@ from linkwright.descriptions import DescriptionLibrary, examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.diagnostics.source import is_text
 from linkwright.packages import PackageFinder
+from linkwright.panels.export.html import html_of
+from linkwright.panels.export.snapshot import no_robot
 from linkwright.urdf import Robot, save
-from linkwright.viewer.features.export.html import html_of
-from linkwright.viewer.features.export.snapshot import no_robot
 from linkwright.viewer.model_snapshot import snapshot_of_model
 
 _FRAME = (

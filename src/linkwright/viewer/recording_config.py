@@ -8,12 +8,12 @@ from linkwright.bag import BagReader, BagTopic
 from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS
 from linkwright.graph import DurabilityPolicy, ReliabilityPolicy
 from linkwright.messages import TFMessage, deserialize, get_message
+from linkwright.rviz.config.rviz_config import RvizConfig
+from linkwright.rviz.config.simulated_world import DESCRIPTION_TOPIC, POSES_TOPIC, RAYS_TOPIC, WORLD_DISPLAY
+from linkwright.rviz.size import size_of
 from linkwright.sdf.poses import WORLD
 from linkwright.urdf import Robot
-from linkwright.viewer.config.rviz_config import RvizConfig
-from linkwright.viewer.config.simulated_world import DESCRIPTION_TOPIC, POSES_TOPIC, RAYS_TOPIC, WORLD_DISPLAY
 from linkwright.viewer.recorded_robot import description_topic, namespace_of_transforms
-from linkwright.viewer.size import size_of
 
 _TRANSFORMS = (TRANSFORMS, STATIC_TRANSFORMS)
 _FIRST_NS = 2_000_000_000

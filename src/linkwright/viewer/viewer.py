@@ -13,29 +13,29 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.graph import Graph, Parameter, ParameterDescriptor
 from linkwright.nodes.options import NodeOptions, create_node
 from linkwright.packages import PackageFinder
-from linkwright.viewer.config.locations import keep_unsaved
-from linkwright.viewer.config.rviz_config import RvizConfig
-from linkwright.viewer.context import GraphChanges, ViewerContext
-from linkwright.viewer.displays.base.display import ViewerDisplay
-from linkwright.viewer.features.joints import JointsFeature
-from linkwright.viewer.features.page_feature import F, PageFeature, make_features
-from linkwright.viewer.features.timeline import TimelineFeature
-from linkwright.viewer.frames.history import FrameHistory
-from linkwright.viewer.protocol.message import ServerMessage, encode
-from linkwright.viewer.protocol.session import PROTOCOL_VERSION, Hello
-from linkwright.viewer.published_topics import PublishedTopics
-from linkwright.viewer.visualization.manager import Managers, VisualizationManager
-from linkwright.viewer.web.audience import Audience, Page
-from linkwright.viewer.web.outbox import Payload
-from linkwright.viewer.web.page_server import PageServer
+from linkwright.page.audience import Audience, Page
+from linkwright.page.outbox import Payload
+from linkwright.page.page_server import PageServer
+from linkwright.page.protocol.message import ServerMessage, encode
+from linkwright.page.protocol.session import PROTOCOL_VERSION, Hello
+from linkwright.panels.joints import JointsFeature
+from linkwright.panels.page_feature import F, PageFeature, make_features
+from linkwright.panels.timeline import TimelineFeature
+from linkwright.rviz.config.locations import keep_unsaved
+from linkwright.rviz.config.rviz_config import RvizConfig
+from linkwright.rviz.context import GraphChanges, ViewerContext
+from linkwright.rviz.displays.base.display import ViewerDisplay
+from linkwright.rviz.frames.history import FrameHistory
+from linkwright.rviz.published_topics import PublishedTopics
+from linkwright.rviz.visualization.manager import Managers, VisualizationManager
 
 if TYPE_CHECKING:
     from linkwright.bag import BagReader, Playback
     from linkwright.descriptions.pairs import Pair
     from linkwright.graph import Node
     from linkwright.nodes.joint_panel import JointPanel
-    from linkwright.viewer.live_history import LiveHistory
-    from linkwright.viewer.web.uploads import Guests
+    from linkwright.page.uploads import Guests
+    from linkwright.panels.live_history import LiveHistory
 
 _NAME = "rviz2"
 _FIXED_FRAME = "fixed_frame"
@@ -222,7 +222,7 @@ class Viewer:
 
     def attach_comparison(self, pair: Pair, node: Node) -> Callable[[str], None]:
         """Show pages the differences of two descriptions; see `ComparisonFeature.attach`."""
-        from linkwright.viewer.features.comparison.feature import ComparisonFeature
+        from linkwright.panels.comparison.feature import ComparisonFeature
 
         return self.add_feature(ComparisonFeature).attach(pair, node)
 
@@ -247,7 +247,7 @@ class Viewer:
 
     def _add(self, feature: PageFeature, receives: Iterable[type] = ()) -> None:
         self._features.append(feature)
-        self._receivers.update((message, feature.receive) for message in (*feature.RECEIVES, *receives))
+        self._receivers.update((message, feature.receive) for message in (*feature.receives, *receives))
 
     def show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Show the findings on the description; an empty list clears them."""

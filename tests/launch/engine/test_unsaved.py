@@ -10,7 +10,7 @@ from pathlib import Path
 import aiohttp
 import pytest
 
-from linkwright.viewer import RvizConfig
+from linkwright.rviz import RvizConfig
 from tests.launch.launcher import Running, launch_file
 from tests.viewer.scene import Client
 

@@ -10,9 +10,9 @@ from PIL import Image
 
 from linkwright.geometry.single import IDENTITY
 from linkwright.sdf.cameras import Camera, Clip, Distortion, ImageFormat, Intrinsics
+from linkwright.sdf.optics import Optics, distorted, optics_of, undistorted
 from linkwright.simulation.rendering import opengl
 from linkwright.simulation.rendering.choice import WAYS, make_renderer
-from linkwright.simulation.rendering.optics import Optics, distorted, optics_of, undistorted
 from linkwright.simulation.rendering.renderer import Wanted
 from linkwright.simulation.simulation import NANOSECONDS, Simulation
 from tests.simulation.sensors.rooms import block

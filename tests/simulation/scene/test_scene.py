@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.images.heights import read_heights
 from linkwright.sdf.shapes import Heightmap
-from linkwright.simulation.scene.heights import read_heights
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 from linkwright.simulation.simulation import NANOSECONDS, Simulation

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from linkwright.sdf.optics import Optics
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.choice import make_renderer
-from linkwright.simulation.rendering.optics import Optics
 from linkwright.simulation.rendering.renderer import Wanted, axes_of
 from linkwright.vision.datasets.arranging import Shot, arrange
 from linkwright.vision.datasets.classes import objects_of, usual_rules

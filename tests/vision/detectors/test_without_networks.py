@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.vision.colour_words import PAINTS
+from linkwright.images.colour_words import PAINTS
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Limits
 from linkwright.vision.detectors.drawing import colour_of, drawn

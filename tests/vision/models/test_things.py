@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from linkwright.geometry.single import quaternion_from_rpy
+from linkwright.sdf.optics import Optics
 from linkwright.simulation.rendering.choice import make_renderer
-from linkwright.simulation.rendering.optics import Optics
 from linkwright.simulation.rendering.renderer import Wanted
 from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation

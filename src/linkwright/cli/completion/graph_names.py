@@ -14,7 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.packages.cache import cache_folder
+from linkwright.files.user_folders import cache_folder
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session

@@ -46,7 +46,7 @@ from linkwright.packages.programs.workspace_environment import workspace_environ
 if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Entity, Parser
     from linkwright.packages import PackageFinder
-    from linkwright.viewer import RvizConfig
+    from linkwright.rviz import RvizConfig
 
 _CONTAINERS = "rclcpp_components"
 """The package whose executables run other nodes too, to which parameter files may apply."""

@@ -10,7 +10,7 @@ import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 
-from linkwright.packages.cache import cache_folder
+from linkwright.files.user_folders import cache_folder
 from linkwright.packages.programs.child_python import python_command
 from linkwright.packages.readers.entry_points import EntryPoint
 from linkwright.whole_files import write_whole_file

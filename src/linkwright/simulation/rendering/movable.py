@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from linkwright.geometry.arrays import Array
+from linkwright.sdf.optics import Optics
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.rendering.optics import Optics
 from linkwright.simulation.rendering.triangles import Mesh
 from linkwright.simulation.simulation import Simulation
 

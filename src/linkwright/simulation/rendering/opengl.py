@@ -20,9 +20,9 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform
 from linkwright.geometry.vectors import Vector3
+from linkwright.sdf.optics import Optics
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.lights import PlacedLight, lights_of
-from linkwright.simulation.rendering.optics import Optics
 from linkwright.simulation.rendering.renderer import Pixels, RenderedImage, Wanted, axes_of
 from linkwright.simulation.rendering.triangles import is_endless
 from linkwright.simulation.scene.bodies import COLLISION_GROUP, VISUAL_GROUP

@@ -10,9 +10,9 @@ import numpy as np
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform
+from linkwright.sdf.optics import Optics
 from linkwright.simulation.rendering.lights import PlacedLight, lights_of
 from linkwright.simulation.rendering.movable import View
-from linkwright.simulation.rendering.optics import Optics
 from linkwright.simulation.rendering.ray_casters import Caster, Hits
 from linkwright.simulation.rendering.renderer import RenderedImage, Wanted, axes_of
 from linkwright.simulation.simulation import Simulation

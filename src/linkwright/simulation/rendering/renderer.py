@@ -11,7 +11,7 @@ import numpy as np
 from linkwright.diagnostics import Phrase
 from linkwright.geometry.arrays import Array, rotation_matrix
 from linkwright.geometry.single import Transform
-from linkwright.simulation.rendering.optics import Optics
+from linkwright.sdf.optics import Optics
 
 Pixels = np.ndarray[Any, np.dtype[Any]]
 

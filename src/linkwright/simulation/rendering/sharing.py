@@ -8,8 +8,8 @@ from weakref import WeakKeyDictionary
 
 from linkwright.diagnostics import Phrase
 from linkwright.geometry.single import Transform
+from linkwright.sdf.optics import Optics
 from linkwright.simulation.rendering.choice import make_renderer
-from linkwright.simulation.rendering.optics import Optics
 from linkwright.simulation.rendering.renderer import RenderedImage, Renderer, Wanted
 from linkwright.simulation.simulation import Simulation
 

@@ -17,11 +17,11 @@ from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts, read
 from linkwright.geometry.meshes import read_mesh, unreadable
 from linkwright.geometry.polygon import triangulated
 from linkwright.geometry.single import Transform, compose, rotation_from_z
+from linkwright.images.heights import read_heights
 from linkwright.sdf.links import Visual
 from linkwright.sdf.resources import Missing, ResourceFinder
 from linkwright.sdf.shapes import Cone, Heightmap, Mesh, Plane, Polyline, Shape
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.scene.heights import read_heights
 from linkwright.simulation.scene.shapes import cone_corners, set_pose
 from linkwright.simulation.scene.wrapping import wrapped
 from linkwright.xmltree import Element

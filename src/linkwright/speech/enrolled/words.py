@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, missing_file_hint, phrase
 from linkwright.diagnostics.source import Span
+from linkwright.files.user_folders import config_folder
 from linkwright.input_files import read_text
 from linkwright.speech.sound.spectra import BANDS, Powers
 from linkwright.whole_files import write_whole_file
@@ -40,8 +41,7 @@ _MOST_FRAMES = 400
 
 def words_path() -> Path:
     """The path of the user's file: ``XDG_CONFIG_HOME/linkwright/voice/words.json``, or the same below ``~/.config``."""
-    base = os.environ.get("XDG_CONFIG_HOME")
-    return (Path(base) if base else Path.home() / ".config") / "linkwright" / "voice" / "words.json"
+    return config_folder() / "voice" / "words.json"
 
 
 @dataclass(frozen=True, slots=True)

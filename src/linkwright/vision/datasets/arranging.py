@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform, quaternion_from_rpy
-from linkwright.simulation.rendering.optics import Optics
+from linkwright.sdf.optics import Optics
 from linkwright.vision.datasets.options import Options
 from linkwright.vision.datasets.stage import Prop, Stage
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.simulation.rendering.optics import Optics
+from linkwright.sdf.optics import Optics
 from linkwright.simulation.rendering.renderer import Pixels, Wanted, axes_of
 from linkwright.vision.datasets.arranging import Shot
 from linkwright.vision.datasets.stage import Prop, Stage

@@ -7,7 +7,7 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.vision.colour_words import paint_of
+from linkwright.images.colour_words import paint_of
 from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.library import load_opencv
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.vision.colour_words import PAINTS
+from linkwright.images.colour_words import PAINTS
 from linkwright.vision.places.camera import Floats
 
 COLOURS = tuple(PAINTS)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 from math import atan2, degrees, hypot
 
-from linkwright.vision.colour_words import SPELLINGS, named_colour, words_of
+from linkwright.images.colour_words import SPELLINGS, named_colour, words_of
 
 LANGUAGES = ("en", "zh")
 

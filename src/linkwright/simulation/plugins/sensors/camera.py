@@ -19,6 +19,7 @@ from linkwright.graph.stepped.node import Output
 from linkwright.messages import get_message
 from linkwright.sdf.cameras import Camera
 from linkwright.sdf.frames import transform_of
+from linkwright.sdf.optics import Optics, optics_of
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, SensorPlugin
 from linkwright.simulation.plugins.sensors.clouds import fill_camera_cloud
@@ -32,7 +33,6 @@ from linkwright.simulation.plugins.sensors.pictures import (
     fill_image,
     limited,
 )
-from linkwright.simulation.rendering.optics import Optics, optics_of
 from linkwright.simulation.rendering.renderer import RenderedImage, Wanted
 from linkwright.simulation.rendering.sharing import shared_renderer
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwright.sdf.cameras import Distortion
 from linkwright.sdf.noise import Noise
-from linkwright.simulation.rendering.optics import Optics
+from linkwright.sdf.optics import Optics
 
 Pixels = np.ndarray[Any, np.dtype[Any]]
 

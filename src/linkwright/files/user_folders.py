@@ -1,0 +1,39 @@
+"""The folders in which the program keeps data of a user.
+
+Source: the XDG Base Directory Specification.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+SHARES = "shares"
+"""Where in the cache the share folders of packages are that are not built; see `linkwright.packages.share_layout`."""
+
+_DEFAULTS = {"CACHE": ".cache", "CONFIG": ".config", "DATA": ".local/share", "STATE": ".local/state"}
+
+
+def cache_folder() -> Path:
+    """Return the folder of data that can be made again: ``XDG_CACHE_HOME/linkwright`` or ``~/.cache/linkwright``."""
+    return _folder("CACHE")
+
+
+def config_folder() -> Path:
+    """Return the folder of the user's settings: ``XDG_CONFIG_HOME/linkwright`` or ``~/.config/linkwright``."""
+    return _folder("CONFIG")
+
+
+def data_folder() -> Path:
+    """Return the folder of installed data: ``XDG_DATA_HOME/linkwright`` or ``~/.local/share/linkwright``."""
+    return _folder("DATA")
+
+
+def state_folder() -> Path:
+    """Return the folder of data that outlives a run: ``XDG_STATE_HOME/linkwright`` or ``~/.local/state/linkwright``."""
+    return _folder("STATE")
+
+
+def _folder(kind: str) -> Path:
+    base = os.environ.get(f"XDG_{kind}_HOME")
+    return (Path(base) if base else Path.home() / _DEFAULTS[kind]) / "linkwright"

@@ -1,0 +1,55 @@
+"""The findings about masses and inertias of a robot that is shown, for each of its links."""
+
+from __future__ import annotations
+
+from linkwright.descriptions import Description
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.lint.finding import Finding
+from linkwright.lint.registry import all_rules
+from linkwright.lint.settings import Settings
+from linkwright.lint.subject import Subject
+from linkwright.lint.suppression import Suppressions
+from linkwright.packages import PackageFinder
+from linkwright.urdf import Reading, Robot
+from linkwright.xmltree import Document
+
+_RULES = "LW3"
+"""The rules about masses and inertias."""
+
+
+def inertia_findings(robot: Robot, finder: PackageFinder) -> list[tuple[str, Diagnostic]]:
+    """Return the findings of the rules about masses and inertias, each with the name of its link.
+
+    The links of a macro that is called four times are four links here, where `linkwright check` reports one place. May
+    take long, for meshes are read to see how large links are.
+    """
+    if robot.element is None:
+        return []
+    source = robot.element.source
+    name = source.name if source else robot.name
+    description = Description(name, Document(robot.element, source), Reading(robot, ()))
+    subject = Subject(description, finder, Settings())
+    rules = [rule for rule in all_rules() if rule.default and rule.code.startswith(_RULES)]
+    found = [diagnostic for rule in rules for diagnostic in rule.check(subject)]
+    owners = _owners(robot)
+    return [
+        (link, diagnostic)
+        for diagnostic in Suppressions(subject, subject.settings).apply(found)
+        if diagnostic.severity is not Severity.INFO
+        if (link := _link_of(diagnostic, owners)) is not None
+    ]
+
+
+def _owners(robot: Robot) -> dict[int, str]:
+    """Return the link of every element inside of a link, by the element's identity."""
+    owners: dict[int, str] = {}
+    for link in robot.links.values():
+        if link.element is not None:
+            owners.update((id(element), link.name) for element in link.element.walk())
+    return owners
+
+
+def _link_of(diagnostic: Diagnostic, owners: dict[int, str]) -> str | None:
+    if not isinstance(diagnostic, Finding) or diagnostic.element is None:
+        return None
+    return owners.get(id(diagnostic.element))

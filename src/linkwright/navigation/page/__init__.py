@@ -1,0 +1,1 @@
+"""Page features of navigation: starting and stopping it, and the outcome of goals."""

@@ -1,0 +1,109 @@
+"""Reports failed navigation goals to pages, with the reason: from the goals' states and their server's log."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.graph import ROSOUT_QOS, DurabilityPolicy, EndpointKind, QoSProfile
+from linkwright.page.audience import Page
+from linkwright.page.protocol.message import ServerMessage
+from linkwright.page.protocol.navigation import NO_GOAL_FAILED, GoalOutcome
+from linkwright.panels.page_feature import FeatureHost, PageFeature
+
+STATUS_TOPIC = "/navigate_to_pose/_action/status"
+_ACTIVE, _ABORTED = (1, 2, 3), 6
+"""Numbers of action_msgs/msg/GoalStatus."""
+_STATES = 10
+"""Messages that may wait: a goal may fail at once, and its active state must not be missed."""
+_ERROR = 40
+"""The level of errors in rcl_interfaces/msg/Log."""
+_LOG_DELAY = 0.3
+"""Seconds by which the reason may arrive later than the state: they are on two topics."""
+
+
+class GoalOutcomeFeature(PageFeature):
+    """Notifies pages when a goal of ``navigate_to_pose`` is aborted; subscribes while there are pages.
+
+    The reason is the last error that the node of the action has logged since the goal was accepted.
+    """
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._subscriptions: list[Any] = []
+        self._goal = b""
+        self._active = False
+        self._reasons: dict[str, str] = {}
+        self._sent: GoalOutcome = NO_GOAL_FAILED
+        self._due: asyncio.TimerHandle | None = None
+
+    def opening(self) -> list[ServerMessage]:
+        """Return the outcome of the last goal."""
+        if not self._subscriptions:
+            lasting = QoSProfile(depth=_STATES, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+            self._subscriptions = [
+                self._listen("action_msgs/msg/GoalStatusArray", STATUS_TOPIC, self._goals_changed, lasting),
+                self._listen("rcl_interfaces/msg/Log", "/rosout", self._logged, ROSOUT_QOS),
+            ]
+        return [self._sent]
+
+    def page_gone(self, page: Page) -> None:
+        """Stop listening after the last page."""
+        if len(self.context.pages) == 0:
+            self.close()
+
+    def close(self) -> None:
+        """Stop listening."""
+        if self._due is not None:
+            self._due.cancel()
+            self._due = None
+        for subscription in self._subscriptions:
+            self.context.node.destroy_subscription(subscription)
+        self._subscriptions.clear()
+
+    def _listen(self, kind: str, topic: str, take: Callable[[Any], None], qos: QoSProfile) -> Any:
+        return self.context.node.create_subscription(kind, topic, take, qos)
+
+    def _goals_changed(self, message: Any) -> None:
+        if not message.status_list:
+            return
+        last = max(message.status_list, key=accepted_at)
+        goal = bytes(last.goal_info.goal_id.uuid)
+        if goal != self._goal:
+            self._goal, self._active = goal, False
+            self._reasons.clear()
+            self._publish(NO_GOAL_FAILED)
+        if last.status in _ACTIVE:
+            self._active = True
+        elif self._active:
+            self._active = False
+            if last.status == _ABORTED:
+                self._due = asyncio.get_running_loop().call_later(_LOG_DELAY, self._publish_failure, goal)
+
+    def _logged(self, record: Any) -> None:
+        if record.level >= _ERROR:
+            self._reasons[record.name] = record.msg
+
+    def _publish_failure(self, goal: bytes) -> None:
+        self._due = None
+        if goal != self._goal:
+            return
+        servers = {
+            endpoint.node.name
+            for endpoint in self.context.node.graph.endpoints()
+            if endpoint.kind is EndpointKind.PUBLISHER and endpoint.name == STATUS_TOPIC and endpoint.node is not None
+        }
+        reasons = [reason for logger, reason in self._reasons.items() if logger.rpartition(".")[2] in servers]
+        self._publish(GoalOutcome(reasons[-1] if reasons else "", failed=True))
+
+    def _publish(self, outcome: GoalOutcome) -> None:
+        if outcome != self._sent:
+            self._sent = outcome
+            self.context.pages.publish(outcome)
+
+
+def accepted_at(status: Any) -> tuple[int, int]:
+    """Return when a goal was accepted, as seconds and nanoseconds, of an action_msgs/msg/GoalStatus."""
+    stamp = status.goal_info.stamp
+    return stamp.sec, stamp.nanosec

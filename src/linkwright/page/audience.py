@@ -1,0 +1,355 @@
+"""The open pages, and the sending and receiving of their messages."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics.translation import language as language_of_terminal
+from linkwright.diagnostics.translation import language_of
+from linkwright.graph import log_failure
+from linkwright.page.lateness import Lateness
+from linkwright.page.outbox import BULK, TRANSFORMS, InPieces, Line, Outbox, Outgoing, Payload, ScaledData
+from linkwright.page.protocol.message import (
+    BadMessageError,
+    PageMessage,
+    ServerMessage,
+    decode,
+    encode,
+    redundancy_key,
+)
+from linkwright.page.protocol.session import ProgramIsLate, Received
+from linkwright.page.protocol.voice import SoundBlock, unpack_sound
+
+if TYPE_CHECKING:
+    from aiohttp.web import Request, WebSocketResponse
+
+    from linkwright.graph import Logger
+
+MAXIMUM_PAGES = 32
+"""Most open pages; more are refused."""
+
+_PATIENCE = 20
+"""Messages outside of the protocol that a page may send before it is disconnected."""
+
+_OURS = 4
+"""The program delays each message and its answer: so many times that is twice its share of the time."""
+
+_QUIET = 0.3
+"""Seconds of an idle line after which a page receives the full data of content that it has only in part."""
+
+
+def language_asked(request: Request) -> str:
+    """Return the language that a page requests in an address, one of `LANGUAGES`; by default the terminal's."""
+    return language_of(request.query.get("language", "")) or language_of_terminal()
+
+
+class Page:
+    """An open page: its socket and its outbox.
+
+    Args:
+        socket: the page's socket.
+        own: the page's name for displays of its own; empty for a page that shares the common ones.
+        is_here: whether it is open on this machine, or connected through a tunnel to it.
+        language: the language of its user, one of `LANGUAGES`; None leaves texts as they are.
+    """
+
+    def __init__(
+        self, socket: WebSocketResponse, own: str = "", *, is_here: bool = False, language: str | None = None
+    ) -> None:
+        self.outbox = Outbox()
+        self.language = language
+        self.own = own
+        self.is_here = is_here
+        self.line = Line(asyncio.get_running_loop().time)
+        self._socket = socket
+        self._reduced: dict[str, tuple[ScaledData, int]] = {}
+        self._lateness: Lateness | None = None
+        self._reported_late = False
+        self._opening: list[Payload] = []
+        self._completing: asyncio.TimerHandle | None = None
+        self._completion: InPieces | None = None
+        self._completions = 0
+
+    def open(self, opening: Iterable[Payload]) -> None:
+        """Set the messages that are sent first."""
+        self._opening = list(opening)
+
+    def send(self, message: ServerMessage) -> None:
+        """Send a message only to this page."""
+        self.outbox.put(redundancy_key(message), encode(message, self.language))
+
+    async def write(self) -> None:
+        """Send the opening messages, then those of the outbox, until the socket is gone."""
+        try:
+            for payload in self._opening:
+                made = self.outbox.make(payload)
+                if made is not None:
+                    await self._send(made)
+            self._opening.clear()
+            while True:
+                await self._send(await self.outbox.take())
+        except ConnectionError:
+            pass  # the reader notices the end too, and cleans up
+
+    def received(self, count: int) -> None:
+        """Note how many messages the page has acknowledged."""
+        self.line.received(count)
+        self._line_changed()
+
+    def close(self) -> None:
+        """Cancel scheduled work."""
+        if self._lateness is not None:
+            self._lateness.close()
+            self._lateness = None
+        self._stop_completing()
+
+    def _stop_completing(self) -> None:
+        if self._completing is not None:
+            self._completing.cancel()
+            self._completing = None
+
+    async def _send(self, payload: Outgoing | ScaledData) -> None:
+        if not isinstance(payload, (str, bytes)):
+            payload = await self._fitted(payload)
+        size = len(payload)
+        began = self.line.sending(size)
+        if isinstance(payload, bytes):
+            await self._socket.send_bytes(payload)
+        else:
+            await self._socket.send_str(payload)
+        self.line.sent(size, began)
+        self._line_changed()
+
+    async def _fitted(self, payload: ScaledData) -> bytes:
+        """Return as much of a content as the line carries; the rest follows when the line is idle."""
+        room = self.line.room
+        frame = await payload.fitting(room)
+        if frame is payload.full_frame:
+            self._reduced.pop(payload.key, None)
+        else:
+            self._reduced[payload.key] = (payload, room)
+        return frame
+
+    def _line_changed(self) -> None:
+        self.outbox.hold(self.line.is_full)
+        self._judge_lateness()
+        if self._completion is not None and self._completion.done:
+            self._completed(self._completion)
+        room = self.line.room
+        for key, (payload, was) in list(self._reduced.items()):
+            if payload.gone:
+                del self._reduced[key]
+            elif room >= 2 * was and key not in self.outbox and not self._completes(payload):
+                del self._reduced[key]
+                self.outbox.put(key, payload)
+        if self._completion is not None:
+            if self._completion.key not in self.outbox:
+                self.outbox.put(self._completion.key, self._completion)
+        elif not self.line.is_idle:
+            self._stop_completing()
+        elif self._reduced and self._completing is None:
+            self._completing = asyncio.get_running_loop().call_later(_QUIET, self._complete)
+
+    def _judge_lateness(self) -> None:
+        """Tell the page whether this program is the slow part, while it receives less than everything."""
+        if self._lateness is None and self._reduced:
+            self._lateness = Lateness(asyncio.get_running_loop())
+        elif self._lateness is not None and not self._reduced:
+            self._lateness.close()
+            self._lateness = None
+        late = self._lateness is not None and self._lateness.mean * _OURS >= (self.line.took or math.inf)
+        if late != self._reported_late:
+            self._reported_late = late
+            self.send(ProgramIsLate(late))
+
+    def _complete(self) -> None:
+        """Send the full content, which seldom changes, in pieces, however slow the line is."""
+        self._completing = None
+        for payload, _ in self._reduced.values():
+            if payload.key not in self.outbox:
+                self._completions += 1
+                self._completion = InPieces(payload, self._completions, self._piece)
+                self.outbox.put(payload.key, self._completion)
+                return
+
+    def _completes(self, payload: ScaledData) -> bool:
+        return self._completion is not None and self._completion.payload is payload
+
+    def _completed(self, completion: InPieces) -> None:
+        self._completion = None
+        if self._reduced.get(completion.key, (None,))[0] is completion.payload:
+            del self._reduced[completion.key]
+
+    def _piece(self) -> int:
+        """Return the size of a piece in bytes; at most two are on the line."""
+        return max(BULK, self.line.room // 2)
+
+
+class PageGroup:
+    """Pages that receive the same messages."""
+
+    def __init__(self) -> None:
+        self._pages: dict[Page, None] = {}
+
+    def __len__(self) -> int:
+        return len(self._pages)
+
+    def __contains__(self, page: Page) -> bool:
+        return page in self._pages
+
+    def add(self, page: Page) -> None:
+        """Add a page that receives messages from now on."""
+        self._pages[page] = None
+
+    def discard(self, page: Page) -> None:
+        """Remove a page."""
+        self._pages.pop(page, None)
+
+    def publish(self, message: ServerMessage) -> None:
+        """Send a message to every page."""
+        if self._pages:
+            key = redundancy_key(message)
+            texts = {language: encode(message, language) for language in {page.language for page in self._pages}}
+            for page in self._pages:
+                page.outbox.put(key, texts[page.language])
+
+    def send_data(self, key: str, payload: Payload) -> None:
+        """Send a display's data to every page; data that waits under its key is dropped."""
+        for page in self._pages:
+            page.outbox.put(key, payload)
+
+    def send_transforms(self, frame: bytes) -> None:
+        """Send a binary frame to every page."""
+        for page in self._pages:
+            page.outbox.put(TRANSFORMS, frame)
+
+
+class Audience(PageGroup):
+    """All open pages.
+
+    Args:
+        opening: the first messages for a page, the full present state.
+        receivers: the receivers of pages' messages, by class; others are ignored.
+        gone: called when a page has closed.
+        logger: logs messages outside of the protocol.
+    """
+
+    def __init__(
+        self,
+        opening: Callable[[Page], list[Payload]],
+        receivers: Mapping[type, Callable[[Page, Any], object]],
+        gone: Callable[[Page], None],
+        logger: Logger,
+    ) -> None:
+        super().__init__()
+        self._opening = opening
+        self._receivers = receivers
+        self._gone = gone
+        self._logger = logger
+        self._sockets: set[WebSocketResponse] = set()
+        self._expected = 0
+
+    @property
+    def is_full(self) -> bool:
+        """Whether no more pages are accepted."""
+        return len(self) + self._expected >= MAXIMUM_PAGES
+
+    @contextmanager
+    def expecting(self) -> Iterator[None]:
+        """Reserve a place for a page whose socket is being opened; `attend` uses it."""
+        self._expected += 1
+        try:
+            yield
+        finally:
+            self._expected -= 1
+
+    async def attend(self, page: Page, socket: WebSocketResponse) -> None:
+        """Serve a page on its socket until it closes."""
+        page.open(self._opening(page))
+        self.add(page)
+        self._sockets.add(socket)
+        writer = asyncio.get_running_loop().create_task(page.write())
+        try:
+            await self._listen(page, socket)
+        finally:
+            self.discard(page)
+            self._sockets.discard(socket)
+            self._gone(page)
+            page.close()
+            writer.cancel()
+            await asyncio.gather(writer, return_exceptions=True)
+
+    async def close(self) -> None:
+        """Close the connection to every page (1001, going away)."""
+        goodbyes = (socket.close(code=1001, message=b"the viewer is closing") for socket in list(self._sockets))
+        await asyncio.gather(*goodbyes, return_exceptions=True)
+
+    async def _listen(self, page: Page, socket: WebSocketResponse) -> None:
+        from linkwright.http_server import web
+
+        patience = _PATIENCE
+        pace = Pace(asyncio.get_running_loop().time)
+        async for message in socket:
+            if message.type not in (web.WSMsgType.TEXT, web.WSMsgType.BINARY):
+                continue
+            if (pause := pace.wait()) > 0:
+                await asyncio.sleep(pause)
+            if message.type is web.WSMsgType.BINARY:
+                sound = unpack_sound(message.data)
+                if sound is None:
+                    await socket.close(code=1003, message=b"pages send text, and sound in blocks")
+                    return
+                self._hand_on(page, sound)
+                continue
+            try:
+                decoded = decode(message.data)
+            except BadMessageError as error:
+                self._logger.warning(f"A page sent an invalid message: {error}")
+                patience -= 1
+                if patience == 0:
+                    await socket.close(code=1008, message=b"too many messages outside of the protocol")
+                    return
+            else:
+                if isinstance(decoded, Received):
+                    page.received(decoded.count)
+                else:
+                    self._hand_on(page, decoded)
+
+    def _hand_on(self, page: Page, message: PageMessage | SoundBlock) -> None:
+        receive = self._receivers.get(type(message))
+        if receive is None:
+            return
+        try:
+            receive(page, message)
+        except Exception as error:  # noqa: BLE001 - one message must not take the page's others with it
+            log_failure(self._logger, f"'{type(message).__name__}' of a page", error)
+
+
+_RATE = 1000.0
+_BURST = 4000.0
+"""A page of a large robot reports all its meshes at once."""
+
+
+class Pace:
+    """Limits the rate of a sender's messages, so that one page cannot block the others.
+
+    Args:
+        clock: seconds.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._left = _BURST
+        self._at = clock()
+
+    def wait(self) -> float:
+        """Return the seconds to wait before a message is handled."""
+        now = self._clock()
+        self._left = min(_BURST, self._left + (now - self._at) * _RATE) - 1.0
+        self._at = now
+        return max(0.0, -self._left / _RATE)

@@ -1,0 +1,294 @@
+"""The queue of payloads for a page, and the measured rate of the page's line.
+
+Of each kind only the newest waits, transforms precede the rest, and large content is reduced for a slow line or sent
+in pieces.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+from linkwright.page.protocol.binary import pack_piece
+from linkwright.page.protocol.message import DataContent
+
+Pack = Callable[[DataContent], bytes]
+Shrink = Callable[[int], DataContent]
+"""Reduces the content to about so many bytes, or as far as possible; runs in a thread."""
+
+
+class ScaledData:
+    """A content of a display, packed for a page when its turn comes.
+
+    Args:
+        key: its key in outboxes.
+        content: the full content.
+        shrink: reduces it to a number of bytes.
+        pack: makes the binary frame.
+
+    Attributes:
+        gone: whether it was replaced or removed, and must not be sent again.
+    """
+
+    def __init__(self, key: str, content: DataContent, shrink: Shrink, pack: Pack) -> None:
+        self.key = key
+        self.gone = False
+        self._content = content
+        self._shrink = shrink
+        self._pack = pack
+        self._smaller: dict[int, asyncio.Future[bytes]] = {}
+
+    @cached_property
+    def full_frame(self) -> bytes:
+        """Return the frame with the full content."""
+        return self._pack(self._content)
+
+    async def fitting(self, room: int) -> bytes:
+        """Return the frame with as much as fits into so many bytes; cached for pages of similar lines."""
+        if len(self.full_frame) <= room:
+            return self.full_frame
+        size = 1 << (room.bit_length() - 1)
+        if size not in self._smaller:
+            self._smaller[size] = asyncio.ensure_future(asyncio.to_thread(self._made, size))
+        return await asyncio.shield(self._smaller[size])
+
+    def _made(self, size: int) -> bytes:
+        return self._pack(self._shrink(size))
+
+
+class InPieces:
+    """A frame in pieces, one each time its turn comes in an outbox, so that other payloads go between them.
+
+    Args:
+        payload: the content.
+        number: a number that differs from those before.
+        size: returns the bytes that the next piece may have.
+    """
+
+    def __init__(self, payload: ScaledData, number: int, size: Callable[[], int]) -> None:
+        self.payload = payload
+        self.key = payload.key
+        self._number = number
+        self._size = size
+        self._given = 0
+
+    @property
+    def done(self) -> bool:
+        """Whether all pieces were sent, or they are not needed any more."""
+        return self.payload.gone or self._given >= len(self.payload.full_frame)
+
+    def since(self, seen: int) -> tuple[bytes | None, int]:
+        """Return the next piece, or None if there is none. The argument is ignored: pieces are counted here."""
+        if self.done:
+            return None, seen
+        size = self._size()
+        piece = pack_piece(self.payload.full_frame, self._number, self._given, size)
+        self._given += size
+        return piece, seen
+
+
+FRAME_TABLE = "frame_table"
+TRANSFORMS = "transforms"
+_URGENT = (FRAME_TABLE, TRANSFORMS)
+
+Outgoing = str | bytes
+"""Text of a control message, or a binary frame."""
+
+
+class Changes(Protocol):
+    """Content that is sent as changes: each page gets those it lacks, combined when its turn comes.
+
+    A slow page then gets many changes in one frame, and no content that is gone again.
+    """
+
+    key: str
+    """Its key in the outbox."""
+
+    def since(self, seen: int) -> tuple[Outgoing | None, int]:
+        """Return the message or binary frame for a page.
+
+        Args:
+            seen: the number that this returned for the page's last one; 0 for a page that has nothing.
+
+        Returns:
+            The frame, or None when the page has everything; and what the page will have seen then.
+        """
+
+
+Payload = Outgoing | Changes | ScaledData
+
+
+class Outbox:
+    """A queue of payloads by redundancy key.
+
+    A payload replaces one that waits under its key and goes to the end, so that payloads are sent in the order of their
+    creation; heavy content keeps its position, or the most frequent content would starve the rest. Frame tables and
+    transforms have a queue of their own, which alternates with the other one: a slider moves the scene before anything
+    else is sent, yet a slow page does not starve of the rest.
+
+    Attributes:
+        is_held: the line is full: only frame tables and transforms are taken.
+    """
+
+    def __init__(self) -> None:
+        self._urgent: dict[str, Payload] = {}
+        self._ordinary: dict[str, Payload] = {}
+        self._filled = asyncio.Event()
+        self._urgent_last = False
+        self._seen: dict[str, int] = {}
+        self.is_held = False
+
+    def __len__(self) -> int:
+        return len(self._urgent) + len(self._ordinary)
+
+    def put(self, key: str, payload: Payload) -> None:
+        """Queue a payload, replacing one that waits under the same key."""
+        line = self._urgent if key in _URGENT else self._ordinary
+        before = line.get(key)
+        if not (isinstance(before, ScaledData) and isinstance(payload, ScaledData) and not before.gone):
+            line.pop(key, None)
+        line[key] = payload
+        self._filled.set()
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._urgent or key in self._ordinary
+
+    def hold(self, held: bool) -> None:
+        """Hold back everything except frame tables and transforms, or release it."""
+        self.is_held = held
+        self._filled.set()
+
+    async def take(self) -> Outgoing | ScaledData:
+        """Return the next payload, as soon as there is one."""
+        while True:
+            while not self._urgent and (self.is_held or not self._ordinary):
+                self._filled.clear()
+                await self._filled.wait()
+            others = self._ordinary and not self.is_held
+            self._urgent_last = bool(self._urgent) and not (self._urgent_last and others)
+            line = self._urgent if self._urgent_last else self._ordinary
+            made = self.make(line.pop(next(iter(line))))
+            if made is not None:
+                return made
+
+    def make(self, payload: Payload) -> Outgoing | ScaledData | None:
+        """Return the message or frame to send for a payload now, or None."""
+        if isinstance(payload, (str, bytes)):
+            return payload
+        if isinstance(payload, ScaledData):
+            return None if payload.gone else payload
+        made, self._seen[payload.key] = payload.since(self._seen.get(payload.key, 0))
+        return made
+
+
+BULK = 4096
+"""Messages of at least so many bytes are counted; pages acknowledge those (and some smaller ones)."""
+
+_SHARE = 0.1
+"""Seconds that one payload may keep the line busy."""
+
+_FIRST_ROOM = 24 * 1024
+_LEAST_ROOM = 6 * 1024
+
+_BLOCKED = 0.02
+"""Seconds of waiting for the socket that indicate a slow line, not a busy machine."""
+
+_MEAN_OF = 8
+"""Number of answers in the mean."""
+
+_MOST_ON_THE_WAY = 64
+"""Messages remembered for the first answer of a page that may never answer."""
+
+
+@dataclass(slots=True)
+class _OnTheWay:
+    number: int
+    size: int
+    sent: float
+
+
+class Line:
+    """Measures the connection to one page.
+
+    Pages acknowledge large messages, which measures the full path, including tunnels with buffers of their own. For a
+    page that does not, only the time is known that the socket took to accept the data.
+
+    Args:
+        clock: seconds.
+
+    Attributes:
+        rate: bytes a second; None as long as nothing is known.
+        took: seconds from a large message to its answer, a mean of the last ones; None as long as nothing is known.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self.rate: float | None = None
+        self.took: float | None = None
+        self._clock = clock
+        self._number = 0
+        self._answers = False
+        self._shortest = float("inf")
+        self._on_the_way: deque[_OnTheWay] = deque()
+        self._hello: float | None = None
+
+    @property
+    def room(self) -> int:
+        """Return the size in bytes that a reducible payload should have."""
+        return _FIRST_ROOM if self.rate is None else max(_LEAST_ROOM, int(self.rate * _SHARE))
+
+    @property
+    def is_full(self) -> bool:
+        """Whether large messages should wait until the page has received the earlier ones."""
+        return self._answers and sum(on_the_way.size for on_the_way in self._on_the_way) >= self.room / 2
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether the page has acknowledged all large messages."""
+        return self._answers and not self._on_the_way
+
+    def sending(self, size: int) -> float:
+        """Note that a message of so many bytes is passed to the socket; returns the time for `sent`."""
+        now = self._clock()
+        self._number += 1
+        if self._number == 1:
+            self._hello = now
+        if size >= BULK:
+            self._on_the_way.append(_OnTheWay(self._number, size, now))
+        return now
+
+    def sent(self, size: int, since: float) -> None:
+        """Note that the socket has accepted a message that was passed to it at a time."""
+        if self._answers or size < BULK:
+            return
+        while len(self._on_the_way) > _MOST_ON_THE_WAY:
+            self._on_the_way.popleft()
+        seconds = self._clock() - since
+        if seconds >= _BLOCKED:
+            self._learn(size / seconds)
+        elif 2 * size >= self.room:  # it went into buffers of unknown size
+            self._learn(float("inf"))
+
+    def received(self, count: int) -> None:
+        """Note how many messages the page has acknowledged."""
+        now = self._clock()
+        if not self._answers:
+            self._answers = True
+            if self._hello is not None:
+                self._shortest = now - self._hello
+        while self._on_the_way and self._on_the_way[0].number <= count:
+            arrived = self._on_the_way.popleft()
+            took = now - arrived.sent
+            self._shortest = min(self._shortest, took)
+            self.took = took if self.took is None else self.took + (took - self.took) / _MEAN_OF
+            if 2 * arrived.size >= min(self.room, _FIRST_ROOM):
+                self._learn(arrived.size / max(took - self._shortest, took / 10, 1e-4))
+
+    def _learn(self, rate: float) -> None:
+        """Adopt a measured rate. A single one may be an outlier: it at most doubles or halves the rate."""
+        known = self.room / _SHARE
+        self.rate = min(max(rate, known / 2), known * 2)

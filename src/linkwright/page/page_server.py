@@ -1,0 +1,79 @@
+"""The server of a viewer as soon as it listens: it serves the page before there is a viewer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwright.page.access import Gate
+from linkwright.page.files import Downloads, MeshFolders
+from linkwright.page.kept_tokens import PortToken, keep_token, leave_token, new_token
+
+if TYPE_CHECKING:
+    from linkwright.page.audience import Audience
+    from linkwright.page.server import WebServer
+    from linkwright.page.uploads import Guests
+
+
+class PageServer:
+    """Listens at an address, with the token of its pages.
+
+    Args:
+        host: the address to listen on; any but this machine's loopback address admits others who know the token.
+        port: 0 for any; None for 7448 or the next free one.
+
+    Attributes:
+        host: the address that it listens on.
+        meshes: the folders that pages may read from.
+        downloads: files that were made for pages.
+        url: the address to open in a browser, token included; empty before `open`.
+        is_open_to_others: whether other machines can reach it.
+        web: serves requests; None before `open`.
+    """
+
+    def __init__(self, host: str, port: int | None) -> None:
+        self.meshes = MeshFolders()
+        self.downloads = Downloads()
+        self.url = ""
+        self.is_open_to_others = False
+        self.web: WebServer | None = None
+        self.host, self._port = host, port
+        self._port_token: tuple[int, PortToken] | None = None
+
+    async def open(self) -> None:
+        """Listen, and serve the page; further requests wait for `show`.
+
+        Raises:
+            LinkwrightError: VIEW101 to VIEW103, it cannot listen where it should.
+        """
+        from linkwright.page.server import WebServer, is_open_to_others, listen
+
+        listener = listen(self.host, self._port)
+        self.is_open_to_others = is_open_to_others(listener)
+        if self._port != 0 and not self.is_open_to_others:
+            port = listener.getsockname()[1]
+            self._port_token = port, keep_token(port)
+        gate = Gate(self.host, self._port_token[1].token if self._port_token else new_token())
+        self.web = WebServer(gate, self.meshes, self.downloads)
+        self.url = await self.web.start(listener)
+
+    def show(self, audience: Audience, guests: Guests | None) -> None:
+        """Let pages in, see `WebServer.show`."""
+        if self.web is not None:
+            self.web.show(audience, guests)
+
+    @property
+    def pages_wait(self) -> bool:
+        """Whether pages of the former program at this port are looking for this one."""
+        return self._port_token is not None and self._port_token[1].pages_wait
+
+    def leave_token(self, *, pages_wait: bool) -> None:
+        """Store at the end of the program whether its pages wait for the next one."""
+        if self._port_token is not None:
+            (port, port_token), self._port_token = self._port_token, None
+            leave_token(port, port_token.token, pages_wait=pages_wait)
+
+    async def close(self) -> None:
+        """Close the connections to pages and stop listening."""
+        web, self.web = self.web, None
+        if web is not None:
+            await web.close()

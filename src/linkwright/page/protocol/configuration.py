@@ -1,0 +1,219 @@
+"""The configuration file and its edits: adding, removing and moving displays, undo and redo, open and save."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
+
+EditKind = Literal["set", "enable", "disable", "add", "duplicate", "rename", "remove", "move", "group"]
+Question = Literal["unsaved", "exists", "changed_on_disk"]
+
+
+# --- server to page ------------------------------------------------------------------------------------------------
+class EditName(Record):
+    """The edit that undo or redo would revert or repeat: its kind, and the name of the property or display."""
+
+    kind: EditKind
+    name: str
+
+
+class Configuration(ServerMessage):
+    """The configuration that the page sees.
+
+    Attributes:
+        path: the path of its file on the server; None when it has none yet.
+        opened: counts the configurations opened so far; when it grows, earlier messages are about another file.
+        unsaved: whether there are edits that the file lacks.
+        undo: the edit that undo would revert; None for none.
+        redo: the edit that redo would repeat; None for none.
+        own: whether the page has displays of its own.
+        recent: files opened or saved before, newest first.
+    """
+
+    path: str | None
+    opened: int
+    unsaved: bool
+    undo: EditName | None
+    redo: EditName | None
+    own: bool
+    recent: list[str]
+
+
+class DisplayClass(Record):
+    """A class of displays that can be added, and the types of the topics that it shows."""
+
+    cls: str
+    messages: list[str]
+
+
+class TopicChoice(Record):
+    """A topic of the graph, its type, and the classes of displays that show it; none when no display does."""
+
+    topic: str
+    message: str
+    classes: list[str]
+
+
+class DisplayChoices(ServerMessage):
+    """Answers `AskDisplayChoices`: all classes of displays that can be added, and the topics of the graph."""
+
+    classes: list[DisplayClass]
+    topics: list[TopicChoice]
+
+
+class Folder(ServerMessage):
+    """Answers `AskFolder`: the folders and configuration files in a folder of the server, by name."""
+
+    path: str
+    parent: str | None
+    folders: list[str]
+    files: list[str]
+
+
+class ConfigurationText(ServerMessage):
+    """Answers `AskConfigurationText`: the file as it would be saved now, and a name for it."""
+
+    name: str
+    text: str
+
+
+class ConfigurationSaved(ServerMessage):
+    """The configuration was saved."""
+
+    path: str
+
+
+class ConfigurationRefused(ServerMessage):
+    """A request of a page was refused. With a question, the page may confirm it and repeat the request."""
+
+    message: str
+    question: Question | None
+    path: str | None
+
+
+# --- page to server ------------------------------------------------------------------------------------------------
+class AddDisplay(PageMessage):
+    """Add a display of a class, enabled; into a group, if one is named, and showing a topic, if one is named."""
+
+    cls: str
+    name: str
+    group: str | None
+    topic: str | None
+
+
+class DuplicateDisplays(PageMessage):
+    """Add a copy after each of these displays."""
+
+    displays: list[str]
+
+
+class RenameDisplay(PageMessage):
+    """Rename a display."""
+
+    display: str
+    name: str
+
+
+class RemoveDisplays(PageMessage):
+    """Remove displays with their content."""
+
+    displays: list[str]
+
+
+class MoveDisplays(PageMessage):
+    """Move displays into a group (None for the top level), before one of its displays (None for the end)."""
+
+    displays: list[str]
+    group: str | None
+    before: str | None
+
+
+class GroupDisplays(PageMessage):
+    """Put displays into a new group, in the place of the first of them."""
+
+    displays: list[str]
+    name: str
+
+
+class Undo(PageMessage):
+    """Undo the last edit of any page."""
+
+
+class Redo(PageMessage):
+    """Redo the edit that was undone last."""
+
+
+class AskDisplayChoices(PageMessage):
+    """Ask for the classes of displays that can be added, the topics, and the displays that show them."""
+
+
+class AskFolder(PageMessage):
+    """Ask for the contents of a folder of the server; None for that of the open file."""
+
+    path: str | None
+
+
+class NewConfiguration(PageMessage):
+    """Start with RViz's default configuration; `discard` allows losing unsaved edits."""
+
+    discard: bool
+
+
+class OpenConfiguration(PageMessage):
+    """Open a file of the server; `discard` allows losing unsaved edits."""
+
+    path: str
+    discard: bool
+
+
+class LoadConfiguration(PageMessage):
+    """Open a file of the browser's machine: its name and text."""
+
+    name: str
+    text: str
+    discard: bool
+
+
+class RevertConfiguration(PageMessage):
+    """Open the file again, without the edits."""
+
+
+class SaveConfiguration(PageMessage):
+    """Save to the file, or to another one of the server, which is the configuration's file from then on.
+
+    Attributes:
+        path: ends in ``.rviz``; None for the file it has.
+        replace: whether an existing file, or one that another program changed, may be replaced.
+    """
+
+    path: str | None
+    replace: bool
+
+
+class AskConfigurationText(PageMessage):
+    """Ask for the file as it would be saved now, to store it on the browser's machine."""
+
+
+PanelName = Literal["displays", "selection", "tool-properties", "views", "time", "transformation", "navigation"]
+"""RViz's and nav2's panels that the page has too; the names are the page's."""
+
+
+class Panels(ServerMessage):
+    """The panels in the configuration.
+
+    Attributes:
+        opened: counts the configurations of this page's displays: with another number the page shows these panels.
+        origin: the name under which a page remembers a configuration that has no file.
+        shown: the panels that are open, in the order of the file; None if the file does not list panels.
+    """
+
+    opened: int
+    origin: str
+    shown: list[PanelName] | None
+
+
+class ShowPanels(PageMessage):
+    """The user opened or closed one of these panels; the file stores the open ones."""
+
+    shown: list[PanelName]

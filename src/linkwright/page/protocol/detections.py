@@ -1,0 +1,37 @@
+"""Content of the displays of vision_msgs."""
+
+from __future__ import annotations
+
+from linkwright.page.protocol.binary import Bytes, Floats
+from linkwright.page.protocol.message import DataContent
+
+
+class SolidBoxes(DataContent):
+    """Detection3D, BoundingBox3D and their arrays: boxes in the frame of the content.
+
+    `poses` has shape (N, 7), x y z (metres) qx qy qz qw of the middles; `sizes` (N, 3), metres; `colors` (N, 3), red,
+    green and blue; `scores` (N,), 0 to 1, and -1 where there is none; `names` those of the classes.
+    """
+
+    poses: Floats
+    sizes: Floats
+    colors: Bytes
+    scores: Floats
+    names: list[str]
+
+
+class PictureBoxes(DataContent):
+    """Detection2DArray: boxes over an image.
+
+    `boxes` has shape (N, 5): x y of the middle, width and height in pixels of the image, and the rotation of the box,
+    radians clockwise. The rest is as in `SolidBoxes`.
+
+    `of_image` is whether the boxes were detected in the image with the stamp of the content; else they are drawn over
+    the current image.
+    """
+
+    boxes: Floats
+    colors: Bytes
+    scores: Floats
+    names: list[str]
+    of_image: bool

@@ -1,0 +1,77 @@
+"""Content of the displays of points, poses, paths and other small data."""
+
+from __future__ import annotations
+
+from linkwright.page.protocol.binary import Bytes, Floats
+from linkwright.page.protocol.message import DataContent
+
+
+class PointMarks(DataContent):
+    """PointStamped: points in the frame of the content, metres, shape (N, 3)."""
+
+    positions: Floats
+
+
+class PoseMarks(DataContent):
+    """Pose, PoseArray, PoseWithCovariance, Odometry and Path: poses in the frame of the content.
+
+    `poses` has shape (N, 7): x, y, z, qx, qy, qz, qw. `covariances` has shape (N, 36), row by row over x, y, z and the
+    rotations about them, or (0,).
+    """
+
+    poses: Floats
+    covariances: Floats
+
+
+class ParticleMarks(DataContent):
+    """ParticleCloud: poses as in `PoseMarks`, and the weight of each, shape (N,)."""
+
+    poses: Floats
+    weights: Floats
+
+
+class PolygonLine(DataContent):
+    """Polygon: its corners in the frame of the content, shape (N, 3)."""
+
+    points: Floats
+
+
+class GridSurface(DataContent):
+    """GridMap: the middles of cells in the frame of the content, row by row.
+
+    `points` has shape (rows * columns, 3); `colors` (rows * columns, 4): red, green, blue, and 0 for a missing cell.
+    The surface is drawn where it is `filled`; otherwise only lines are.
+    """
+
+    rows: int
+    columns: int
+    points: Floats
+    colors: Bytes
+    filled: bool
+
+
+class RangeCone(DataContent):
+    """Range: a cone along x of the frame of the content, metres and radians; no cone if `range` is 0."""
+
+    range: float
+    field_of_view: float
+
+
+class Screw(DataContent):
+    """TwistStamped, AccelStamped and Wrench: two vectors in the frame of the content, SI units."""
+
+    linear: list[float]
+    angular: list[float]
+
+
+class EffortRings(DataContent):
+    """Effort: a ring about each joint.
+
+    `poses` has shape (N, 7), in the Fixed Frame, with z along the joint's axis; `efforts` and `limits` are in N m, of
+    shape (N,).
+    """
+
+    joints: list[str]
+    poses: Floats
+    efforts: Floats
+    limits: Floats

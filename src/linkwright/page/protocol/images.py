@@ -1,0 +1,64 @@
+"""Content of the displays of images and of maps."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from linkwright.page.protocol.binary import Bytes
+from linkwright.page.protocol.message import DataContent, PageMessage, Record
+
+
+class CameraModel(Record):
+    """The pinhole camera of an image, from the projection matrix of its CameraInfo.
+
+    Sizes, focal lengths and the principal point are pixels; `offset_x` and `offset_y` are the camera's distance from
+    the frame of the image, in metres right and down.
+    """
+
+    width: float
+    height: float
+    focal_x: float
+    focal_y: float
+    centre_x: float
+    centre_y: float
+    offset_x: float
+    offset_y: float
+
+
+class ImageFrame(DataContent):
+    """Image and Camera: one image.
+
+    `width` and `height` are those of the message; `columns` and `rows` those of the data, which may be smaller.
+    The data are 8-bit pixels row by row, or a file that browsers read. `quality` is that of the WebP (1 to 95) which
+    was made of the image for a slow line, else 0.
+    """
+
+    width: int
+    height: int
+    columns: int
+    rows: int
+    encoding: Literal["grey", "rgb", "rgba", "file"]
+    data: Bytes
+    camera: CameraModel | None = None
+    quality: int = 0
+
+
+class PictureSize(PageMessage):
+    """The size of an Image display's panel in pixels, 0 while it is hidden; larger images are not needed."""
+
+    display: str
+    width: int
+    height: int
+
+
+class OccupancyMap(DataContent):
+    """Map: the cells row by row from the origin's corner, each the byte of its int8 value.
+
+    `origin` is the pose of that corner in the frame of the message: x y z (metres) qx qy qz qw.
+    """
+
+    width: int
+    height: int
+    resolution: float
+    origin: list[float]
+    cells: Bytes

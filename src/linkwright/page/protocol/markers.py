@@ -1,0 +1,147 @@
+"""Markers: content of the Marker and MarkerArray displays, and interactive markers."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from linkwright.page.protocol.binary import Bytes, Floats
+from linkwright.page.protocol.message import DataContent, PageMessage, Record
+
+MarkerKind = Literal[
+    "arrow",
+    "cube",
+    "sphere",
+    "cylinder",
+    "line_strip",
+    "line_list",
+    "cube_list",
+    "sphere_list",
+    "points",
+    "text",
+    "mesh",
+    "triangle_list",
+    "arrow_strip",
+]
+"""In the order of visualization_msgs' numbers; the last since Jazzy."""
+
+
+class MarkerMesh(Record):
+    """The file of a mesh marker: an address, or the bytes that came with the message.
+
+    `embedded` is whether its own materials are used, tinted by the marker's colour.
+    """
+
+    format: str
+    url: str | None
+    data: Bytes | None
+    embedded: bool
+
+
+class MarkerShape(Record):
+    """A marker, as visualization_msgs/msg/Marker has it.
+
+    `id` is ``<namespace>/<number>``. `pose` (x y z qx qy qz qw) is in the Fixed Frame, or, when `frame` is not empty,
+    in that frame, which it follows. `scale` is x, y, z; `color` red, green, blue, alpha. `points` has shape (N, 3),
+    `colors` (N, 4) or none, `uvs` (N, 2) or none. `texture` is an address of an image.
+    """
+
+    id: str
+    namespace: str
+    shape: MarkerKind
+    frame: str
+    pose: list[float]
+    scale: list[float]
+    color: list[float]
+    points: Floats
+    colors: Floats
+    uvs: Floats
+    text: str
+    mesh: MarkerMesh | None
+    texture: str | None
+
+
+class MarkersChanged(DataContent):
+    """Marker and MarkerArray: new and changed markers, and the ids of removed ones.
+
+    With `everything` set, all earlier markers are removed.
+    """
+
+    everything: bool
+    gone: list[str]
+    markers: list[MarkerShape]
+
+
+OrientationMode = Literal["inherit", "fixed", "view_facing"]
+"""In the order of visualization_msgs' numbers, as are the modes below."""
+
+InteractionMode = Literal[
+    "none",
+    "menu",
+    "button",
+    "move_axis",
+    "move_plane",
+    "rotate_axis",
+    "move_rotate",
+    "move_3d",
+    "rotate_3d",
+    "move_rotate_3d",
+]
+FeedbackEvent = Literal["pose_update", "menu_select", "button_click", "mouse_down", "mouse_up"]
+
+
+class InteractiveControl(Record):
+    """A handle of an interactive marker.
+
+    Its axis is the x axis of `orientation` (x y z w, in the frame that the orientation mode selects). The poses of
+    `markers` are in the frame of the control, or in that of the interactive marker when `independent_orientation`.
+    """
+
+    name: str
+    description: str
+    mode: InteractionMode
+    orientation_mode: OrientationMode
+    orientation: list[float]
+    always_visible: bool
+    independent_orientation: bool
+    markers: list[MarkerShape]
+
+
+class MarkerMenuEntry(Record):
+    """An entry of a marker's menu; `parent` is 0 at the top."""
+
+    id: int
+    parent: int
+    title: str
+
+
+class InteractiveMarkerShape(DataContent, tag="interactive_marker"):
+    """An interactive marker in the frame of the content; `pose` is x y z qx qy qz qw, `scale` metres."""
+
+    name: str
+    description: str
+    pose: list[float]
+    scale: float
+    controls: list[InteractiveControl]
+    menu: list[MarkerMenuEntry]
+
+
+class InteractiveMarkerMoved(DataContent):
+    """An interactive marker has another pose in the frame of the content."""
+
+    name: str
+    pose: list[float]
+
+
+class MarkerFeedback(PageMessage):
+    """The user acted on an interactive marker; poses and points are in the marker's frame.
+
+    `mouse_point` is the point of the marker under the mouse, or none.
+    """
+
+    display: str
+    marker: str
+    control: str
+    event: FeedbackEvent
+    pose: list[float]
+    menu_entry: int
+    mouse_point: list[float]

@@ -1,0 +1,67 @@
+"""The panel of nav2: the states of its nodes and its goal, and commands to them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from linkwright.page.protocol.message import PageMessage, ServerMessage
+
+ManagerState = Literal["unknown", "inactive", "active"]
+"""The state of a lifecycle manager's nodes; unknown if there is none."""
+
+GoalState = Literal["none", "active", "canceling", "succeeded", "canceled", "aborted"]
+
+NavigationCommand = Literal["startup", "pause", "resume", "reset", "cancel"]
+
+
+class WatchNavigation(PageMessage):
+    """Whether the page shows its panel."""
+
+    open: bool
+
+
+class CommandNavigation(PageMessage):
+    """The user pressed a button: a command to both lifecycle managers, or to cancel all goals."""
+
+    command: NavigationCommand
+
+
+class NavigationState(ServerMessage):
+    """The state of navigation for the panel.
+
+    Attributes:
+        navigation: the nodes of lifecycle_manager_navigation.
+        localization: the state of lifecycle_manager_localization.
+        goal: the last goal of ``navigate_to_pose``.
+        eta: seconds that remain; None if there is no feedback, as for all below.
+        distance: metres that remain.
+        taken: seconds that have passed.
+        recoveries: the number of recoveries so far.
+        busy: whether a command is running.
+        problem: why the last command failed; empty if it did not.
+    """
+
+    navigation: ManagerState
+    localization: ManagerState
+    goal: GoalState
+    eta: float | None
+    distance: float | None
+    taken: float | None
+    recoveries: int | None
+    busy: bool
+    problem: str
+
+
+class GoalOutcome(ServerMessage):
+    """Whether the last goal failed, which is shown over the scene.
+
+    Attributes:
+        reason: the last error of the node that aborted it, or why it was not sent; empty if unknown.
+        failed: whether it failed; false from when another goal is accepted.
+    """
+
+    reason: str
+    failed: bool
+
+
+NO_GOAL_FAILED = GoalOutcome("", failed=False)

@@ -1,0 +1,53 @@
+"""Content of the displays of many points: clouds, scans, cells."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from linkwright.page.protocol.binary import Bytes, Floats
+from linkwright.page.protocol.message import DataContent, PageMessage, ServerMessage
+
+
+class CloudPoints(DataContent):
+    """PointCloud2 and its kin: points in the frame of the message, metres, shape (N, 3).
+
+    `colours` has red, green, blue and alpha of each point, shape (N, 4), or nothing if all have the display's own
+    colour. `translucent` is whether an alpha is less than full. `pixel` is the size of points by their depth in the
+    frame, metres per metre; 0 if they have the display's size. For a slow line only every `step`-th
+    point is sent.
+    """
+
+    positions: Floats
+    colours: Bytes
+    translucent: bool = False
+    pixel: float = 0.0
+    step: int = 1
+
+
+class CellGrid(DataContent):
+    """GridCells: middles of the cells in the frame of the message, metres, shape (N, 3), and the sides of a cell."""
+
+    positions: Floats
+    width: float
+    height: float
+
+
+class AskPoint(PageMessage):
+    """The user selected a point of a display's content; answered by `PointFields`."""
+
+    display: str
+    key: str
+    index: int
+
+
+class PointFields(ServerMessage):
+    """The fields of a point besides its coordinates, by name, in the order of the message.
+
+    A packed colour is ``#rrggbbaa``; a number that is not finite is a text.
+    """
+
+    display: str
+    key: str
+    index: int
+    fields: dict[str, float | str]
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "key", "index")

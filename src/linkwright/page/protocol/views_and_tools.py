@@ -1,0 +1,164 @@
+"""Views, the poses of the camera, and tools, the uses of the mouse in the scene.
+
+Every page has a camera and a selected tool of its own; pages share the file's view, the saved views, and the list and
+settings of tools. The values of a view are named by the path of their property: ``Distance``, ``Focal Point/X``.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from linkwright.page.protocol.displays import Property, PropertyValue
+from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
+
+
+class View(Record):
+    """A view: RViz's class of it (``rviz_default_plugins/Orbit``), its name, and its values."""
+
+    cls: str
+    name: str
+    values: dict[str, PropertyValue]
+
+
+class ViewClass(Record):
+    """A class of views: its rows, whose ids are names of values, and RViz's defaults, also of rows not shown."""
+
+    cls: str
+    properties: list[Property]
+    defaults: dict[str, PropertyValue]
+
+
+class ViewClasses(ServerMessage):
+    """All classes of views; sent before the first view."""
+
+    classes: list[ViewClass]
+
+
+class ViewState(ServerMessage):
+    """The view of a configuration; the page owns the camera from then on.
+
+    `revision` counts the configurations that were opened: a page that reconnects keeps its camera while it is the same.
+    `whole_robot` is whether no user chose this view: the camera then fits the robot, once it is drawn.
+    """
+
+    view: View
+    revision: int
+    whole_robot: bool = False
+
+
+class SavedView(Record):
+    """A saved view and its id, which stays the same when the view is renamed or changed."""
+
+    id: str
+    view: View
+
+
+class SavedViews(ServerMessage):
+    """The saved views, in their order, sent after each change."""
+
+    views: list[SavedView]
+
+
+class ViewChanged(PageMessage):
+    """The page's current camera, sent at most a few times a second; the last one of any page is saved in the file."""
+
+    view: View
+
+
+class RobotMeasured(PageMessage):
+    """The extent of robots with their meshes, measured by a page whose camera the user has not moved.
+
+    That is the diagonal of the box around them, and the height of the ground below them, in the Fixed Frame, m.
+    """
+
+    diagonal: float
+    ground: float
+
+
+class SaveView(PageMessage):
+    """Add a view to the saved ones."""
+
+    view: View
+
+
+class ChangeSavedView(PageMessage):
+    """Change the name or the values of a saved view."""
+
+    id: str
+    view: View
+
+
+class RemoveSavedView(PageMessage):
+    """Remove a saved view."""
+
+    id: str
+
+
+class Tool(Record):
+    """A tool of the toolbar. `supported` is false for an unknown class, which the file keeps."""
+
+    id: str
+    cls: str
+    name: str
+    supported: bool
+    properties: list[Property]
+
+
+class ToolClass(Record):
+    """A class of tools that can be added."""
+
+    cls: str
+    name: str
+
+
+class Tools(ServerMessage):
+    """The tools in the order of the toolbar, sent after each change; the first is the default one."""
+
+    tools: list[Tool]
+    classes: list[ToolClass]
+
+
+class ToolPropertyChanged(ServerMessage):
+    """A new setting of a tool, set by any page; the answer to a refused value is the present one."""
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("id",)
+
+    id: str
+    value: PropertyValue
+
+
+class SetToolProperty(PageMessage):
+    """The user edited a setting of a tool."""
+
+    id: str
+    value: PropertyValue
+
+
+class AddTool(PageMessage):
+    """Add a tool of a class at the end of the toolbar."""
+
+    cls: str
+
+
+class RemoveTool(PageMessage):
+    """Remove a tool from the toolbar."""
+
+    id: str
+
+
+class PoseChosen(PageMessage):
+    """A 2D Pose Estimate or 2D Goal Pose was set in the Fixed Frame: metres, and radians about z."""
+
+    tool: str
+    x: float
+    y: float
+    yaw: float
+
+
+class PointChosen(PageMessage):
+    """A Publish Point tool was used on a point of the Fixed Frame, metres."""
+
+    tool: str
+    x: float
+    y: float
+    z: float

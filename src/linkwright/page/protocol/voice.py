@@ -1,0 +1,119 @@
+"""The Voice panel: sound of pages' microphones, recognized commands and answers, commands as text.
+
+Sound is sent in binary frames, little endian: four uint32 (kind 5, number of samples N, number of samples that the
+browser lost in them or before them, 0), and int16 N, mono at 16 kHz. A frame has a tenth of a second, or less where the
+sound ends.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.page.protocol.message import PageMessage, ServerMessage
+
+SOUND_KIND = 5
+SOUND_RATE = 16_000
+"""Samples a second."""
+
+MOST_SAMPLES = 1600
+"""The largest number of samples in a frame."""
+
+MOST_LOST_SAMPLES = 5 * SOUND_RATE
+"""The most lost samples that a frame may report; a page that lost more reports this number."""
+
+_HEADER = struct.Struct("<IIII")
+
+
+@dataclass(frozen=True, slots=True)
+class SoundBlock:
+    """Sound of a page's microphone.
+
+    Attributes:
+        samples: mono PCM of 16 bits at 16 kHz, shape (n,).
+        lost: seconds that are missing in them or before them, because the browser's machine was too busy.
+    """
+
+    samples: NDArray[np.int16]
+    lost: float = 0.0
+
+
+def unpack_sound(frame: bytes) -> SoundBlock | None:
+    """Return the sound in a binary frame of a page, or None for another frame."""
+    if len(frame) < _HEADER.size:
+        return None
+    kind, count, lost, _ = _HEADER.unpack_from(frame)
+    if kind != SOUND_KIND or not 0 < count <= MOST_SAMPLES or len(frame) != _HEADER.size + 2 * count:
+        return None
+    if lost > MOST_LOST_SAMPLES:
+        return None
+    return SoundBlock(np.frombuffer(frame, "<i2", count, _HEADER.size).astype(np.int16), lost / SOUND_RATE)
+
+
+class VoiceNode(ServerMessage):
+    """Whether there is a node that carries out spoken commands."""
+
+    present: bool
+
+
+class WatchVoice(PageMessage):
+    """Start or stop sending recognized commands and answers."""
+
+    watched: bool
+
+
+TalkMode = Literal["off", "ready", "held", "open"]
+
+
+class Talk(PageMessage):
+    """The mode of the page's microphone.
+
+    It is off; ready, which publishes nothing yet; or published, while a button is held or all the time.
+    """
+
+    mode: TalkMode
+
+
+class SayCommand(PageMessage):
+    """A command as text, handled like a spoken one."""
+
+    text: str
+
+
+Talking = Literal["nobody", "you", "another"]
+
+
+class VoiceState(ServerMessage):
+    """The page that talks, and the listeners in the graph.
+
+    Attributes:
+        talking: the page whose sound is published. One page talks at a time: the first with its button held, else the
+            first that listens all the time.
+        sound_listeners: the number of subscribers to sound.
+        text_listeners: the number of subscribers to commands as text.
+        cut: the page sent more sound than time has passed, or reported too much loss, and has to restart.
+        proposes_enrolling: the robot recognized no word of a command and proposes to enrol words.
+    """
+
+    talking: Talking
+    sound_listeners: int
+    text_listeners: int
+    cut: bool
+    proposes_enrolling: bool
+
+
+SaidPart = Literal["partial", "text", "command", "response"]
+
+
+class VoiceSaid(ServerMessage):
+    """A text of the conversation: partial or final speech, a recognized command, or an answer."""
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("number",)
+
+    number: int
+    part: SaidPart
+    text: str

@@ -1,0 +1,102 @@
+"""Exports the robot as a file in one of several formats, for a page to fetch once."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from linkwright.diagnostics import LinkwrightError, display_path, in_one_line
+from linkwright.page.audience import Page
+from linkwright.page.files import Download
+from linkwright.page.protocol.export import AskExport, ExportFailed, ExportReady
+from linkwright.panels.export.snapshot import Snapshot, snapshot_of
+from linkwright.panels.page_feature import FeatureHost, PageFeature
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """A file format.
+
+    Attributes:
+        content_type: its MIME type.
+        write: returns the file's content.
+    """
+
+    content_type: str
+    write: Callable[[Snapshot], bytes]
+
+
+def _html(snapshot: Snapshot) -> bytes:
+    from linkwright.panels.export.html import html_of
+
+    return html_of(snapshot)
+
+
+def _glb(snapshot: Snapshot) -> bytes:
+    from linkwright.panels.export.gltf import glb_of
+
+    return glb_of(snapshot)
+
+
+FORMATS = {
+    "html": Format("text/html; charset=utf-8", _html),
+    "glb": Format("model/gltf-binary", _glb),
+}
+"""By the extension of the file."""
+
+
+def format_of(name: str) -> Format | None:
+    """Return the format for the extension of a file's name."""
+    return FORMATS.get(name.rpartition(".")[2].lower()) if "." in name else None
+
+
+def export_snapshot(snapshot: Snapshot, ending: str) -> bytes:
+    """Return the file's content.
+
+    Raises:
+        LinkwrightError: it cannot be made.
+    """
+    return FORMATS[ending].write(snapshot)
+
+
+class ExportFeature(PageFeature):
+    """Exports the configuration that a page sees."""
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._working: dict[Page, asyncio.Task[None]] = {}
+
+    def receive(self, page: Page, message: AskExport) -> None:
+        """Start an export; one at a time for each page."""
+        if message.format not in FORMATS or page in self._working:
+            return
+        task = asyncio.get_running_loop().create_task(self._make(page, message))
+        self._working[page] = task
+        task.add_done_callback(lambda _: self._working.pop(page, None))
+
+    def close(self) -> None:
+        """Stop exporting."""
+        for task in self._working.values():
+            task.cancel()
+
+    async def _make(self, page: Page, message: AskExport) -> None:
+        try:
+            snapshot = snapshot_of(self.viewer, self.managers.of(page), message.view)
+            data = await asyncio.to_thread(partial(export_snapshot, snapshot, message.format))
+        except LinkwrightError as error:
+            page.send(ExportFailed(in_one_line(error.diagnostics)))
+            return
+        except Exception as error:  # noqa: BLE001  # a fault of ours must not leave the page waiting
+            self.context.node.get_logger().error(
+                f"The export failed:\n{traceback.format_exc()}"
+            )  # not the standard library's logger
+            page.send(ExportFailed(f"{type(error).__name__}: {error}"))
+            return
+        name = re.sub(r"[^\w.-]+", "_", snapshot.name).strip("._") or "robot"
+        file = Download(f"{name}.{message.format}", FORMATS[message.format].content_type, data)
+        outside = [display_path(path) for path in snapshot.outside]
+        page.send(ExportReady(self.context.downloads.put(file), file.name, outside))

@@ -1,0 +1,350 @@
+"""A robot as glTF 2.0 binary file: a document, and its arrays and images."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import sqrt
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright._version import __version__
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, missing_extra, phrase
+from linkwright.geometry.mesh_files import BadMeshError
+from linkwright.geometry.mesh_parts import UNCOLOURED, MeshPart, OwnLook, read_parts
+from linkwright.geometry.single import normalized
+from linkwright.nodes.robot_transforms import JointMotion
+from linkwright.page.files import FileRefusedError
+from linkwright.page.protocol.robot import LinkScene, Shape
+from linkwright.panels.export.shapes import box, capsule, cylinder, sphere
+from linkwright.panels.export.snapshot import FileSet, Snapshot
+
+_MAGIC, _VERSION = 0x46546C67, 2
+_JSON, _BINARY = 0x4E4F534A, 0x004E4942
+_FLOAT, _UNSIGNED_SHORT, _UNSIGNED_INT = 5126, 5123, 5125
+_VERTICES, _INDICES = 34962, 34963
+_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
+_REPEAT, _LINEAR, _LINEAR_MIPMAPS = 10497, 9729, 9987
+
+
+class GltfFile:
+    """A glTF that grows; indices identify its parts.
+
+    Args:
+        generator: the program that makes it.
+    """
+
+    def __init__(self, generator: str) -> None:
+        self._parts: dict[str, list[dict[str, Any]]] = {}
+        self._binary = bytearray()
+        self._generator = generator
+
+    def add(self, kind: str, **content: Any) -> int:
+        """Add to one of the document's lists (``nodes``, ``meshes``, ``materials``, ...), without values of None."""
+        entries = self._parts.setdefault(kind, [])
+        entries.append({name: value for name, value in content.items() if value is not None})
+        return len(entries) - 1
+
+    def entry(self, kind: str, index: int) -> dict[str, Any]:
+        """Return an entry that was added, for changes."""
+        return self._parts[kind][index]
+
+    def vertices(self, values: NDArray[Any], *, bounded: bool = False) -> int:
+        """Add an array of shape (N, 2 to 4), as float32; with its bounds, as positions must have them."""
+        array = np.ascontiguousarray(values, dtype="<f4")
+        bounds: dict[str, Any] = {}
+        if bounded:
+            bounds = {"min": array.min(axis=0).tolist(), "max": array.max(axis=0).tolist()}
+        return self.add(
+            "accessors",
+            bufferView=self._view(array.tobytes(), _VERTICES),
+            componentType=_FLOAT,
+            count=len(array),
+            type=_TYPES[array.shape[1]],
+            **bounds,
+        )
+
+    def indices(self, values: NDArray[Any]) -> int:
+        """Add the corners of triangles."""
+        short = values.size == 0 or int(values.max()) < 0xFFFF
+        array = np.ascontiguousarray(values, dtype="<u2" if short else "<u4").reshape(-1)
+        return self.add(
+            "accessors",
+            bufferView=self._view(array.tobytes(), _INDICES),
+            componentType=_UNSIGNED_SHORT if short else _UNSIGNED_INT,
+            count=array.size,
+            type="SCALAR",
+        )
+
+    def texture(self, data: bytes, content_type: str) -> int:
+        """Add a PNG or JPEG as a texture that repeats."""
+        if not self._parts.get("samplers"):
+            self.add("samplers", magFilter=_LINEAR, minFilter=_LINEAR_MIPMAPS, wrapS=_REPEAT, wrapT=_REPEAT)
+        image = self.add("images", bufferView=self._view(data), mimeType=content_type)
+        return self.add("textures", source=image, sampler=0)
+
+    def binary(self, roots: list[int]) -> bytes:
+        """Return the file (.glb), which shows these nodes."""
+        document: dict[str, Any] = {
+            "asset": {"version": "2.0", "generator": self._generator},
+            "scene": 0,
+            "scenes": [{"nodes": roots}],
+            **self._parts,
+        }
+        if self._binary:
+            document["buffers"] = [{"byteLength": len(self._binary)}]
+        text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
+        chunks = [_chunk(_JSON, text, b" ")]
+        if self._binary:
+            chunks.append(_chunk(_BINARY, bytes(self._binary), b"\0"))
+        body = b"".join(chunks)
+        return struct.pack("<III", _MAGIC, _VERSION, 12 + len(body)) + body
+
+    def _view(self, data: bytes, target: int | None = None) -> int:
+        self._binary += b"\0" * (-len(self._binary) % 4)
+        index = self.add("bufferViews", buffer=0, byteOffset=len(self._binary), byteLength=len(data), target=target)
+        self._binary += data
+        return index
+
+
+def _chunk(kind: int, data: bytes, padding: bytes) -> bytes:
+    data += padding * (-len(data) % 4)
+    return struct.pack("<II", len(data), kind) + data
+
+
+_RVIZ_RED = (1.0, 0.0, 0.0)
+_Y_UP = [-sqrt(0.5), 0.0, 0.0, sqrt(0.5)]
+"""The rotation from our z up to glTF's y up."""
+
+
+def glb_of(snapshot: Snapshot) -> bytes:
+    """Return the visuals of a robot in its current pose, as a .glb file.
+
+    Colours are those of the page, converted to glTF's linear values.
+
+    Raises:
+        LinkwrightError: VIEW204, a mesh cannot be read; INR104, VIEW205, a library for it is not installed.
+    """
+    return _RobotWriter(snapshot).write()
+
+
+@dataclass(frozen=True, slots=True)
+class _Look:
+    color: tuple[float, float, float]
+    alpha: float
+    image: bytes | None
+    double_sided: bool
+    by_vertex: bool
+
+
+class _RobotWriter:
+    def __init__(self, snapshot: Snapshot) -> None:
+        self._snapshot = snapshot
+        self._files = FileSet(snapshot.meshes)
+        self._gltf = GltfFile(f"Linkwright {__version__}")
+        self._parts: dict[str, list[MeshPart]] = {}
+        self._geometries: dict[tuple[Any, ...], dict[str, Any]] = {}
+        self._materials: dict[_Look, int] = {}
+        self._meshes: dict[tuple[Any, ...], int] = {}
+        self._textures: dict[bytes, int] = {}
+
+    def write(self) -> bytes:
+        robot, scene = self._snapshot.robot, self._snapshot.scene
+        poses = self._joint_poses()
+        nodes = {link.name: self._link(link) for link in scene.links}
+        for joint in robot.joints.values():
+            x, y, z, *quaternion = poses[joint.name]
+            child = self._gltf.entry("nodes", nodes[joint.child])
+            child.update(translation=[x, y, z], rotation=list(normalized(*quaternion)))
+            child["extras"] = {"joint": joint.name, "type": joint.type, "axis": list(joint.axis)}
+            self._gltf.entry("nodes", nodes[joint.parent]).setdefault("children", []).append(nodes[joint.child])
+        top = self._gltf.add("nodes", name=robot.name, rotation=_Y_UP, children=[nodes[robot.root]])
+        return self._gltf.binary([top])
+
+    def _joint_poses(self) -> Mapping[str, list[float]]:
+        joints = list(self._snapshot.robot.joints.values())
+        positions = np.array([self._snapshot.positions.get(joint.name, 0.0) for joint in joints])
+        poses = JointMotion(joints).poses(positions)
+        return {joint.name: pose.tolist() for joint, pose in zip(joints, poses, strict=True)}
+
+    def _link(self, link: LinkScene) -> int:
+        shapes = [self._shape(link, index, shape) for index, shape in enumerate(link.visuals)]
+        return self._gltf.add("nodes", name=link.name, children=shapes or None)
+
+    def _shape(self, link: LinkScene, index: int, shape: Shape) -> int:
+        return self._gltf.add(
+            "nodes",
+            name=shape.name or f"{link.name} visual {index}",
+            mesh=self._mesh(link, shape),
+            translation=shape.position,
+            rotation=list(normalized(*shape.quaternion)),
+            scale=shape.size if shape.kind == "mesh" and shape.size != [1.0, 1.0, 1.0] else None,
+        )
+
+    # --- geometry ----------------------------------------------------------------------------------------------
+
+    def _mesh(self, link: LinkScene, shape: Shape) -> int:
+        source = (shape.url,) if shape.kind == "mesh" else (shape.kind, *shape.size)
+        drawn = []
+        for number, part in enumerate(self._parts_of(link, shape)):
+            look = _look(shape, part, self._texture(shape))
+            drawn.append({**self._geometry((*source, number), part), "material": self._material(look)})
+        key = (*source, *(primitive["material"] for primitive in drawn))
+        if key not in self._meshes:
+            self._meshes[key] = self._gltf.add("meshes", name=_mesh_name(shape), primitives=drawn)
+        return self._meshes[key]
+
+    def _parts_of(self, link: LinkScene, shape: Shape) -> list[MeshPart]:
+        if shape.kind == "box":
+            return [MeshPart(box(shape.size), None)]
+        if shape.kind == "cylinder":
+            return [MeshPart(cylinder(*shape.size), None)]
+        if shape.kind == "capsule":
+            return [MeshPart(capsule(*shape.size), None)]
+        if shape.kind == "sphere":
+            return [MeshPart(sphere(*shape.size), None)]
+        assert shape.url is not None
+        if shape.url not in self._parts:
+            self._parts[shape.url] = self._read(link, shape.url)
+        return self._parts[shape.url]
+
+    def _read(self, link: LinkScene, url: str) -> list[MeshPart]:
+        try:
+            path = self._files.path(url)
+        except FileRefusedError:
+            raise _unreadable(link, urlsplit(url).path, phrase("it does not exist, or may not be read")) from None
+        try:
+            return read_parts(path, resolver=_Neighbours(self._files, url))
+        except BadMeshError as error:
+            raise _unreadable(link, display_path(path), error.why) from None
+
+    def _geometry(self, key: tuple[Any, ...], part: MeshPart) -> dict[str, Any]:
+        if key not in self._geometries:
+            triangles = part.triangles
+            attributes = {"POSITION": self._gltf.vertices(triangles.positions, bounded=True)}
+            if triangles.normals is not None:
+                attributes["NORMAL"] = self._gltf.vertices(triangles.normals)
+            if triangles.coordinates is not None:
+                attributes["TEXCOORD_0"] = self._gltf.vertices(triangles.coordinates)
+            if triangles.colors is not None:
+                attributes["COLOR_0"] = self._gltf.vertices(_linear(triangles.colors))
+            indices = self._gltf.indices(triangles.indices)
+            self._geometries[key] = {"attributes": attributes, "indices": indices}
+        return self._geometries[key]
+
+    # --- materials ---------------------------------------------------------------------------------------------
+
+    def _texture(self, shape: Shape) -> bytes | None:
+        """Return the URDF's texture, as a file that glTF supports."""
+        if shape.texture is None:
+            return None
+        try:
+            return _as_png(self._files.path(shape.texture))
+        except (FileRefusedError, OSError, ValueError):
+            return None  # the page draws the shape without it, too
+
+    def _material(self, look: _Look) -> int:
+        if look not in self._materials:
+            red, green, blue, _ = _linear(np.array([[*look.color, 1.0]]))[0].tolist()
+            surface: dict[str, Any] = {
+                "baseColorFactor": [red, green, blue, look.alpha],
+                "metallicFactor": 0.0,
+                "roughnessFactor": 0.9,
+            }
+            if look.image is not None:
+                if look.image not in self._textures:
+                    kind = "image/jpeg" if look.image.startswith(b"\xff\xd8") else "image/png"
+                    self._textures[look.image] = self._gltf.texture(look.image, kind)
+                surface["baseColorTexture"] = {"index": self._textures[look.image]}
+            self._materials[look] = self._gltf.add(
+                "materials",
+                pbrMetallicRoughness=surface,
+                alphaMode="BLEND" if look.alpha < 1.0 else None,
+                doubleSided=look.double_sided or None,
+            )
+        return self._materials[look]
+
+
+class _Neighbours:
+    """Gives trimesh the files beside a mesh, under the rules by which pages read files."""
+
+    def __init__(self, files: FileSet, url: str) -> None:
+        self._files = files
+        self._folder = urlsplit(url).path.rpartition("/")[0]
+
+    def get(self, name: str) -> bytes:
+        """Return a file by its name in the mesh."""
+        try:
+            return self._files.path(f"{self._folder}/{name.strip().removeprefix('./')}").read_bytes()
+        except FileRefusedError as error:
+            raise OSError(str(error)) from None
+
+    __getitem__ = get
+
+    def keys(self) -> list[str]:
+        """Return no names: trimesh reads files only by `get`."""
+        return []
+
+
+def _look(shape: Shape, part: MeshPart, texture: bytes | None) -> _Look:
+    """Return the look of a part: its own material, else the URDF's. The URDF alone sets the opacity."""
+    is_mesh = shape.kind == "mesh"
+    alpha = shape.color[3] if shape.color else 1.0
+    own = part.own
+    if own is None:
+        grey = is_mesh and not (shape.format or "").startswith("stl")
+        bare = (UNCOLOURED,) * 3 if grey else _RVIZ_RED
+        red, green, blue = (1.0, 1.0, 1.0) if texture else tuple(shape.color[:3]) if shape.color else bare
+        own = OwnLook((red, green, blue), texture)
+    image = own.image if part.triangles.coordinates is not None else None
+    return _Look(own.color, float(alpha), image, is_mesh, part.triangles.colors is not None)
+
+
+def _as_png(path: Path) -> bytes:
+    """Return an image file as PNG or JPEG."""
+    data = path.read_bytes()
+    if data.startswith((b"\x89PNG", b"\xff\xd8\xff")):
+        return data
+    from io import BytesIO
+
+    try:
+        from PIL import Image
+    except ModuleNotFoundError as error:
+        raise missing_extra("VIEW205", error) from None
+    file = BytesIO()
+    Image.open(BytesIO(data)).convert("RGBA").save(file, "PNG")
+    return file.getvalue()
+
+
+def _linear(colors: Any) -> Any:
+    """Return sRGB colours in glTF's linear values; alpha stays."""
+    seen = np.asarray(colors, dtype=np.float64)
+    linear = np.where(seen <= 0.04045, seen / 12.92, ((seen + 0.055) / 1.055) ** 2.4)
+    linear[..., 3] = seen[..., 3]
+    return linear
+
+
+def _mesh_name(shape: Shape) -> str:
+    return urlsplit(shape.url).path.rpartition("/")[2] if shape.url else shape.kind
+
+
+def _unreadable(link: LinkScene, name: str, why: Phrase) -> LinkwrightError:
+    hint = phrase("export the mesh again, or leave it out")
+    return LinkwrightError(
+        Diagnostic(
+            "VIEW204",
+            phrase(
+                "cannot read the mesh '{name}' of link '{link_name}': {why}",
+                name=name,
+                link_name=link.name,
+                why=why,
+            ),
+            hint=hint,
+        )
+    )

@@ -1,0 +1,98 @@
+"""A robot as one HTML file with all scripts, styles, meshes and textures; it fetches nothing."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import hashlib
+import html
+import json
+from pathlib import Path
+
+from linkwright._version import __version__
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.page.files import without_secrets
+from linkwright.page.protocol.message import encode
+from linkwright.page.protocol.robot import RobotScene
+from linkwright.page.server import PAGE_FOLDER
+from linkwright.panels.export.snapshot import FileSet, Snapshot, addresses
+
+_PAGE = """\
+<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="dark light">
+<meta name="generator" content="{program}">
+<title>{title}</title>
+<style>{style}</style>
+</head>
+<body>
+<div id="app"></div>
+<noscript>The robot is drawn with JavaScript and WebGL.</noscript>
+<script type="application/json" id="recorded">{recorded}</script>
+<script>{script}</script>
+</body>
+</html>
+"""
+
+
+def html_of(snapshot: Snapshot) -> bytes:
+    """Return the page of a snapshot.
+
+    Raises:
+        LinkwrightError: VIEW202, the page of this installation was not built.
+    """
+    folder = PAGE_FOLDER / "export"
+    try:
+        script = _script(folder)
+        style = (folder / "export.css").read_text(encoding="utf-8")
+    except OSError:
+        hint = phrase("in a checkout of Linkwright run `make page`")
+        raise LinkwrightError(Diagnostic("VIEW202", phrase("the page for exports was not built"), hint=hint)) from None
+    script = script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
+    program = f"Linkwright {__version__}"
+    text = _PAGE.format(
+        policy=_policy(script),
+        program=program,
+        title=html.escape(snapshot.name),
+        style=style.replace("</style", "<\\/style"),
+        recorded=_recorded(snapshot, program),
+        script=script,
+    )
+    return text.encode()
+
+
+def _script(folder: Path) -> str:
+    packed = folder / "export.js.gz"  # `npm run build` alone does not pack it
+    if packed.is_file():
+        return gzip.decompress(packed.read_bytes()).decode()
+    return (folder / "export.js").read_text(encoding="utf-8")
+
+
+def _policy(script: str) -> str:
+    """Return a policy that runs only this one script; images and meshes are in the page itself."""
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    return (
+        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; img-src data: blob:; "
+        "connect-src data: blob:; font-src data:; base-uri 'none'; form-action 'none'"
+    )
+
+
+def _recorded(snapshot: Snapshot, program: str) -> str:
+    """Return the messages of a server to a new page, as JSON that can be embedded in HTML."""
+    robots = [message for message in snapshot.messages if isinstance(message, RobotScene)]
+    files = FileSet(snapshot.meshes).collect([*addresses(robots), *snapshot.marker_meshes])
+    messages = without_secrets(",".join(encode(message) for message in snapshot.messages))
+    rest = {
+        "program": program,
+        "display": snapshot.scene.display,
+        "awaits_size": snapshot.awaits_size,
+        "spacing": snapshot.spacing,
+        "frames": [base64.b64encode(frame).decode() for frame in snapshot.frames],
+        "files": {without_secrets(address): base64.b64encode(data).decode() for address, data in files.items()},
+    }
+    text = f'{{"messages":[{messages}],{json.dumps(rest)[1:]}'
+    return text.replace("<", "\\u003c")

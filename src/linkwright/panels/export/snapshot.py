@@ -1,0 +1,379 @@
+"""Snapshots of a viewer's scene at one moment, with the files needed to draw it, for pages without a server."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from itertools import chain
+from math import atan2, isfinite, pi
+from os.path import normpath
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+from urllib.parse import unquote, urlsplit
+
+import numpy as np
+from msgspec.structs import replace
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, foreign, phrase
+from linkwright.geometry.arrays import quaternion_inverse, quaternion_multiply, rotate
+from linkwright.geometry.single import quaternion_of
+from linkwright.nodes.joint_layout import layout_of
+from linkwright.nodes.joint_settings import JointSettings
+from linkwright.packages import enclosing_package
+from linkwright.page.files import FileRefusedError, MeshFolders
+from linkwright.page.outbox import ScaledData
+from linkwright.page.protocol.binary import FrameTable, unpack_transforms
+from linkwright.page.protocol.comparison import ComparedDescriptions
+from linkwright.page.protocol.displays import Display, DisplayProperties, Property, Tree
+from linkwright.page.protocol.joints import JointControl, JointPositions, Joints
+from linkwright.page.protocol.message import ServerMessage
+from linkwright.page.protocol.robot import RobotScene
+from linkwright.page.protocol.session import Hello
+from linkwright.page.protocol.views_and_tools import SavedViews, View, ViewClasses, ViewState
+from linkwright.panels.comparison.feature import without_paths
+from linkwright.urdf import Joint, Robot
+
+if TYPE_CHECKING:
+    from linkwright.page.outbox import Payload
+    from linkwright.panels.page_feature import FeatureHost
+    from linkwright.rviz.displays.robot_model import RobotModelDisplay
+    from linkwright.rviz.visualization.manager import VisualizationManager
+
+
+Pose = NDArray[np.float64]
+"""x, y, z (metres), qx, qy, qz, qw; shape (7,)."""
+
+
+def positions_now(robot: Robot, poses: Mapping[str, Pose]) -> dict[str, float]:
+    """Return positions (rad or m) of the revolute, continuous and prismatic joints whose links can be placed.
+
+    Args:
+        robot: the description.
+        poses: link -> its pose, all in one frame.
+    """
+    positions = {}
+    for joint in robot.joints.values():
+        if joint.type not in ("revolute", "continuous", "prismatic"):
+            continue
+        if joint.parent in poses and joint.child in poses:
+            position = _position(joint, poses[joint.parent], poses[joint.child])
+            if isfinite(position):
+                positions[joint.name] = position
+    return positions
+
+
+def _position(joint: Joint, parent: Pose, child: Pose) -> float:
+    back = quaternion_inverse(parent[3:])
+    axis = np.asarray(joint.axis, dtype=np.float64)
+    length = float(np.linalg.norm(axis))
+    if length == 0.0:
+        return 0.0
+    axis = axis / length
+    origin = np.asarray(quaternion_of(joint.origin), dtype=np.float64)
+    if joint.type == "prismatic":
+        shift = rotate(back, child[:3] - parent[:3]) - np.asarray(joint.origin.xyz)
+        return float(np.dot(rotate(quaternion_inverse(origin), shift), axis))
+    turn = quaternion_multiply(quaternion_inverse(origin), quaternion_multiply(back, child[3:]))
+    angle = 2.0 * atan2(float(np.dot(turn[:3], axis)), float(turn[3]))
+    angle = (angle + pi) % (2.0 * pi) - pi
+    return _within(joint, angle)
+
+
+def _within(joint: Joint, angle: float) -> float:
+    """Return the angle, or the equivalent one within the limits."""
+    if joint.type == "continuous" or joint.limit is None:
+        return angle
+    for turned in (angle, angle + 2.0 * pi, angle - 2.0 * pi):
+        if joint.limit.lower - 1e-3 <= turned <= joint.limit.upper + 1e-3:
+            return turned
+    return angle
+
+
+_ADDRESS = re.compile(r"/mesh/([^/]+)/(.+)")
+_COLLADA_IMAGE = re.compile(r"<init_from>\s*(?:<ref>)?\s*([^<]+?)\s*<")
+_MATERIAL_FILE = re.compile(r"^[ \t]*mtllib[ \t]+(.+?)[ \t]*\r?$", re.MULTILINE)
+_MATERIAL_MAP = re.compile(r"^[ \t]*(?:map_\w+|bump|norm|disp)[ \t]+(.+?)[ \t]*\r?$", re.MULTILINE)
+
+
+def addresses(scenes: Iterable[RobotScene]) -> list[str]:
+    """Return the addresses of the meshes and textures that robots name, each once."""
+    links = chain.from_iterable(scene.links for scene in scenes)
+    shapes = chain.from_iterable((*link.visuals, *link.collisions) for link in links)
+    named = chain.from_iterable((shape.url, shape.texture) for shape in shapes)
+    return list(dict.fromkeys(address for address in named if address is not None))
+
+
+class FileSet:
+    """Files by the path of their address, under the rules by which pages read files.
+
+    Args:
+        meshes: the folders that may be read.
+    """
+
+    def __init__(self, meshes: MeshFolders) -> None:
+        self._meshes = meshes
+
+    def path(self, address: str) -> Path:
+        """Return the file at an address.
+
+        Raises:
+            FileRefusedError: it may not be read, or does not exist.
+        """
+        found = _ADDRESS.fullmatch(urlsplit(address).path)
+        if found is None:
+            raise FileRefusedError(404, "no such file")
+        return self._meshes.file(found[1], unquote(found[2]))
+
+    def collect(self, wanted: Iterable[str]) -> dict[str, bytes]:
+        """Return contents by the path of their address, with the files that meshes name; missing ones are left out."""
+        contents: dict[str, bytes] = {}
+        waiting = [urlsplit(address).path for address in wanted]
+        while waiting:
+            address = waiting.pop()
+            if address in contents:
+                continue
+            try:
+                path = self.path(address)
+                contents[address] = path.read_bytes()
+            except (FileRefusedError, OSError):
+                continue
+            folder = address.rpartition("/")[0]
+            waiting += [f"{folder}/{name}" for name in named_files(path.suffix.lower(), contents[address])]
+        return contents
+
+
+def named_files(ending: str, data: bytes) -> list[str]:
+    """Return the names of other files in a mesh or material file, as written there, relative to its folder."""
+    names: list[str] = []
+    if ending == ".dae":
+        names = _COLLADA_IMAGE.findall(data.decode("utf-8", "replace"))
+    elif ending == ".obj":
+        names = _MATERIAL_FILE.findall(data.decode("utf-8", "replace"))
+    elif ending == ".mtl":
+        # Options and their numbers may precede a name, which may contain spaces only without them.
+        lines = _MATERIAL_MAP.findall(data.decode("utf-8", "replace"))
+        names = [line.split()[-1] if line.startswith("-") else line for line in lines]
+    elif ending == ".gltf":
+        try:
+            document = json.loads(data)
+            parts = [*document.get("buffers", ()), *document.get("images", ())]
+            names = [str(part["uri"]) for part in parts if "uri" in part]
+        except (ValueError, AttributeError, TypeError):
+            return []
+    return [name for name in names if not name.startswith(("data:", "/", "file:", "http:", "https:"))]
+
+
+_TAKEN = (DisplayProperties, FrameTable, Hello, SavedViews, ViewClasses, ViewState)
+"""Messages that are included unchanged: they contain nothing about the program's machine."""
+
+_PATHS = frozenset({"Description File"})
+"""Properties that are paths of the program's machine."""
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """A robot, and all messages that pages draw it from.
+
+    Attributes:
+        name: the name of the robot.
+        robot: its description.
+        scene: its links as pages draw them.
+        positions: joint -> rad or m.
+        messages: the messages that a page needs, the frame table last.
+        frames: binary frames, the transforms first.
+        meshes: finds the files that `scene` names.
+        problems: the findings on shapes that cannot be drawn.
+        marker_meshes: addresses of the meshes that markers show.
+        outside: the included files that are neither in a package nor below the description's folder.
+        awaits_size: whether grid and axes should get the size of the robot, which a page measures.
+        spacing: the usual distance of a link's frame from its parent's, m; None if unknown.
+    """
+
+    name: str
+    robot: Robot
+    scene: RobotScene
+    positions: Mapping[str, float]
+    messages: Sequence[ServerMessage]
+    frames: Sequence[bytes]
+    meshes: MeshFolders = field(repr=False)
+    problems: Sequence[Diagnostic] = ()
+    marker_meshes: Sequence[str] = ()
+    outside: Sequence[Path] = ()
+    awaits_size: bool = False
+    spacing: float | None = None
+
+
+def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View | None = None) -> Snapshot:
+    """Return a snapshot of a configuration as it is shown now.
+
+    Args:
+        viewer: the viewer that shows it.
+        manager: the configuration that it shows.
+        view: the camera; None for that of a new page.
+
+    Raises:
+        LinkwrightError: VIEW201, there is no robot.
+    """
+    models = [model for model in manager.robot_models() if model.enabled and model.scene.links]
+    if not models:
+        raise no_robot()
+    opening, frames = viewer.opening_messages(manager)
+    if view is not None:
+        opening = [
+            ViewState(view, server_message.revision) if isinstance(server_message, ViewState) else server_message
+            for server_message in opening
+        ]
+    snapshot = take_snapshot(models[0], opening, frames, viewer.context.meshes)
+    files = viewer.context.library.files
+    outside = [path for model in models for path in files_outside(files(model.text), model.scene, snapshot.meshes)]
+    return dataclasses.replace(
+        snapshot,
+        outside=list(dict.fromkeys(outside)),
+        problems=[problem for model in models for problem in _problems(model)],
+        awaits_size=manager.config.awaits_size,
+        spacing=manager.config.spacing,
+    )
+
+
+def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) -> list[Path]:
+    """Return the files of a description that recipients of the export may not be meant to see.
+
+    Includes, ``load_yaml`` and ``file://`` reach any file of the machine, as under ROS.
+
+    Args:
+        read: the files that the text was made from, the main file first.
+        scene: names the meshes and textures.
+        meshes: the folders that these may be read from.
+
+    Returns:
+        Those that are neither in a package nor below the folder of the main file.
+    """
+    files = FileSet(meshes)
+    found = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # some paths have `..` in them
+    for address in addresses([scene]):
+        with suppress(FileRefusedError):
+            found[files.path(address)] = None
+    home = read[0].absolute().parent if read else None
+    return [
+        path for path in found if not (home and path.is_relative_to(home)) and enclosing_package(path.parent) is None
+    ]
+
+
+def take_snapshot(
+    model: RobotModelDisplay, opening: Sequence[ServerMessage], payloads: Sequence[Payload], meshes: MeshFolders
+) -> Snapshot:
+    """Return the part of the messages to a new page that it needs to run without a server.
+
+    Args:
+        model: the display of the robot whose joints can be moved.
+        opening: the messages to a page that opens.
+        payloads: the binary frames to it.
+        meshes: the folders that it may read from.
+
+    Raises:
+        LinkwrightError: VIEW201, the display has no robot.
+    """
+    robot, scene = model.robot, model.scene
+    if robot is None:
+        raise no_robot()
+    frames = [frame for payload in payloads if isinstance(frame := _complete(payload), bytes)]
+    table = next(message for message in opening if isinstance(message, FrameTable))
+    poses = _poses(table, frames)
+    positions = positions_now(robot, {link.name: poses[link.frame] for link in scene.links if link.frame in poses})
+    messages: list[ServerMessage] = []
+    for message in opening:
+        if isinstance(message, Tree):
+            messages.append(_anonymous(message))
+        elif isinstance(message, RobotScene):
+            messages.append(replace(message, links=[replace(link, place=None) for link in message.links]))
+        elif isinstance(message, ComparedDescriptions):
+            messages.append(without_paths(message))
+        elif isinstance(message, _TAKEN):
+            messages.append(message)
+    controls = _controls(robot)
+    messages[-1:-1] = [
+        Joints(controls),
+        JointPositions({control.name: positions.get(control.name, 0.0) for control in controls}),
+    ]
+    problems = _problems(model)
+    return Snapshot(
+        robot.name, robot, scene, positions, messages, frames, meshes.copy(), problems, _marker_meshes(payloads)
+    )
+
+
+def _problems(model: RobotModelDisplay) -> list[Diagnostic]:
+    """The findings on shapes of a robot that cannot be drawn."""
+    return [
+        Diagnostic(
+            "VIEW203",
+            phrase("link '{link}' is incomplete: {text}", link=link, text=foreign(text)),
+            severity=Severity.WARNING,
+        )
+        for link, texts in model.file_problems.items()
+        for text in texts
+    ]
+
+
+def no_robot() -> LinkwrightError:
+    """Return the error for an export without a robot (VIEW201)."""
+    hint = phrase("wait until the robot is drawn, or enable its RobotModel display")
+    return LinkwrightError(Diagnostic("VIEW201", phrase("there is no robot to export"), hint=hint))
+
+
+def _complete(payload: Payload) -> bytes | str | None:
+    """Return the complete content, as for a new page."""
+    if isinstance(payload, ScaledData):
+        return payload.full_frame
+    return payload if isinstance(payload, (bytes, str)) else payload.since(0)[0]
+
+
+def _marker_meshes(payloads: Sequence[Payload]) -> list[str]:
+    from linkwright.rviz.markers.shapes import MarkerStore
+
+    shapes = [shape for payload in payloads if isinstance(payload, MarkerStore) for shape in payload.shapes]
+    return [shape.mesh.url for shape in shapes if shape.mesh is not None and shape.mesh.url is not None]
+
+
+def _poses(table: FrameTable, frames: Sequence[bytes]) -> dict[str, NDArray[np.float64]]:
+    for frame in frames:
+        revision, poses = unpack_transforms(frame)
+        if revision == table.revision:
+            return {name: pose for name, pose in zip(table.names, poses, strict=True) if not np.isnan(pose[0])}
+    return {}
+
+
+def _anonymous(tree: Tree) -> Tree:
+    """Return the displays without their status and without paths, which reveal details of this machine."""
+    displays: list[Display] = [
+        replace(display, status=[], level="ok", properties=_without_paths(display.properties))
+        for display in tree.displays
+    ]
+    return replace(tree, global_status=[], global_level="ok", displays=displays)
+
+
+def _without_paths(properties: Sequence[Property]) -> list[Property]:
+    return [
+        replace(row, value="" if row.name in _PATHS else row.value, children=_without_paths(row.children))
+        for row in properties
+    ]
+
+
+def _controls(robot: Robot) -> list[JointControl]:
+    """Return a slider for each movable joint, as in joint_state_publisher_gui."""
+    layout = layout_of(robot, JointSettings())
+    controls = []
+    for joint in layout.ranges.values():
+        if joint.lower == joint.upper:
+            continue
+        follows = layout.dependent.get(joint.name)
+        kind = cast("Any", joint.kind)  # movable joints are of these three kinds
+        control = JointControl(joint.name, kind, joint.lower, joint.upper, joint.zero)
+        if follows is not None:
+            control = replace(control, mimic=follows.parent, multiplier=follows.factor, offset=follows.offset)
+        controls.append(control)
+    return controls

@@ -1,0 +1,104 @@
+"""The page's Joints panel: shows and moves the sliders of a joint_state_publisher_gui."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, ClassVar, cast
+
+from linkwright.page.audience import Page
+from linkwright.page.protocol.joints import (
+    CenterJoints,
+    JointControl,
+    JointPositions,
+    Joints,
+    RandomizeJoints,
+    SetJoint,
+    SetJoints,
+)
+from linkwright.page.protocol.message import ServerMessage
+from linkwright.panels.page_feature import FeatureHost, PageFeature
+
+if TYPE_CHECKING:
+    from linkwright.nodes.joint_panel import JointPanel
+
+_LAG = 0.01
+"""Delay before positions are sent after a change, seconds, so that its transforms go out first."""
+
+
+class JointsFeature(PageFeature):
+    """Connects the page's Joints panel with the panel that moves the joints, once there is one."""
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (SetJoint, SetJoints, RandomizeJoints, CenterJoints)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._panel: JointPanel | None = None
+        self._unsubscribe: Callable[[], None] | None = None
+        self._soon: asyncio.TimerHandle | None = None
+
+    def attach(self, panel: JointPanel | None) -> None:
+        """Show a panel in place of the one before; None closes it in the page."""
+        if self._unsubscribe is not None:
+            self._unsubscribe()
+        if self._soon is not None:
+            self._soon.cancel()
+            self._soon = None
+        self._panel = panel
+        self._unsubscribe = None if panel is None else panel.subscribe(self._panel_changed)
+        for message in self.opening():
+            self.context.pages.publish(message)
+
+    def opening(self) -> list[ServerMessage]:
+        """The sliders and their values."""
+        if self._panel is None:
+            return [Joints(None)]
+        return [self._controls(self._panel), JointPositions(self._panel.positions())]
+
+    def receive(self, page: Page, message: SetJoint | SetJoints | RandomizeJoints | CenterJoints) -> None:
+        """Handle a request. Unknown joints, and those that mimic another, are ignored."""
+        panel = self._panel
+        if panel is None:
+            return
+        if isinstance(message, RandomizeJoints):
+            panel.randomize()
+        elif isinstance(message, CenterJoints):
+            panel.center()
+        elif isinstance(message, SetJoints):
+            for name, position in message.positions.items():
+                panel.set_position(name, position)
+        else:
+            panel.set_position(message.name, message.position)
+
+    def close(self) -> None:
+        """Release the panel."""
+        self.attach(None)
+
+    def _panel_changed(self, kind: str) -> None:
+        if self._panel is not None and kind == "sliders":
+            self.context.pages.publish(self._controls(self._panel))
+        if self._soon is None:
+            self._soon = asyncio.get_running_loop().call_later(_LAG, self._send_positions)
+
+    def _send_positions(self) -> None:
+        self._soon = None
+        if self._panel is not None:
+            self.context.pages.publish(JointPositions(self._panel.positions()))
+
+    @staticmethod
+    def _controls(panel: JointPanel) -> Joints:
+        return Joints(
+            [
+                JointControl(
+                    name=slider.name,
+                    kind=cast("Any", slider.kind),  # movable joints are of these three kinds
+                    lower=slider.lower,
+                    upper=slider.upper,
+                    zero=slider.zero,
+                    mimic=slider.mimic,
+                    multiplier=slider.multiplier,
+                    offset=slider.offset,
+                )
+                for slider in panel.sliders()
+            ]
+        )

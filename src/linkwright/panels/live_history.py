@@ -1,0 +1,280 @@
+"""The messages of the last minutes, stored to be shown again to the viewer's own subscriptions."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Callable, Collection, Mapping
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph import DurabilityPolicy, MessageInfo, run_logged
+from linkwright.graph.endpoints.subscription import Detailed
+from linkwright.graph.simulated_time import CLOCK_TOPIC
+from linkwright.messages import serialize
+
+if TYPE_CHECKING:
+    from linkwright.bag.history import History
+    from linkwright.bag.moments import Recorded
+    from linkwright.bag.playback import Playback
+    from linkwright.bag.saving import KeptTopic
+    from linkwright.diagnostics import LinkwrightError
+    from linkwright.graph import Subscription
+    from linkwright.rviz.context import ViewerContext
+
+_BYTES = (bytes, bytearray, memoryview)
+
+_MOST_FRESH = 16
+"""Messages that wait to be serialized: while one is on its way to the page, it only costs its place."""
+
+
+class LiveHistory:
+    """Stores messages of the viewer's subscriptions, and shows them at another time than the present.
+
+    It adds no subscriptions. While another time is shown, new messages are stored but not shown.
+
+    Args:
+        context: the context of the viewer.
+        most_bytes: the most bytes that are stored.
+        failed: called with an error of the playback.
+
+    Attributes:
+        live: whether the present is shown.
+        begin_anew: called when time goes back, so that displays forget what they show.
+        changed: called when `live` has changed.
+    """
+
+    def __init__(self, context: ViewerContext, most_bytes: int, failed: Callable[[LinkwrightError], object]) -> None:
+        self._context = context
+        self._handle = context.node.handle
+        self._recorded: dict[str, Subscription[Any]] = {}
+        self._known: set[Subscription[Any]] = set()
+        self._went_back = False
+        self.live = True
+        self.begin_anew: Callable[[], object] = lambda: None
+        self.changed: Callable[[], object] = lambda: None
+        self.most_bytes = most_bytes
+        self._failed = failed
+        self._now_ns = self._handle.timebase.now_ns
+        self._lock = threading.RLock()
+        self._fresh: list[tuple[str, int, Any]] = []
+        self._stored: History | None = None
+        self._handle.intake = self._intake
+
+    @property
+    def history(self) -> History:
+        """The stored messages, including the newest one."""
+        with self._lock:
+            return self._written()
+
+    @cached_property
+    def playback(self) -> Playback:
+        """The playback whose output are the subscriptions; created when a past time is first shown."""
+        from linkwright.bag.playback import Playback
+
+        made = Playback(self._handle, self.history, self, self._failed)
+        made.begin_anew = self._begin_anew
+        made.changed.append(self.changed)
+        return made
+
+    @property
+    def has_playback(self) -> bool:
+        """Whether another time than the present was ever shown."""
+        return "playback" in self.__dict__
+
+    @property
+    def span_ns(self) -> tuple[int, int]:
+        """The times of the oldest and the newest message, nanoseconds since the epoch; now, if there is none."""
+        with self._lock:
+            if self._stored is not None:
+                return self._stored.start_ns, self._stored.end_ns
+            now = self._now_ns()
+            return self._fresh[0][1] if self._fresh else now, now
+
+    @property
+    def size(self) -> int:
+        """The bytes that it takes, without the newest messages."""
+        return 0 if self._stored is None else self._stored.size
+
+    def freeze(self) -> None:
+        """Pause the display while messages are still stored."""
+        if not self.live:
+            return
+        with self._lock:
+            self.live = False
+            now = self.history.end_ns
+        self._context.held_time.show(self._context.node.get_clock(), now)
+        self._went_back = False
+        self._known = set(self._subscriptions())
+        self.playback.take_over(now)
+        self._context.graph_changes.listen(self._review)
+        self.changed()
+
+    def go_live(self) -> None:
+        """Show the present again."""
+        if self.live:
+            return
+        self.playback.pause()
+        self._context.graph_changes.ignore(self._review)
+        self._context.held_time.release(self._context.node.get_clock())
+        # A turn of the loop later: listeners to the time jump drop the past data first, then the present is shown.
+        asyncio.get_running_loop().call_soon(self._show_present)
+
+    def topics(self) -> dict[str, KeptTopic]:
+        """Return the topics whose messages are stored, with the profiles of their present publishers."""
+        from linkwright.bag.saving import KeptTopic
+
+        graph = self._context.node.graph
+        found = {}
+        for name, keeper in list(self._recorded.items()):
+            offered = [endpoint.qos_profile for endpoint in graph.get_publishers_info_by_topic(name)]
+            found[name] = KeptTopic(keeper.type_name, tuple(offered or [keeper.qos_profile]))
+        return found
+
+    def part(self, topics: Mapping[str, KeptTopic], start_ns: int, end_ns: int, *, simulated: bool) -> list[Recorded]:
+        """Return the stored messages between two times, with those that its beginning needs, as in a recording.
+
+        Args:
+            topics: see `topics`.
+            start_ns: the earlier time, nanoseconds since the epoch.
+            end_ns: the later time.
+            simulated: whether messages get the times of ``/clock``; those from before the simulation's last reset are
+                then left out, because time starts again there.
+        """
+        from linkwright.bag.saving import in_simulated_time, last_reset_ns
+
+        messages = self.history.part(max(start_ns, self.history.start_ns), end_ns)
+        if not simulated:
+            return messages
+        reset = last_reset_ns(messages)
+        if reset is not None:
+            lasting = [name for name, topic in topics.items() if _is_latched(topic)]
+            before = [(name, reset, data) for name, _, data in self.history.state_at(lasting, reset - 1)]
+            messages = [*before, *(message for message in messages if message[1] >= reset)]
+        return in_simulated_time(messages)
+
+    def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
+        """Return the messages of some topics in the time up to the one that is shown; none if they are too large."""
+        if not self.live:
+            return self.playback.before(topics, length_ns, most_bytes)
+        history = self.history
+        end_ns = history.end_ns
+        found, size = [], 0
+        for message in history.messages(topics, end_ns - length_ns):
+            size += len(message[2])
+            if message[1] > end_ns:
+                break
+            if size > most_bytes:
+                return []
+            found.append(message)
+        return found
+
+    def close(self) -> None:
+        """Stop storing messages."""
+        self._handle.intake = None
+        self._context.graph_changes.ignore(self._review)
+        if self._stored is not None:
+            self._stored.close()
+        if self.has_playback:
+            self.playback.close()
+
+    # --- the output of the playback ---------------------------------------------------------------------------
+
+    def wanted(self) -> frozenset[str]:
+        """Return the topics that the viewer is subscribed to, except the clock, which `tell_time` sets."""
+        return frozenset(subscription.name for subscription in self._subscriptions()) - {CLOCK_TOPIC}
+
+    def tell_time(self, stamp_ns: int) -> None:
+        """Set the viewer's clock to a time, or publish the simulated time of then."""
+        if self.live:
+            return
+        self._went_back = self._went_back or stamp_ns < self.playback.position_ns
+        if not self._context.held_time.show(self._context.node.get_clock(), stamp_ns):
+            for message in self.history.state_at([CLOCK_TOPIC], stamp_ns):
+                self.publish(*message)
+
+    def publish(self, topic: str, stamp_ns: int, data: bytes) -> None:
+        """Deliver a message to the subscriptions of its topic."""
+        if not self.live:
+            self._give(self._subscriptions(), topic, stamp_ns, data)
+
+    # ----------------------------------------------------------------------------------------------------------
+
+    def _intake(self, subscription: Subscription[Any], message: Any) -> bool:
+        """Store a message, once for all subscriptions of its topic; returns whether to deliver it. Thread-safe."""
+        topic = subscription.name
+        keeper = self._recorded.get(topic)
+        if keeper is None or keeper.destroyed:
+            keeper = self._recorded[topic] = subscription
+        if keeper is not subscription:
+            return self.live
+        if type(message) is Detailed:
+            message = message.message
+        with self._lock:  # so that a message that arrives on the return to the present is shown once, and in order
+            self._fresh.append((topic, self._now_ns(), message))
+            if not self.live or len(self._fresh) >= _MOST_FRESH:
+                self._written()
+            return self.live
+
+    def _written(self) -> History:
+        """Return the history with the newest messages appended; these never change, so that this can wait."""
+        if self._stored is None:
+            from linkwright.bag.history import History
+
+            self._stored = History(self.most_bytes, self._now_ns)
+        history, fresh = self._stored, self._fresh
+        self._fresh = []
+        for topic, at_ns, message in fresh:
+            keep = partial(self._store, history, topic, at_ns, message, thins=self.live)
+            run_logged(self._handle.logger, f"keeping a message of '{topic}'", keep)
+        return history
+
+    def _store(self, history: History, topic: str, at_ns: int, message: Any, *, thins: bool) -> None:
+        """Store a message; with `thins`, briefly if it repeats those before: playback needs each of these."""
+        from linkwright.bag.stillness import content_of
+
+        data = bytes(message) if isinstance(message, _BYTES) else serialize(message)
+        history.add(topic, data, at_ns, content_of(self._recorded[topic].type_name, data) if thins else None)
+
+    def _subscriptions(self) -> list[Subscription[Any]]:
+        return list(self._context.node.subscriptions)
+
+    @staticmethod
+    def _give(subscriptions: list[Subscription[Any]], topic: str, stamp_ns: int, data: bytes) -> None:
+        for subscription in subscriptions:
+            if subscription.name == topic:
+                subscription.enqueue(data, MessageInfo(stamp_ns, stamp_ns))
+
+    def _review(self) -> None:
+        """Give new subscriptions the state at the time that is shown."""
+        fresh = [subscription for subscription in self._subscriptions() if subscription not in self._known]
+        if self.live or not fresh:
+            return
+        self._known = set(self._subscriptions())
+        position = self.playback.position_ns
+        self.playback.take_over(position)
+        for message in self.history.state_at({subscription.name for subscription in fresh} - {CLOCK_TOPIC}, position):
+            self._give(fresh, *message)
+
+    def _begin_anew(self) -> None:
+        if not self.live:
+            self._known = set(self._subscriptions())
+            self.begin_anew()
+
+    def _show_present(self) -> None:
+        if self.live:
+            return
+        if self._went_back:
+            self.begin_anew()
+        subscriptions = self._subscriptions()
+        with self._lock:
+            for message in self.history.state_at(
+                {subscription.name for subscription in subscriptions}, self.history.end_ns
+            ):
+                self._give(subscriptions, *message)
+            self.live = True
+        self.changed()
+
+
+def _is_latched(topic: KeptTopic) -> bool:
+    return all(profile.durability is DurabilityPolicy.TRANSIENT_LOCAL for profile in topic.offered)

@@ -1,0 +1,211 @@
+"""Paths to a number in a message: ``position[2]``, ``position[elbow]``, ``twist.twist.linear.x``.
+
+Names select fields of nested messages. Brackets select an element of an array, by its index or by the name that
+the message gives it. A value's name is the one with the same index in a list of names beside it (``name`` of a
+JointState, ``joint_names`` of a JointTrajectory and its points); a nested message's name is in itself (``name`` of a
+DiagnosticStatus, ``child_frame_id`` of a TransformStamped). Booleans count as 0 and 1; times and durations are seconds.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.diagnostics import did_you_mean, phrase
+from linkwright.messages import Message, definition_of, get_message
+from linkwright.messages.definitions.interfaces import Container, Field, FieldType
+from linkwright.page.protocol.monitor import PlotField
+
+NAME_LISTS = ("name", "names", "joint_names")
+"""Fields that name the elements of the arrays beside them, or of those of messages below."""
+
+NAME_FIELDS = ("name", "child_frame_id")
+"""Fields with the name of a message that is an element of an array."""
+
+SECONDS = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
+"""Messages that represent a number of seconds."""
+
+_STEP = re.compile(r"([A-Za-z_]\w*)((?:\[[^\[\]]+\])*)")
+_NANO = 1e-9
+
+
+class FieldPathError(ValueError):
+    """A path is not valid, or does not lead to a number of the message type; the text gives the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    name: str
+    keys: tuple[int | str, ...]
+
+
+class FieldPath:
+    """A path to a number.
+
+    Args:
+        text: as in the module's description.
+
+    Raises:
+        FieldPathError: it is not a path.
+    """
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self._steps: list[_Step] = []
+        at = 0
+        while True:
+            found = _STEP.match(text, at)
+            if found is None:
+                raise FieldPathError(f"'{text}' is not a field; write a path such as 'position[0]' or 'twist.linear.x'")
+            keys = re.findall(r"\[([^\]]+)\]", found[2])
+            self._steps.append(_Step(found[1], tuple(int(key) if key.isdecimal() else key for key in keys)))
+            at = found.end()
+            if at == len(text):
+                return
+            if text[at] != ".":
+                raise FieldPathError(f"'{text}' is not a field; there must be a dot before '{text[at:]}'")
+            at += 1
+
+    def check(self, message_class: type[Message]) -> None:
+        """Check that the path leads to a number in messages of a class.
+
+        Raises:
+            FieldPathError: it does not.
+        """
+        cls: type[Message] | None = message_class
+        kind: FieldType | None = None
+        for number, step in enumerate(self._steps):
+            if cls is None:
+                raise FieldPathError(f"'{self._steps[number - 1].name}' has no fields")
+            kinds = {field.name: field.type for field in definition_of(cls).fields}
+            kind = kinds.get(step.name)
+            if kind is None:
+                near = did_you_mean(step.name, kinds) or phrase("its fields are {kinds}", kinds=", ".join(kinds))
+                raise FieldPathError(f"{cls.TYPE_NAME} has no field '{step.name}'; {near}")
+            self._check_keys(step, kind)
+            cls = None if kind.primitive is not None else get_message(kind.base)
+        assert kind is not None
+        if not is_number(kind):
+            raise FieldPathError(f"'{self.text}' is not a number but a {kind.base}")
+
+    def value(self, message: Any) -> float | None:
+        """Return the number in a message, or None if the message has no such element."""
+        owners = []
+        found = message
+        for step in self._steps:
+            owners.append(found)
+            found = getattr(found, step.name)
+            for key in step.keys:
+                index = key if isinstance(key, int) else _index_of(key, found, owners)
+                if index is None or index >= len(found):
+                    return None
+                found = found[index]
+        return _number(found)
+
+    @staticmethod
+    def _check_keys(step: _Step, kind: FieldType) -> None:
+        is_array = kind.container is not Container.ONE
+        if is_array and len(step.keys) != 1:
+            raise FieldPathError(f"'{step.name}' is an array; select an element, such as '{step.name}[0]'")
+        if not is_array and step.keys:
+            raise FieldPathError(f"'{step.name}' is not an array")
+        if kind.container is Container.ARRAY and isinstance(step.keys[0], int) and step.keys[0] >= (kind.size or 0):
+            raise FieldPathError(f"'{step.name}' has {kind.size} elements")
+
+
+def is_number(kind: FieldType) -> bool:
+    """Return whether a value, or an element, of a field is a number."""
+    primitive = kind.primitive
+    return kind.base in SECONDS if primitive is None else primitive.python is not str
+
+
+def element_names(owners: Sequence[Any], values: Any) -> Sequence[str] | None:
+    """Return the names of an array's elements, or None if there are none.
+
+    Args:
+        owners: the messages on the way to the array, the one that has it last.
+        values: the array.
+    """
+    if len(values) and isinstance(values[0], Message):
+        for field in NAME_FIELDS:
+            if isinstance(getattr(values[0], field, None), str):
+                return [getattr(value, field) for value in values]
+        return None
+    for owner in reversed(owners):
+        for field in NAME_LISTS:
+            names = getattr(owner, field, None)
+            if isinstance(names, list) and len(names) == len(values) and names is not values:
+                return names
+    return None
+
+
+def _index_of(name: str, values: Any, owners: Sequence[Any]) -> int | None:
+    names = element_names(owners, values)
+    return list(names).index(name) if names is not None and name in names else None
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, Message):
+        return float(value.nanoseconds) * _NANO  # type: ignore[attr-defined]  # a Time or a Duration
+    return float(value[0]) if isinstance(value, bytes) else float(value)
+
+
+_MOST_FIELDS = 500
+_MOST_ELEMENTS = 64
+"""The largest number of an array's elements offered; users can type others."""
+
+
+def plot_fields(message_class: type[Message], message: Message | None = None) -> list[PlotField]:
+    """Return the paths of the numbers in a message type, in the order of its fields.
+
+    Args:
+        message_class: the type.
+        message: an example, which has the lengths and element names of its arrays; without one an
+            array of any length is offered with its first element.
+    """
+    found: list[PlotField] = []
+    for path, kind in _numbers(message_class, message, "", []):
+        found.append(PlotField(path, kind))
+        if len(found) == _MOST_FIELDS:
+            break
+    return found
+
+
+def _numbers(
+    cls: type[Message], message: Message | None, prefix: str, owners: Sequence[Any]
+) -> Iterator[tuple[str, str]]:
+    for field in definition_of(cls).fields:
+        path = f"{prefix}{field.name}"
+        value = None if message is None else getattr(message, field.name)
+        inner = [*owners, message]
+        if field.type.container is Container.ONE:
+            yield from _value(field, value, path, inner)
+        elif value is None:
+            yield from _value(field, None, f"{path}[0]", inner)
+        else:
+            yield from _elements(field, value, path, inner)
+
+
+def _elements(field: Field, values: Any, path: str, owners: Sequence[Any]) -> Iterator[tuple[str, str]]:
+    if not is_number(field.type) and field.type.primitive is not None:
+        return
+    names = element_names(owners, values)
+    plain = names is None or len(set(names)) < len(names) or any(_is_awkward(name) for name in names)
+    for index in range(min(len(values), _MOST_ELEMENTS)):
+        key = str(index) if plain or names is None else names[index]
+        yield from _value(field, values[index], f"{path}[{key}]", owners)
+
+
+def _value(field: Field, value: Any, path: str, owners: Sequence[Any]) -> Iterator[tuple[str, str]]:
+    if is_number(field.type):
+        primitive = field.type.primitive
+        yield path, "seconds" if primitive is None else primitive.idl_name
+    elif field.type.primitive is None:
+        yield from _numbers(get_message(field.type.base), value, f"{path}.", owners)
+
+
+def _is_awkward(name: str) -> bool:
+    """Return whether a name cannot be written in brackets."""
+    return not name or name.isdecimal() or "[" in name or "]" in name

@@ -1,0 +1,66 @@
+"""The node graph: what ``rqt_graph`` shows."""
+
+from __future__ import annotations
+
+from linkwright.graph import EndpointKind
+from linkwright.graph.introspection.graph_queries import GraphQueries
+from linkwright.graph.names.rules import join
+from linkwright.page.audience import Page
+from linkwright.page.protocol.monitor import GraphTopic, NodeGraph, WatchNodeGraph
+from linkwright.panels.page_feature import FeatureHost, PageFeature
+
+
+class NodeGraphFeature(PageFeature):
+    """Sends pages the nodes and topics, and every change."""
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._sent: dict[Page, NodeGraph] = {}
+
+    def receive(self, page: Page, message: WatchNodeGraph) -> None:
+        """Start or stop sending the graph to a page."""
+        if not message.watched:
+            self.page_gone(page)
+            return
+        self._sent[page] = current = node_graph(self.context.node.graph)
+        page.send(current)
+        self.context.graph_changes.listen(self._publish)
+
+    def page_gone(self, page: Page) -> None:
+        """Forget the page."""
+        self._sent.pop(page, None)
+        if not self._sent:
+            self.context.graph_changes.ignore(self._publish)
+
+    def close(self) -> None:
+        """Stop sending."""
+        self._sent.clear()
+        self.context.graph_changes.ignore(self._publish)
+
+    def _publish(self) -> None:
+        current = node_graph(self.context.node.graph)
+        for page, sent in self._sent.items():
+            if current != sent:
+                self._sent[page] = current
+                page.send(current)
+
+
+def node_graph(graph: GraphQueries) -> NodeGraph:
+    """Return the current nodes and topics; nodes of one name count as one, as everywhere in ROS."""
+    topics: dict[str, GraphTopic] = {}
+    for endpoint in graph.endpoints():
+        if endpoint.kind not in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):
+            continue
+        topic = topics.setdefault(endpoint.name, GraphTopic(endpoint.name, [], [], []))
+        if endpoint.type_name not in topic.types:
+            topic.types.append(endpoint.type_name)
+        if endpoint.node is not None:
+            ends = topic.publishers if endpoint.kind is EndpointKind.PUBLISHER else topic.subscribers
+            name = join(endpoint.node.namespace, endpoint.node.name)
+            if name not in ends:
+                ends.append(name)
+    for topic in topics.values():
+        for names in (topic.types, topic.publishers, topic.subscribers):
+            names.sort()
+    nodes = sorted({join(node.namespace, node.name) for node in graph.identities()})
+    return NodeGraph(nodes, [topics[name] for name in sorted(topics)])

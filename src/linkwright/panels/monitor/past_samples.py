@@ -1,0 +1,40 @@
+"""Plot samples from recorded messages."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.messages import deserialize
+from linkwright.panels.monitor.field_paths import FieldPath
+
+if TYPE_CHECKING:
+    from linkwright.bag.moments import Recorded
+
+_NANO = 1e-9
+
+_MOST_READ = 3000
+"""Most messages to read; of more, evenly spread ones: reading one takes some ten microseconds."""
+
+
+def sample_of(path: FieldPath, message: Any, received_ns: int) -> tuple[float, float, float] | None:
+    """Return a sample: receive time and the stamp of the header (NaN for none), seconds, and the number of a field.
+
+    None if the message has no such field.
+    """
+    value = path.value(message)
+    if value is None:
+        return None
+    stamp = getattr(getattr(message, "header", None), "stamp", None)
+    return received_ns * _NANO, math.nan if stamp is None else stamp.nanoseconds * _NANO, value
+
+
+def past_samples(path: FieldPath, cls: Any, messages: Sequence[Recorded]) -> NDArray[np.float64]:
+    """Return samples of recorded messages of a class: array, shape (3, M), whose columns are as in `sample_of`."""
+    step = -(-len(messages) // _MOST_READ) or 1
+    read = [sample_of(path, deserialize(data, cls), stamp_ns) for _, stamp_ns, data in messages[::-1][::step]]
+    return np.array([sample for sample in reversed(read) if sample is not None], dtype=np.float64).reshape(-1, 3).T

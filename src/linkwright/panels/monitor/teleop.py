@@ -1,0 +1,116 @@
+"""The teleop pad: velocities of pages as geometry_msgs/msg/Twist or TwistStamped, and zero when they fall silent."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Node
+from linkwright.nodes.velocity_topic import VelocityTopic
+from linkwright.page.audience import Page
+from linkwright.page.protocol.monitor import AimTeleop, Drive, TeleopState, TeleopTarget
+from linkwright.panels.page_feature import FeatureHost, PageFeature
+
+_SILENCE = 0.4
+"""Seconds without a velocity from a page that drives, after which the robot is stopped."""
+
+
+class TeleopFeature(PageFeature):
+    """Publishes the velocities of pages' pads; a publisher exists while a page has its pad open."""
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._pads: dict[Page, _Pad] = {}
+
+    def receive(self, page: Page, message: AimTeleop | Drive) -> None:
+        """Set the target of a page's pad, or publish a velocity."""
+        if isinstance(message, Drive):
+            pad = self._pads.get(page)
+            if pad is not None:
+                pad.drive(message)
+            return
+        self.page_gone(page)
+        if message.target is not None:
+            self._pads[page] = _Pad(self.context.node, message.target, page.send)
+            self.context.graph_changes.listen(self._review)
+
+    def page_gone(self, page: Page) -> None:
+        """Stop the robot that the page drives."""
+        pad = self._pads.pop(page, None)
+        if pad is not None:
+            pad.close()
+        if not self._pads:
+            self.context.graph_changes.ignore(self._review)
+
+    def close(self) -> None:
+        """Stop all robots."""
+        for page in tuple(self._pads):
+            self.page_gone(page)
+
+    def _review(self) -> None:
+        for pad in self._pads.values():
+            pad.review()
+
+
+class _Pad:
+    """The pad of a page."""
+
+    def __init__(self, node: Node, target: TeleopTarget, publish: Callable[[TeleopState], None]) -> None:
+        self._node = node
+        self._target = target
+        self._publish = publish
+        self._topic: VelocityTopic | None = None
+        self._sent: TeleopState | None = None
+        self._silent: asyncio.TimerHandle | None = None
+        self.review()
+
+    def drive(self, velocity: Drive) -> None:
+        """Publish a velocity, and stop unless another one follows soon."""
+        if self._topic is None or len(velocity.linear) != 3 or len(velocity.angular) != 3:
+            return
+        self._cancel()
+        self._topic.publish(velocity.linear, velocity.angular)
+        if any(velocity.linear) or any(velocity.angular):
+            self._silent = asyncio.get_running_loop().call_later(_SILENCE, self._stop)
+
+    def close(self) -> None:
+        """Stop, and destroy the publisher."""
+        self._stop()
+        if self._topic is not None:
+            self._topic.close()
+
+    def review(self) -> None:
+        """Adopt the type of the topic's subscribers, and count them. A pad in use keeps its type."""
+        target = self._target
+        try:
+            if self._topic is None:
+                stamped = None if target.kind == "auto" else target.kind == "TwistStamped"
+                self._topic = VelocityTopic(self._node, target.topic, stamped, target.frame_id)
+            listeners = self._topic.review(may_change=self._silent is None)
+        except LinkwrightError as error:
+            self._set_state(TeleopState(target.topic, "", 0, error.diagnostics[0].message))
+            return
+        topic = self._topic
+        if topic.foreign is not None:
+            self._cancel()
+            self._set_state(TeleopState(topic.name, "", 0, f"the topic carries {topic.foreign}"))
+            return
+        self._set_state(TeleopState(topic.name, topic.type_name.rpartition("/")[2], listeners, None))
+
+    def _stop(self) -> None:
+        """Publish zero, unless it was published last."""
+        if self._silent is not None:
+            self._cancel()
+            if self._topic is not None:
+                self._topic.stop()
+
+    def _cancel(self) -> None:
+        if self._silent is not None:
+            self._silent.cancel()
+            self._silent = None
+
+    def _set_state(self, state: TeleopState) -> None:
+        if state != self._sent:
+            self._sent = state
+            self._publish(state)

@@ -1,0 +1,159 @@
+"""A subscription to any topic, with the type and the quality of service of its publishers."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import (
+    EndpointKind,
+    MessageInfo,
+    QoSCompatibility,
+    QoSProfile,
+    Subscription,
+    qos_check_compatible,
+)
+from linkwright.graph.qos.compatibility import fit
+from linkwright.graph.qos.profile import QoSPresetProfiles
+from linkwright.rviz.context import ViewerContext
+
+
+class Paced:
+    """Work that is requested more often than it is done.
+
+    Args:
+        work: the work.
+        period: least time between two turns, seconds.
+    """
+
+    def __init__(self, work: Callable[[], None], period: float) -> None:
+        self._work = work
+        self._period = period
+        self._loop = asyncio.get_running_loop()
+        self._done_at = float("-inf")
+        self._due: asyncio.TimerHandle | None = None
+
+    def ask(self) -> None:
+        """Do the work as soon as the period since the last time is over."""
+        if self._due is None:
+            self._due = self._loop.call_at(max(self._loop.time(), self._done_at + self._period), self._do)
+
+    def cancel(self) -> None:
+        """Drop a request that was not carried out yet."""
+        if self._due is not None:
+            self._due.cancel()
+            self._due = None
+
+    def _do(self) -> None:
+        self._due = None
+        self._done_at = self._loop.time()
+        self._work()
+
+
+_DEPTH = 500
+"""The number of messages that may wait while the loop is busy."""
+
+
+class TopicTap:
+    """Receives a topic until it is closed.
+
+    The topic need not exist yet. As ``ros2 topic echo`` does, it requests the strongest quality of service that all
+    publishers offer; if a later publisher offers less, it subscribes again.
+
+    Args:
+        context: the context of the subscribing node, whose remappings do not apply: topics are named as in the graph.
+        topic: absolute name.
+        take: called with each message, or its bytes, and the message info.
+        raw: whether `take` gets CDR bytes.
+        changed: called when `error` or `message_class` has another value.
+    """
+
+    def __init__(
+        self,
+        context: ViewerContext,
+        topic: str,
+        take: Callable[[Any, MessageInfo], None],
+        *,
+        raw: bool = False,
+        changed: Callable[[], None] | None = None,
+    ) -> None:
+        self.topic = topic
+        self.error: str | None = None
+        """Why nothing can be received; None also while there is no publisher."""
+        self.message_class: Any = None
+        """The class of the messages; None while it is not known."""
+        self._node = context.node
+        self._changes = context.graph_changes
+        self._take = take
+        self._raw = raw
+        self._changed = changed
+        self._subscription: Subscription[Any] | None = None
+        self._qos: QoSProfile | None = None
+        self._changes.listen(self._look)
+        self._review()
+
+    def close(self) -> None:
+        """Unsubscribe."""
+        self._changes.ignore(self._look)
+        self._leave()
+
+    def _look(self) -> None:
+        before = self.error, self.message_class
+        self._review()
+        if (self.error, self.message_class) != before and self._changed is not None:
+            self._changed()
+
+    def _review(self) -> None:
+        publishers = [
+            endpoint
+            for endpoint in self._node.graph.endpoints()
+            if endpoint.name == self.topic and endpoint.kind is EndpointKind.PUBLISHER
+        ]
+        types = sorted({publisher.type_name for publisher in publishers})
+        if not types:
+            return  # the last known type stays valid until there are new publishers
+        if len(types) > 1:
+            self.error = f"the topic carries more than one type: {', '.join(types)}"
+            self._leave()
+            return
+        offers = [publisher.qos for publisher in publishers]
+        if self._subscription is not None and self._fits(types[0], offers):
+            return
+        self._leave()
+        self._subscribe(types[0], offers)
+
+    def _fits(self, type_name: str, offers: list[QoSProfile]) -> bool:
+        asked = self._qos
+        return (
+            type_name == self.message_class.TYPE_NAME
+            and asked is not None
+            and all(qos_check_compatible(offer, asked)[0] is not QoSCompatibility.ERROR for offer in offers)
+        )
+
+    def _subscribe(self, type_name: str, offers: list[QoSProfile]) -> None:
+        from linkwright.messages import get_message
+
+        try:
+            self.message_class = get_message(type_name)
+        except LinkwrightError as error:
+            self.error = error.diagnostics[0].message
+            self.message_class = None
+            return
+        sensor_data = QoSPresetProfiles.get_from_short_key("sensor_data")
+        self._qos = fit(sensor_data, offers).profile
+        self._qos.depth = _DEPTH
+        self._subscription = Subscription(
+            self._node.handle, self.message_class, self.topic, self._qos, self._receive, raw=self._raw
+        )
+        self._node.handle.add(self._subscription)
+        self.error = None
+
+    def _receive(self, message: Any, info: MessageInfo) -> None:
+        self._take(message, info)
+
+    def _leave(self) -> None:
+        if self._subscription is not None:
+            self._node.destroy_subscription(self._subscription)
+            self._subscription = None

@@ -1,0 +1,253 @@
+"""The topic monitor: what ``rqt_topic`` shows."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import EndpointKind, MessageInfo
+from linkwright.graph.introspection.traffic import TrafficWindow
+from linkwright.messages import Message, definition_of
+from linkwright.messages.definitions.interfaces import Container, Field
+from linkwright.page.audience import Page
+from linkwright.page.protocol.monitor import (
+    MessageField,
+    TopicFigures,
+    TopicList,
+    TopicMessage,
+    TopicRow,
+    TopicTraffic,
+    WatchTopics,
+)
+from linkwright.panels.monitor.topic_tap import Paced, TopicTap
+from linkwright.panels.page_feature import FeatureHost, PageFeature
+from linkwright.rviz.context import ViewerContext
+
+_MOST_ROWS = 1500
+"""Rows of one message; further rows are left out."""
+_MOST_ELEMENTS = 64
+_SHOWN_ELEMENTS = 8
+"""The number of an array's elements shown in its own row."""
+_LONGEST_TEXT = 400
+
+
+def message_tree(message: Message) -> list[MessageField]:
+    """Return the fields of a message, in their order."""
+    return _Tree().fields(message)
+
+
+class _Tree:
+    def __init__(self) -> None:
+        self._left = _MOST_ROWS
+
+    def fields(self, message: Message) -> list[MessageField]:
+        rows = []
+        for message_field in definition_of(type(message)).fields:
+            if self._left <= 0:
+                break
+            value = getattr(message, message_field.name)
+            if message_field.type.container is Container.ONE:
+                rows.append(self._one(message_field.name, message_field, value))
+            else:
+                rows.append(self._several(message_field, value))
+        return rows
+
+    def _one(self, name: str, field: Field, value: Any) -> MessageField:
+        self._left -= 1
+        kind = field.type._replace(container=Container.ONE, size=None).described()
+        if isinstance(value, Message):
+            return MessageField(name, kind, "", self.fields(value))
+        return MessageField(name, kind, _text(value))
+
+    def _several(self, field: Field, values: Any) -> MessageField:
+        self._left -= 1
+        kind = field.type.described()
+        count = len(values)
+        if field.type.primitive is None:
+            row = MessageField(field.name, kind, "")
+        else:
+            shown = ", ".join(_text(value) for value in values[:_SHOWN_ELEMENTS])
+            row = MessageField(field.name, kind, f"[{shown}{', ...' if count > _SHOWN_ELEMENTS else ''}]")
+        for index in range(min(count, _MOST_ELEMENTS)):
+            if self._left <= 0:
+                break
+            row.children.append(self._one(f"[{index}]", field, values[index]))
+        row.omitted = count - len(row.children)
+        return row
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, bytes):
+        return f"0x{value.hex()}"
+    if isinstance(value, str):
+        return value if len(value) <= _LONGEST_TEXT else f"{value[:_LONGEST_TEXT]}..."
+    return str(value)
+
+
+_FIGURES_PERIOD = 1.0
+_MESSAGES_PERIOD = 0.2
+_WINDOW_MESSAGES = 2000
+_WINDOW_NS = 5_000_000_000
+_LEAST_MEASURED_NS = 500_000_000
+"""The least time that a topic is measured before its figures are sent: messages may arrive in bursts."""
+
+_NANO = 1e-9
+
+
+@dataclass(slots=True)
+class _Request:
+    """The topics that a page lists, measures and opens."""
+
+    listed: bool = False
+    measured: frozenset[str] = frozenset()
+    opened: frozenset[str] = frozenset()
+    sent: TopicList | None = None
+    due: set[str] = field(default_factory=set)
+    """Opened topics with news for this page."""
+
+
+class _Gauge:
+    """Measures a topic, and stores its last message as bytes: it is decoded only when a page shows it."""
+
+    def __init__(self, feature: TopicsFeature, context: ViewerContext, topic: str) -> None:
+        self._feature = feature
+        self.topic = topic
+        self.window = TrafficWindow(_WINDOW_MESSAGES, _WINDOW_NS)
+        self.last: tuple[bytes, float] | None = None
+        self.tap = TopicTap(context, topic, self._receive, raw=True, changed=feature.measure_soon)
+
+    def message(self) -> TopicMessage | None:
+        """The last message; None before there is one, or if its bytes cannot be decoded."""
+        from linkwright.messages import deserialize
+
+        if self.last is None or self.tap.message_class is None:
+            return None
+        data, received = self.last
+        try:
+            return TopicMessage(self.topic, received, message_tree(deserialize(data, self.tap.message_class)))
+        except LinkwrightError:
+            self.tap.error = "a message of the topic could not be read"
+            return None
+
+    def traffic(self) -> TopicTraffic:
+        figures = self.window.traffic(time.monotonic_ns())
+        if figures is None or figures.age_ns < _LEAST_MEASURED_NS:
+            return TopicTraffic(self.topic, None, None, self.tap.error)
+        return TopicTraffic(self.topic, figures.messages_per_second, figures.bytes_per_second, self.tap.error)
+
+    def _receive(self, data: Any, info: MessageInfo) -> None:
+        self.window.add(time.monotonic_ns(), len(data))
+        self.last = (data, info.received_timestamp * _NANO)
+        self._feature.came(self.topic)
+
+
+class TopicsFeature(PageFeature):
+    """Lists topics, and measures those that a page requests; it has no other subscriptions."""
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._requests: dict[Page, _Request] = {}
+        self._gauges: dict[str, _Gauge] = {}
+        self._figures = Paced(self._send_figures, _FIGURES_PERIOD)
+        self._messages = Paced(self._send_messages, _MESSAGES_PERIOD)
+
+    def receive(self, page: Page, message: WatchTopics) -> None:
+        """Replace the topics that a page lists, measures and opens."""
+        before = self._requests.get(page, _Request())
+        opened = frozenset(message.opened)
+        request = _Request(message.listed, frozenset(message.measured), opened, before.sent if message.listed else None)
+        request.due = {topic for topic in opened if topic in self._gauges and self._gauges[topic].last}
+        self._requests[page] = request
+        self._update_subscriptions(page)
+        if message.listed:
+            self._send_lists()
+
+    def page_gone(self, page: Page) -> None:
+        """Forget the page's requests."""
+        if self._requests.pop(page, None) is not None:
+            self._update_subscriptions()
+
+    def close(self) -> None:
+        """End all subscriptions."""
+        self._requests.clear()
+        self._update_subscriptions()
+
+    def came(self, topic: str) -> None:
+        """Note that a topic has a message for the pages that opened it."""
+        for request in self._requests.values():
+            if topic in request.opened:
+                request.due.add(topic)
+                self._messages.ask()
+
+    def measure_soon(self) -> None:
+        """Send the figures of a topic with the next ones."""
+        self._figures.ask()
+
+    def _update_subscriptions(self, page: Page | None = None) -> None:
+        """Open the subscriptions that pages need and close all others; answer the page with new requests."""
+        requests = self._requests.values()
+        requested = set[str]().union(*(request.measured | request.opened for request in requests))
+        for topic in self._gauges.keys() - requested:
+            self._gauges.pop(topic).tap.close()
+        for topic in sorted(requested - self._gauges.keys()):
+            self._gauges[topic] = _Gauge(self, self.context, topic)
+        if any(request.listed for request in requests):
+            self.context.graph_changes.listen(self._send_lists)
+        else:
+            self.context.graph_changes.ignore(self._send_lists)
+        if not requested:
+            self._figures.cancel()
+            self._messages.cancel()
+            return
+        self._figures.ask()
+        if page is not None and self._requests[page].due:
+            self._messages.ask()
+
+    def _send_lists(self) -> None:
+        listed = TopicList(self._rows())
+        for page, request in self._requests.items():
+            if request.listed and request.sent != listed:
+                request.sent = listed
+                page.send(listed)
+
+    def _rows(self) -> list[TopicRow]:
+        rows: dict[str, TopicRow] = {}
+        for endpoint in self.context.node.graph.endpoints():
+            if endpoint.kind not in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):
+                continue
+            row = rows.setdefault(endpoint.name, TopicRow(endpoint.name, [], 0, 0))
+            if endpoint.type_name not in row.types:
+                row.types.append(endpoint.type_name)
+                row.types.sort()
+            if endpoint.kind is EndpointKind.PUBLISHER:
+                row.publishers += 1
+            else:
+                row.subscribers += 1
+        return [rows[name] for name in sorted(rows)]
+
+    def _send_figures(self) -> None:
+        for page, request in self._requests.items():
+            gauges = self._in_order(request.measured | request.opened)
+            if gauges:
+                page.send(TopicFigures([gauge.traffic() for gauge in gauges]))
+        if self._gauges:
+            self._figures.ask()
+
+    def _send_messages(self) -> None:
+        messages: dict[str, TopicMessage | None] = {}
+        for page, request in self._requests.items():
+            for gauge in self._in_order(request.due):
+                if gauge.topic not in messages:
+                    messages[gauge.topic] = gauge.message()
+                message = messages[gauge.topic]
+                if message is not None:
+                    page.send(message)
+            request.due.clear()
+
+    def _in_order(self, topics: Iterable[str]) -> list[_Gauge]:
+        return [self._gauges[topic] for topic in sorted(topics)]

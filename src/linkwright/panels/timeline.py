@@ -1,0 +1,233 @@
+"""The timeline of a recording, or of the last minutes: its times for pages, and their playback control."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Collection
+from math import isfinite
+from typing import TYPE_CHECKING, ClassVar
+
+from linkwright.diagnostics import LinkwrightError, in_one_line
+from linkwright.page.audience import Page
+from linkwright.page.protocol.message import ServerMessage
+from linkwright.page.protocol.time import TimeReset
+from linkwright.page.protocol.timeline import (
+    GoLive,
+    Kept,
+    Play,
+    Playhead,
+    SeekTime,
+    SetPlayback,
+    StepTime,
+    Timeline,
+    TimelineTopic,
+)
+from linkwright.panels.live_history import LiveHistory
+from linkwright.panels.page_feature import FeatureHost, PageFeature
+
+if TYPE_CHECKING:
+    from linkwright.bag.moments import Recorded
+    from linkwright.bag.playback import Playback
+    from linkwright.bag.reading import BagReader
+
+_PERIOD = 0.1
+"""Seconds between two positions that pages receive while a recording plays."""
+
+_PARTS = 200
+"""Equal parts of a recording whose messages are counted."""
+
+_KEPT_PERIOD = 1.0
+"""Seconds between two reports to pages of the extent of the live history."""
+
+_CAUGHT_UP_NS = 100_000_000
+"""The distance from the present, nanoseconds, at which playback of the last minutes becomes live."""
+
+_SECOND = 1_000_000_000
+
+
+class TimelineFeature(PageFeature):
+    """Shows pages the position in a recording, and controls its playback for them.
+
+    Without a recording or a live history it does nothing. A recording begins to play when the first page opens.
+
+    Attributes:
+        jumped: called when the time that is shown jumps.
+    """
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (Play, SeekTime, StepTime, SetPlayback, GoLive)
+    BEFORE_DISPLAYS = True
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._recorded: Playback | None = None
+        self._timeline: Timeline | None = None
+        self._problem: str = ""
+        self._begun = False
+        self._timer: asyncio.TimerHandle | None = None
+        self._publish_timer: asyncio.TimerHandle | None = None
+        self._live: LiveHistory | None = None
+        self._was_playing = False
+        self._was_live = True
+        self.jumped: list[Callable[[], object]] = []
+        self._loop = asyncio.get_running_loop()
+
+    def attach(self, playback: Playback, bag: BagReader) -> None:
+        """Show pages a recording; `failed` is to be called if it cannot be read."""
+        from linkwright.bag.publishing import untyped
+
+        counts = bag.counts(_PARTS)
+        topics = [TimelineTopic(at.name, at.type_name, at.count, counts.get(at.name, [])) for at in bag.topics]
+        if self._live is not None:
+            self._live.close()
+            self._live = None
+        self._timeline = Timeline(bag.path.name, bag.start_ns / _SECOND, bag.end_ns / _SECOND, topics, live=False)
+        if findings := [*bag.findings, *untyped(bag)]:
+            self._problem = in_one_line(findings)
+        self._recorded = playback
+        playback.begin_anew = self._begin_anew
+        playback.changed.append(self._changed)
+        self.context.graph_changes.listen(playback.review)
+        self.context.pages.publish(self._timeline)
+        self._changed()
+
+    def keep(self, most_bytes: int) -> LiveHistory:
+        """Store messages of the last minutes, up to so many bytes, for pages; returns the history."""
+        self._live = LiveHistory(self.context, most_bytes, self.failed)
+        self._live.begin_anew = self._begin_anew
+        self._live.changed = self._changed
+        return self._live
+
+    def failed(self, error: LinkwrightError) -> None:
+        """Show an error: the rest of the recording cannot be read."""
+        self._problem = in_one_line(error.diagnostics)
+        for diagnostic in error.diagnostics:
+            self.context.report(diagnostic)
+
+    def opening(self) -> list[ServerMessage]:
+        """Return the recording, and the position in it."""
+        playback = self._recorded
+        if self._live is not None:
+            extent = self._extent(self._live)
+            self._publish_extent_later()
+            return [Timeline("", extent.start, extent.end, [], live=True), extent, self._live_playhead(self._live)]
+        if playback is None or self._timeline is None:
+            return []
+        if not self._begun:
+            self._begun = True
+            playback.review()
+            playback.play()
+        return [self._timeline, self._playhead(playback)]
+
+    def receive(self, page: Page, message: Play | SeekTime | StepTime | SetPlayback | GoLive) -> None:
+        """Carry out a request."""
+        from linkwright.bag.playback import FASTEST, SLOWEST
+
+        playback = self._recorded if self._live is None else self._live.playback
+        if playback is None:
+            return
+        self._problem = ""
+        if self._live is not None:
+            if isinstance(message, GoLive) or (message == Play(True) and self._live.live):
+                self._live.go_live()
+                return
+            if not isinstance(message, SetPlayback):
+                self._live.freeze()
+        match message:
+            case Play(playing):
+                playback.play() if playing else playback.pause()
+            case SeekTime(position) if isfinite(position):
+                start = playback.start_ns
+                # Relative to the start, because a float of seconds since the epoch is off by a tenth of a microsecond.
+                playback.seek(start + round((position - start / _SECOND) * _SECOND))
+            case StepTime(forward, topic):
+                playback.step(forward, topic)
+            case SetPlayback(speed, loop) if SLOWEST <= speed <= FASTEST:
+                playback.set_speed(speed)
+                playback.set_loop(loop)
+
+    def before(self, topics: Collection[str], seconds: float, most_bytes: int) -> list[Recorded]:
+        """Return the messages of some topics in the seconds before the time that is shown, as far as known.
+
+        Args:
+            topics: the topics; the last minutes only have those that the viewer is subscribed to.
+            seconds: the length of time.
+            most_bytes: the limit; if they are larger together, none are returned.
+        """
+        if self._live is None and self._recorded is None:
+            return []
+        source = self._recorded if self._live is None else self._live
+        assert source is not None
+        return source.before(topics, round(seconds * _SECOND), most_bytes)
+
+    def close(self) -> None:
+        """Stop playing."""
+        if self._timer is not None:
+            self._timer.cancel()
+        if self._publish_timer is not None:
+            self._publish_timer.cancel()
+        if self._live is not None:
+            self._live.close()
+        elif self._recorded is not None:
+            self.context.graph_changes.ignore(self._recorded.review)
+            self._recorded.close()
+
+    # -----------------------------------------------------------------------------------------------------------
+
+    def _begin_anew(self) -> None:
+        """Drop the displayed and queued messages: they belong to another time."""
+        for subscription in self.context.node.subscriptions:
+            subscription.discard()
+        for manager in self.managers.all():
+            manager.reset_time()
+            manager.publish(TimeReset())
+        self._notify_jump()
+
+    def _notify_jump(self) -> None:
+        for jumped in self.jumped:
+            jumped()
+
+    def _changed(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        live = self._live
+        if live is not None and live.live is not self._was_live:
+            self._was_live = live.live
+            if live.live:
+                self._notify_jump()
+        if live is not None and not live.live:
+            playing = live.playback.playing
+            caught_up = live.span_ns[1] - live.playback.position_ns < _CAUGHT_UP_NS
+            if self._was_playing and not playing and caught_up:
+                live.go_live()
+            self._was_playing = playing
+        playback = self._recorded if live is None else live.playback
+        if playback is not None:
+            self.context.pages.publish(self._playhead(playback))
+            if playback.playing:
+                self._timer = self._loop.call_later(_PERIOD, self._changed)
+
+    def _playhead(self, playback: Playback) -> Playhead:
+        position = playback.position_ns / _SECOND
+        live = self._live is not None and self._live.live
+        return Playhead(position, playback.playing, playback.speed, playback.loop, playback.seeks, self._problem, live)
+
+    def _live_playhead(self, live: LiveHistory) -> Playhead:
+        if live.has_playback:
+            return self._playhead(live.playback)
+        return Playhead(live.span_ns[0] / _SECOND, False, 1.0, False, 0, self._problem, live=True)
+
+    def _extent(self, live: LiveHistory) -> Kept:
+        start_ns, end_ns = live.span_ns
+        return Kept(start_ns / _SECOND, end_ns / _SECOND, live.size, live.most_bytes)
+
+    def _publish_extent_later(self) -> None:
+        if self._publish_timer is None:
+            self._publish_timer = self._loop.call_later(_KEPT_PERIOD, self._publish_extent)
+
+    def _publish_extent(self) -> None:
+        """Report the extent of the history to pages, as long as there are any."""
+        self._publish_timer = None
+        if self._live is not None and len(self.context.pages):
+            self.context.pages.publish(self._extent(self._live))
+            self._publish_extent_later()

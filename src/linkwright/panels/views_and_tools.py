@@ -1,0 +1,317 @@
+"""The views and the tools of a configuration, for the pages that see it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from linkwright.geometry.single import Transform
+from linkwright.graph import InvalidTopicNameError, Publisher
+from linkwright.messages import get_message
+from linkwright.page.audience import Page
+from linkwright.page.protocol.message import ServerMessage
+from linkwright.page.protocol.navigation import GoalOutcome
+from linkwright.page.protocol.views_and_tools import (
+    AddTool,
+    ChangeSavedView,
+    PointChosen,
+    PoseChosen,
+    RemoveSavedView,
+    RemoveTool,
+    RobotMeasured,
+    SavedView,
+    SavedViews,
+    SaveView,
+    SetToolProperty,
+    Tool,
+    ToolClass,
+    ToolPropertyChanged,
+    Tools,
+    ViewChanged,
+    ViewClasses,
+    ViewState,
+)
+from linkwright.panels.page_feature import FeatureHost, PageFeature
+from linkwright.rviz.config.property_store import qos_of
+from linkwright.rviz.config.tools import TOOL_KINDS, ToolEntry, ToolsConfig, tool_name
+from linkwright.rviz.config.views import view_classes
+
+if TYPE_CHECKING:
+    from linkwright.panels.goals import GoalSender
+    from linkwright.rviz.visualization.manager import VisualizationManager
+
+
+class ViewsFeature(PageFeature):
+    """The cameras of pages, which start with the file's view; the last view of any page is saved."""
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (ViewChanged, RobotMeasured, SaveView, ChangeSavedView, RemoveSavedView)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._classes = ViewClasses(view_classes())
+
+    def opening(self) -> list[ServerMessage]:
+        """Return the classes of views."""
+        return [self._classes]
+
+    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+        """Return the view of the file, whichever pages have now, and the saved ones."""
+        return [ViewState(manager.view, manager.opened, manager.shows_whole_robot), self._saved(manager)]
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Store the views that pages send; those that are not valid are refused."""
+        manager = self.managers.of(page)
+        views = manager.config.views
+        try:
+            if isinstance(message, ViewChanged):
+                views.current = message.view
+                return
+            if isinstance(message, RobotMeasured):
+                manager.measured(message.diagonal, message.ground)
+                return
+            if isinstance(message, SaveView):
+                views.save(message.view)
+            elif isinstance(message, ChangeSavedView):
+                views.change(message.id, message.view)
+            elif isinstance(message, RemoveSavedView):
+                views.remove(message.id)
+        except KeyError:
+            return  # another page removed it
+        except ValueError as error:
+            self.context.node.get_logger().warning(f"A page sent an invalid view: {error}")
+            return
+        manager.edited()
+        manager.publish(self._saved(manager))
+
+    @staticmethod
+    def _saved(manager: VisualizationManager) -> SavedViews:
+        return SavedViews([SavedView(identity, view) for identity, view in manager.config.views.saved.items()])
+
+
+_TOPIC = "Topic"
+_INITIAL_POSE = "rviz_default_plugins/SetInitialPose"
+_POSE_TOOLS = {_INITIAL_POSE: "estimate", "rviz_default_plugins/SetGoal": "goal"}
+_POSE = "geometry_msgs/msg/PoseStamped"
+_POINT_TOOL = "rviz_default_plugins/PublishPoint"
+
+
+@dataclass(slots=True)
+class _Shelf:
+    """The tools of a configuration with their publishers, by their ids."""
+
+    config: ToolsConfig
+    publishers: dict[str, Publisher[Any]] = field(default_factory=dict)
+    goals: dict[str, GoalSender] = field(default_factory=dict)
+
+
+class ToolsFeature(PageFeature):
+    """The tools of a configuration, for the pages that see it.
+
+    Publishers are created at the start, as in RViz: subscribers are then discovered before the first message.
+    """
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (SetToolProperty, AddTool, RemoveTool, PoseChosen, PointChosen)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._shelves: dict[VisualizationManager, _Shelf] = {}
+
+    def start(self) -> None:
+        """Create the publishers of the tools."""
+        for manager in self.managers.all():
+            self._shelf(manager)
+
+    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+        """Return the tools."""
+        return [_tools_message(self._shelf(manager))]
+
+    def manager_closed(self, manager: VisualizationManager) -> None:
+        """Stop publishing for it."""
+        shelf = self._shelves.pop(manager, None)
+        if shelf is not None:
+            self._clear(shelf)
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Carry out a request; tools that are gone are ignored."""
+        manager = self.managers.of(page)
+        shelf = self._shelf(manager)
+        if isinstance(message, SetToolProperty):
+            self._set(page, manager, message)
+        elif isinstance(message, AddTool):
+            self._add(manager, message)
+        elif isinstance(message, RemoveTool):
+            if shelf.config.find(message.id) is not None:
+                shelf.config.remove(message.id)
+                self._withdraw(shelf, message.id)
+                self._changed(manager)
+        elif isinstance(message, PoseChosen):
+            self._publish_pose(manager, message)
+        elif isinstance(message, PointChosen):
+            self._publish_point(manager, message)
+
+    def close(self) -> None:
+        """Stop publishing."""
+        for manager in list(self._shelves):
+            self.manager_closed(manager)
+
+    def _shelf(self, manager: VisualizationManager) -> _Shelf:
+        """Return the tools of a manager; after a change of the configuration they get new publishers."""
+        shelf = self._shelves.get(manager)
+        if shelf is None or shelf.config is not manager.config.tools:
+            if shelf is not None:
+                self._clear(shelf)
+            shelf = self._shelves[manager] = _Shelf(manager.config.tools)
+            for entry in shelf.config.entries:
+                self._try_announce(shelf, entry)
+        return shelf
+
+    def _try_announce(self, shelf: _Shelf, entry: ToolEntry) -> None:
+        try:
+            self._announce(shelf, entry)
+        except InvalidTopicNameError as error:
+            self.context.node.get_logger().error(f"{tool_name(entry.cls)}: {error}")
+
+    def _clear(self, shelf: _Shelf) -> None:
+        for identity in [*shelf.publishers, *shelf.goals]:
+            self._withdraw(shelf, identity)
+
+    # --- settings ----------------------------------------------------------------------------------------------
+
+    def _changed(self, manager: VisualizationManager) -> None:
+        manager.edited()
+        manager.publish(_tools_message(self._shelves[manager]))
+
+    def _add(self, manager: VisualizationManager, message: AddTool) -> None:
+        shelf = self._shelves[manager]
+        try:
+            entry = shelf.config.add(message.cls)
+        except ValueError as error:
+            self.context.node.get_logger().warning(str(error))
+            return
+        self._announce(shelf, entry)
+        self._changed(manager)
+
+    def _set(self, page: Page, manager: VisualizationManager, message: SetToolProperty) -> None:
+        shelf = self._shelves[manager]
+        entry = shelf.config.find(message.id.partition("/")[0])
+        path = entry.properties.find(message.id) if entry else None
+        if entry is None or path is None:
+            return
+        before = entry.properties.get(*path)
+        try:
+            entry.properties.check(path, message.value)
+            shelf.config.list_all()
+            value = entry.properties.set(path, message.value)
+            if path[0] == _TOPIC:
+                self._announce(shelf, entry)
+        except (ValueError, InvalidTopicNameError) as error:
+            self.context.node.get_logger().warning(f"{tool_name(entry.cls)}: {error}")
+            entry.properties.set(path, before)
+            page.send(ToolPropertyChanged(message.id, before))
+            return
+        manager.edited()
+        manager.publish(ToolPropertyChanged(message.id, value))
+
+    # --- what is published ---------------------------------------------------------------------------------------
+
+    def _announce(self, shelf: _Shelf, entry: ToolEntry) -> None:
+        """Recreate the publisher; without a topic there is none."""
+        kind = TOOL_KINDS.get(entry.cls)
+        if kind is not None and kind.action is not None:
+            from linkwright.panels.goals import GoalSender  # here, because few configurations have such a tool
+
+            shelf.goals[entry.id] = GoalSender(self.context.node, *kind.action)
+        if kind is None or kind.publishes is None:
+            return
+        topic = entry.properties.text(_TOPIC).strip()
+        if not topic:
+            self._withdraw(shelf, entry.id)
+            return
+        made: Publisher[Any] = self.context.node.create_publisher(kind.publishes, topic, qos_of(entry.properties))
+        self._withdraw(shelf, entry.id)
+        shelf.publishers[entry.id] = made
+
+    def _withdraw(self, shelf: _Shelf, identity: str) -> None:
+        publisher = shelf.publishers.pop(identity, None)
+        if publisher is not None:
+            self.context.node.destroy_publisher(publisher)
+        goals = shelf.goals.pop(identity, None)
+        if goals is not None:
+            goals.destroy()
+
+    def _find(
+        self, manager: VisualizationManager, identity: str, classes: Collection[str]
+    ) -> tuple[ToolEntry, Publisher[Any]] | None:
+        """Return a tool of some classes, and its publisher."""
+        shelf = self._shelves[manager]
+        entry, publisher = shelf.config.find(identity), shelf.publishers.get(identity)
+        return None if entry is None or publisher is None or entry.cls not in classes else (entry, publisher)
+
+    def _publish_pose(self, manager: VisualizationManager, chosen: PoseChosen) -> None:
+        place = (chosen.x, chosen.y, 0.0, 0.0, 0.0, math.sin(chosen.yaw / 2), math.cos(chosen.yaw / 2))
+        goals = self._shelves[manager].goals.get(chosen.tool)
+        if goals is not None:
+            message, known = self._stamped(manager, _POSE, place)
+            self._log_pose("goal", message.header, _fill(message.pose, known), known)
+            goals.send(message, lambda reason: manager.publish(GoalOutcome(reason, failed=True)))
+            return
+        found = self._find(manager, chosen.tool, _POSE_TOOLS)
+        if found is None:
+            return
+        entry, publisher = found
+        message, known = self._stamped(manager, TOOL_KINDS[entry.cls].publishes, place)
+        pose = message.pose
+        if entry.cls == _INITIAL_POSE:
+            for index, axis in ((0, "x"), (7, "y"), (35, "yaw")):
+                message.pose.covariance[index] = entry.properties.number(f"Covariance {axis}")
+            pose = message.pose.pose
+        self._log_pose(_POSE_TOOLS[entry.cls], message.header, _fill(pose, known), known)
+        publisher.publish(message)
+
+    def _log_pose(self, kind: str, header: Any, pose: Any, place: list[float]) -> None:
+        self.context.node.get_logger().info(
+            f"Setting {kind} pose: Frame:{header.frame_id}, "
+            f"Position({pose.position.x:g}, {pose.position.y:g}, 0), "
+            f"Orientation(0, 0, {pose.orientation.z:g}, {pose.orientation.w:g}) = Angle: {_angle(place):g}"
+        )
+
+    def _publish_point(self, manager: VisualizationManager, chosen: PointChosen) -> None:
+        found = self._find(manager, chosen.tool, (_POINT_TOOL,))
+        if found is None:
+            return
+        entry, publisher = found
+        kind = TOOL_KINDS[entry.cls].publishes
+        message, place = self._stamped(manager, kind, (chosen.x, chosen.y, chosen.z, 0.0, 0.0, 0.0, 1.0))
+        message.point.x, message.point.y, message.point.z = place[:3]
+        publisher.publish(message)
+
+    def _stamped(self, manager: VisualizationManager, kind: str | None, pose: Transform) -> tuple[Any, list[float]]:
+        """Return a tool's message without its pose; and a pose in the Fixed Frame, in the frame of the message."""
+        assert kind is not None
+        message = get_message(kind)()
+        message.header.frame_id, place = self.context.transforms.known(manager.fixed_frame, pose)
+        message.header.stamp = self.context.node.get_clock().now().to_msg()
+        return message, place.tolist()
+
+
+def _fill(pose: Any, place: list[float]) -> Any:
+    """Write numbers into a geometry_msgs/msg/Pose, and return it."""
+    pose.position.x, pose.position.y, pose.position.z = place[:3]
+    pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w = place[3:]
+    return pose
+
+
+def _angle(pose: list[float]) -> float:
+    return 2 * math.atan2(pose[5], pose[6])
+
+
+def _tools_message(shelf: _Shelf) -> Tools:
+    return Tools(
+        [
+            Tool(entry.id, entry.cls, tool_name(entry.cls), entry.cls in TOOL_KINDS, entry.properties.rows())
+            for entry in shelf.config.entries
+        ],
+        [ToolClass(cls, kind.name) for cls, kind in TOOL_KINDS.items()],
+    )

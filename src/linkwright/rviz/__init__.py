@@ -1,0 +1,24 @@
+"""RViz: its configuration files, its displays and views, and how messages become what they draw."""
+
+from typing import TYPE_CHECKING
+
+from linkwright.deferred import deferred
+
+if TYPE_CHECKING:
+    from linkwright.rviz.config.locations import find_unsaved
+    from linkwright.rviz.config.rviz_config import RvizConfig
+    from linkwright.rviz.robot import has_visuals
+    from linkwright.rviz.size import size_of
+
+__all__ = ["RvizConfig", "find_unsaved", "has_visuals", "size_of"]
+
+__getattr__ = deferred(
+    __name__,
+    {
+        "config.locations": ("find_unsaved",),
+        "config.rviz_config": ("RvizConfig",),
+        "robot": ("has_visuals",),
+        "size": ("size_of",),
+    },
+)
+"""Deferred, so that the server can serve the page while the rest is loaded."""

@@ -1,0 +1,30 @@
+"""Points from messages: positions, channels, and the colours that RViz's transformers give them."""
+
+from linkwright.rviz.clouds.colours import AXES, TRANSFORMERS, ColourSettings, coloured, supported_transformers
+from linkwright.rviz.clouds.depth import DepthCamera, DepthCloudBuilder
+from linkwright.rviz.clouds.points import (
+    BadCloudError,
+    Points,
+    ScanProjector,
+    decimated,
+    points_of_cloud,
+    points_of_legacy_cloud,
+    swept,
+)
+
+__all__ = [
+    "AXES",
+    "TRANSFORMERS",
+    "BadCloudError",
+    "ColourSettings",
+    "DepthCamera",
+    "DepthCloudBuilder",
+    "Points",
+    "ScanProjector",
+    "coloured",
+    "decimated",
+    "points_of_cloud",
+    "points_of_legacy_cloud",
+    "supported_transformers",
+    "swept",
+]

@@ -1,0 +1,189 @@
+"""RViz's colour transformers: those that a cloud supports, and the colours they give its points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.geometry.single import normalized
+from linkwright.rviz.clouds.points import Points
+
+INTENSITY, AXIS, FLAT, RGB8, RGBF32 = TRANSFORMERS = ("Intensity", "AxisColor", "FlatColor", "RGB8", "RGBF32")
+AXES = ("X", "Y", "Z")
+
+_LARGEST_INTENSITY = 999999.0
+"""The limit of RViz's computed bounds."""
+
+_RAINBOW_STEPS = 5 * 255
+"""Steps of the rainbow from magenta to red, along five edges of the colour cube."""
+
+_MIX_STEPS = 255
+
+Colours = NDArray[np.uint8]
+"""Shape (N, 4): red, green, blue, alpha. Without rows if all points have the display's one colour."""
+
+
+@dataclass(frozen=True, slots=True)
+class ColourSettings:
+    """The properties of the colour transformers; colours are red, green, blue, 0 to 255.
+
+    Attributes:
+        transformer: one of `TRANSFORMERS`.
+        channel: the channel of ``Intensity``.
+        rainbow: whether ``Intensity`` uses the rainbow instead of a gradient from `darkest` to `brightest`.
+        inverted: whether that rainbow is reversed.
+        darkest: colour of the least intensity.
+        brightest: colour of the largest intensity.
+        intensities: least and largest intensity, or None for those of the cloud.
+        axis: the axis of ``AxisColor``, an index of `AXES`.
+        values: least and largest coordinate, or None for those of the cloud.
+        in_fixed_frame: whether ``AxisColor`` uses coordinates in the Fixed Frame.
+    """
+
+    transformer: str = INTENSITY
+    channel: str = "intensity"
+    rainbow: bool = True
+    inverted: bool = False
+    darkest: tuple[int, int, int] = (0, 0, 0)
+    brightest: tuple[int, int, int] = (255, 255, 255)
+    intensities: tuple[float, float] | None = None
+    axis: int = 2
+    values: tuple[float, float] | None = None
+    in_fixed_frame: bool = True
+
+
+def supported_transformers(points: Points) -> tuple[str, ...]:
+    """Return the transformers that can colour these points; the first is the one that RViz would choose."""
+    found = [INTENSITY, AXIS, FLAT]
+    if packed := _packed_channel(points):
+        values = points.channels[packed]
+        if values.dtype.kind + str(values.dtype.itemsize) in ("i4", "u4", "f4"):
+            found.insert(0, RGB8)
+    parts = [points.channels.get(name) for name in "rgb"]
+    if all(part is not None for part in parts) and parts[0] is not None and parts[0].dtype.str[1:] == "f4":
+        found.append(RGBF32)
+    return tuple(found)
+
+
+def coloured(
+    points: Points, settings: ColourSettings, pose: NDArray[np.float64] | None = None
+) -> tuple[Colours, tuple[float, float] | None]:
+    """Return the colours of the points, and the bounds that were computed for them.
+
+    Args:
+        points: the points.
+        settings: with a transformer that the points support.
+        pose: the pose of their frame in the Fixed Frame, x y z qx qy qz qw; None for points in the Fixed Frame.
+    """
+    if settings.transformer == INTENSITY:
+        return _by_intensity(points, settings)
+    if settings.transformer == AXIS:
+        return _by_axis(points, settings, pose)
+    if settings.transformer == RGB8:
+        return _unpacked(points), None
+    if settings.transformer == RGBF32:
+        parts = [np.clip(np.nan_to_num(points.channels[name]), 0.0, 1.0) * 255.0 for name in "rgb"]
+        colours = np.full((len(points), 4), 255, np.uint8)
+        colours[:, :3] = np.stack(parts, axis=1)
+        return colours, None
+    return np.empty((0, 4), np.uint8), None
+
+
+def _by_intensity(points: Points, settings: ColourSettings) -> tuple[Colours, tuple[float, float] | None]:
+    values = points.values(settings.channel)
+    if values is None and settings.channel == "intensity":
+        values = points.values("intensities")
+    if values is None:  # RViz leaves the points white
+        return np.full((len(points), 4), 255, np.uint8), None
+    computed = None
+    if settings.intensities is None:
+        computed = _bounds(values, _LARGEST_INTENSITY)
+    least, largest = computed or settings.intensities or (0.0, 0.0)
+    span = largest - least or 1e20
+    if settings.rainbow:
+        table = rainbow()[::-1] if not settings.inverted else rainbow()
+    else:
+        table = _mixed(settings.darkest, settings.brightest)
+    return _looked_up(table, values, least, span), computed
+
+
+def _by_axis(
+    points: Points, settings: ColourSettings, pose: NDArray[np.float64] | None
+) -> tuple[Colours, tuple[float, float] | None]:
+    if settings.in_fixed_frame and pose is not None:
+        row = rotation_matrix(normalized(*pose[3:]))[settings.axis].astype(np.float32)
+        values = points.positions @ row + np.float32(pose[settings.axis])
+    else:
+        values = points.positions[:, settings.axis]
+    computed = None
+    if settings.values is None:
+        computed = _bounds(values, 9999.0)
+    least, largest = computed or settings.values or (0.0, 0.0)
+    return _looked_up(rainbow()[::-1], values, least, largest - least or 0.001), computed
+
+
+def _bounds(values: NDArray[Any], limit: float) -> tuple[float, float]:
+    """Return the least and the largest of the finite values, or 0 and 0 without any."""
+    if values.size == 0:
+        return 0.0, 0.0
+    least, largest = float(values.min()), float(values.max())
+    if not np.isfinite(least + largest):
+        finite = values[np.isfinite(values)]
+        if finite.size == 0:
+            return 0.0, 0.0
+        least, largest = float(finite.min()), float(finite.max())
+    return max(-limit, least), min(limit, largest)
+
+
+def _looked_up(table: NDArray[np.uint32], values: NDArray[Any], least: float, span: float) -> Colours:
+    steps = len(table) - 1
+    with np.errstate(all="ignore"):
+        place = values.astype(np.float32) if values.dtype != np.float32 else values
+        place = (place - np.float32(least)) * np.float32(steps / span)
+        place += np.float32(0.5)
+        np.nan_to_num(place, copy=False, nan=0.0, posinf=steps, neginf=0.0)
+    np.clip(place, 0, steps, out=place)
+    colours: Colours = table[place.astype(np.intp)].view(np.uint8).reshape(-1, 4)
+    return colours
+
+
+@cache
+def rainbow() -> NDArray[np.uint32]:
+    """Return RViz's rainbow as packed colours: magenta at 0, then blue, cyan, green, yellow, red."""
+    corners = np.array([(1, 0, 1), (0, 0, 1), (0, 1, 1), (0, 1, 0), (1, 1, 0), (1, 0, 0)]) * 255.0
+    return _gradient(corners, _RAINBOW_STEPS)
+
+
+def _mixed(darkest: tuple[int, int, int], brightest: tuple[int, int, int]) -> NDArray[np.uint32]:
+    return _gradient(np.array([darkest, brightest], dtype=np.float64), _MIX_STEPS)
+
+
+def _gradient(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
+    """Return a table of packed colours, interpolated evenly between corners, opaque."""
+    places = np.linspace(0, len(corners) - 1, steps + 1)
+    table = np.full((steps + 1, 4), 255, np.uint8)
+    for part in range(3):
+        table[:, part] = np.rint(np.interp(places, np.arange(len(corners)), corners[:, part]))
+    packed: NDArray[np.uint32] = table.view(np.uint32).ravel()
+    return packed
+
+
+def _packed_channel(points: Points) -> str | None:
+    """Return the later of ``rgb`` and ``rgba``, as RViz looks for them."""
+    return next((name for name in reversed(list(points.channels)) if name in ("rgb", "rgba")), None)
+
+
+def _unpacked(points: Points) -> Colours:
+    """Return the bytes of ``rgb``, else of ``rgba``: blue, green, red and alpha from the lowest on."""
+    name = "rgb" if "rgb" in points.channels else "rgba"
+    values = points.channels[name]
+    packed = np.ascontiguousarray(values.astype(values.dtype.newbyteorder("<"))).view(np.uint8).reshape(-1, 4)
+    colours: Colours = packed[:, [2, 1, 0, 3]]
+    if name == "rgb":
+        colours[:, 3] = 255
+    return colours

@@ -1,0 +1,200 @@
+"""Points from a depth image: the depths along the camera's rays, coloured by an image of the same size."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import phrase
+from linkwright.images import Picture
+from linkwright.rviz.clouds.points import BadCloudError, Points
+
+_SHADOW_DISTANCE = 0.01
+"""A point hides the one behind it when it is nearer by more than this, metres."""
+
+
+@dataclass(frozen=True, slots=True)
+class DepthCamera:
+    """The pinhole camera of a depth image.
+
+    Attributes:
+        columns: x over z of each column's rays, float32, shape (width,).
+        rows: y over z of each row's rays, float32, shape (height,).
+        pixel: the width of a pixel one metre away, metres.
+    """
+
+    columns: NDArray[np.float32]
+    rows: NDArray[np.float32]
+    pixel: float
+
+    @classmethod
+    def of(cls, info: Any, width: int, height: int) -> DepthCamera:
+        """Return the camera of a sensor_msgs/msg/CameraInfo, for images of a size.
+
+        Raises:
+            BadCloudError: the image has another size than the camera, or the camera has no focal length.
+        """
+        binning_x, binning_y = max(1, info.binning_x), max(1, info.binning_y)
+        roi_width, roi_height = info.roi.width or info.width, info.roi.height or info.height
+        expected = (roi_width // binning_x, roi_height // binning_y)
+        if expected != (width, height):
+            raise BadCloudError(
+                phrase(
+                    "Error updating depth cloud: Depth image size and camera info don't match: {width} x {height} vs "
+                    "{columns} x {rows}(binning: {binning_x} x {binning_y}, ROI size: {roi_width} x {roi_height})",
+                    width=width,
+                    height=height,
+                    columns=expected[0],
+                    rows=expected[1],
+                    binning_x=binning_x,
+                    binning_y=binning_y,
+                    roi_width=roi_width,
+                    roi_height=roi_height,
+                )
+            )
+        p = np.asarray(info.p, np.float64)
+        if not np.isfinite(p).all() or p[0] == 0.0 or p[5] == 0.0:
+            raise BadCloudError(
+                phrase("Error updating depth cloud: the projection matrix of the CameraInfo has no focal length")
+            )
+        columns = (np.arange(width) - (p[2] - info.roi.x_offset) / binning_x) / (p[0] / binning_x)
+        rows = (np.arange(height) - (p[6] - info.roi.y_offset) / binning_y) / (p[5] / binning_y)
+        focal = float(info.k[0]) or float(p[0])
+        return cls(columns.astype(np.float32), rows.astype(np.float32), binning_x / focal)
+
+
+class DepthCloudBuilder:
+    """Makes points from depth images; with occlusion compensation covered points stay for a while."""
+
+    def __init__(self) -> None:
+        self._hidden: _Hidden | None = None
+
+    def reset(self) -> None:
+        """Drop the covered points: the camera moved or restarted."""
+        self._hidden = None
+
+    def points(
+        self,
+        depth: Any,
+        camera: DepthCamera,
+        colour: Picture | None,
+        *,
+        keep_covered: float | None = None,
+        now: float = 0.0,
+    ) -> Points:
+        """Return the points of an image.
+
+        Args:
+            depth: sensor_msgs/msg/Image, 16UC1 or mono16 in millimetres or 32FC1 in metres.
+            camera: a camera of the image's size.
+            colour: an image of the same size; None for white points.
+            keep_covered: seconds that covered points stay, in half their colour; None to drop them at once.
+            now: the time, seconds.
+
+        Raises:
+            BadCloudError: the image is of another encoding, too short, or not of the colour image's size.
+        """
+        metres, valid = _metres(depth)
+        if colour is not None and (colour.width, colour.height) != (depth.width, depth.height):
+            raise BadCloudError(
+                phrase(
+                    "Error updating depth cloud: Depth image resolution ({width}x{height}) does not match "
+                    "color image resolution ({columns}x{rows})",
+                    width=depth.width,
+                    height=depth.height,
+                    columns=colour.width,
+                    rows=colour.height,
+                )
+            )
+        colours = np.full(metres.shape, 0x00FFFFFF, np.uint32) if colour is None else _packed(colour)
+        if keep_covered is None:
+            self._hidden = None
+            return _placed(metres, colours, valid, camera)
+        return self._with_covered(metres, colours, valid, camera, now, keep_covered)
+
+    def _with_covered(
+        self,
+        metres: NDArray[np.float32],
+        colours: NDArray[np.uint32],
+        valid: NDArray[np.bool_],
+        camera: DepthCamera,
+        now: float,
+        timeout: float,
+    ) -> Points:
+        hidden = self._hidden
+        if hidden is None or hidden.metres.shape != metres.shape:
+            hidden = self._hidden = _Hidden(np.zeros_like(metres), np.zeros_like(colours), np.zeros(metres.shape))
+        hidden.metres[hidden.seen < now - timeout] = 0.0
+        covering = valid & (metres < hidden.metres - _SHADOW_DISTANCE)
+        shown = (hidden.metres != 0.0) & (covering | ~valid)
+        behind = _placed(hidden.metres, hidden.colours, shown, camera)
+        front = _placed(metres, colours, valid, camera)
+        visible = valid & ~covering
+        hidden.metres[visible] = metres[visible]
+        hidden.colours[visible] = colours[visible] >> 1 & 0x7F7F7F
+        hidden.seen[visible] = now
+        return Points(
+            np.concatenate([front.positions, behind.positions]),
+            {"rgb": np.concatenate([front.channels["rgb"], behind.channels["rgb"]])},
+        )
+
+
+@dataclass(slots=True)
+class _Hidden:
+    metres: NDArray[np.float32]
+    colours: NDArray[np.uint32]
+    seen: NDArray[np.float64]
+
+
+def _metres(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+    """Return the depths, shape (height, width), and a mask of the valid ones."""
+    kinds = {"32FC1": "f4", "16UC1": "u2", "mono16": "u2"}
+    kind = kinds.get(image.encoding)
+    if kind is None:
+        raise BadCloudError(
+            phrase("Error updating depth cloud: Depth image has invalid format (only 16 bit and float are supported)!")
+        )
+    kind = (">" if image.is_bigendian else "<") + kind
+    data = np.frombuffer(image.data, np.uint8)
+    row = image.width * int(kind[2])
+    step = image.step or row
+    if step < row or data.size < step * max(0, image.height - 1) + row * (image.height > 0):
+        raise BadCloudError(
+            phrase(
+                "Error updating depth cloud: the depth image has {size} bytes, too few for {width} x {height}",
+                size=data.size,
+                width=image.width,
+                height=image.height,
+            )
+        )
+    raw: NDArray[Any] = np.ndarray((image.height, image.width), kind, data.data, 0, (step, int(kind[2])))
+    metres = raw.astype(np.float32)
+    if kind[1] == "f":
+        return metres, np.isfinite(metres)
+    valid = metres != 0.0
+    metres *= np.float32(0.001)
+    return metres, valid
+
+
+def _packed(image: Picture) -> NDArray[np.uint32]:
+    """Return colours in the form of ``rgb`` channels."""
+    rgb = image.rgb().astype(np.uint32)
+    packed: NDArray[np.uint32] = np.bitwise_or(rgb[..., 0] << 16 | rgb[..., 1] << 8, rgb[..., 2], dtype=np.uint32)
+    return packed
+
+
+def _placed(
+    metres: NDArray[np.float32], colours: NDArray[np.uint32], where: NDArray[np.bool_], camera: DepthCamera
+) -> Points:
+    everywhere = bool(where.all())
+    depths = metres.ravel() if everywhere else metres[where]
+    positions = np.empty((len(depths), 3), np.float32)
+    with np.errstate(all="ignore"):
+        sides = (metres * camera.columns, metres * camera.rows[:, np.newaxis])
+    for axis, side in enumerate(sides):
+        positions[:, axis] = side.ravel() if everywhere else side[where]
+    positions[:, 2] = depths
+    return Points(positions, {"rgb": colours.ravel() if everywhere else colours[where]})

@@ -1,0 +1,218 @@
+"""The points of clouds and laser scans: their coordinates and their other fields.
+
+Scans are projected as laser_geometry does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from msgspec.structs import replace
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import phrase
+from linkwright.geometry.arrays import rotate, slerp
+from linkwright.page.protocol.points import CloudPoints
+
+# sensor_msgs/msg/PointField: constants of its `datatype`
+_FORMATS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+_AXES = ("x", "y", "z")
+
+
+class BadCloudError(ValueError):
+    """A message cannot be shown as points; the text is for the status row ``Message``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """Points with finite positions.
+
+    Attributes:
+        positions: float32 array, shape (N, 3), metres in the frame of the message.
+        channels: the values of other fields by name, in the order of the message; each of shape (N,).
+    """
+
+    positions: NDArray[np.float32]
+    channels: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def values(self, name: str) -> NDArray[Any] | None:
+        """Return a channel, or a coordinate; None if these points do not have it."""
+        if name in _AXES:
+            column: NDArray[Any] = self.positions[:, _AXES.index(name)]
+            return column
+        return self.channels.get(name)
+
+
+def points_of_cloud(message: Any) -> Points:
+    """Return the points of a PointCloud2 whose coordinates are finite, as RViz takes them.
+
+    Of several fields with one name the first counts; of a field with several values the first value. Fields of
+    unknown types are ignored.
+
+    Raises:
+        BadCloudError: the size of the data is not that of the points, a field reaches beyond the point, or there are no
+            coordinates in float32.
+    """
+    count = message.width * message.height
+    step = message.point_step
+    data = np.frombuffer(message.data, dtype=np.uint8)
+    if data.size != count * step:
+        raise BadCloudError(
+            phrase(
+                "Data size ({size} bytes) does not match width ({width}) times height ({height}) "
+                "times point_step ({step}).  Dropping message.",
+                size=data.size,
+                width=message.width,
+                height=message.height,
+                step=step,
+            )
+        )
+    fields = _fields(message.fields, step)
+    if any(fields.get(axis, ("", 0))[0] != "f4" for axis in _AXES):
+        raise BadCloudError(phrase("No position transformer available for cloud"))
+    if count == 0:
+        return Points(np.empty((0, 3), np.float32), {name: np.empty(0, kind) for name, (kind, _) in fields.items()})
+    order = ">" if message.is_bigendian else "<"
+    positions = _coordinates(data, [fields[axis][1] for axis in _AXES], order, step, count)
+    valid = None
+    with np.errstate(all="ignore"):
+        if not np.isfinite(positions.sum(dtype=np.float64)):
+            valid = np.isfinite(positions).all(axis=1)
+            positions = positions[valid]
+    channels: dict[str, NDArray[Any]] = {}
+    for name, (kind, offset) in fields.items():
+        if name not in _AXES:
+            column = _column(data, offset, order + kind, step, count)
+            channels[name] = column if valid is None else column[valid]
+    return Points(positions, channels)
+
+
+def points_of_legacy_cloud(message: Any) -> Points:
+    """Return the points of a sensor_msgs/msg/PointCloud whose coordinates are finite.
+
+    Raises:
+        BadCloudError: a channel does not have one value for each point.
+    """
+    positions = np.array([(point.x, point.y, point.z) for point in message.points], dtype=np.float32).reshape(-1, 3)
+    channels: dict[str, NDArray[Any]] = {}
+    for channel in message.channels:
+        values = np.asarray(channel.values, dtype=np.float32)
+        if len(values) != len(positions):
+            raise BadCloudError(
+                phrase(
+                    "Channel '{name}' has {values} values for {positions} points.  Dropping message.",
+                    name=channel.name,
+                    values=len(values),
+                    positions=len(positions),
+                )
+            )
+        channels.setdefault(channel.name, values)
+    valid = np.isfinite(positions).all(axis=1)
+    return Points(positions[valid], {name: values[valid] for name, values in channels.items()})
+
+
+def _fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
+    """Return type and offset of each field by name."""
+    found: dict[str, tuple[str, int]] = {}
+    for point_field in fields:
+        kind = _FORMATS.get(point_field.datatype)
+        if kind is None or point_field.name in found:
+            continue
+        if point_field.offset + int(kind[1]) > step:
+            raise BadCloudError(
+                phrase(
+                    "Field '{name}' ends at byte {end} of a point of {step} bytes",
+                    name=point_field.name,
+                    end=point_field.offset + int(kind[1]),
+                    step=step,
+                )
+            )
+        found[point_field.name] = (kind, point_field.offset)
+    return found
+
+
+def _coordinates(data: NDArray[np.uint8], offsets: list[int], order: str, step: int, count: int) -> NDArray[np.float32]:
+    """Return the coordinates, shape (N, 3), in memory of their own, so that the message can be freed."""
+    first = offsets[0]
+    if offsets == [first, first + 4, first + 8]:
+        view: NDArray[Any] = np.ndarray((count, 3), order + "f4", data.data, first, (step, 4))
+        return view.astype(np.float32)
+    columns = [_column(data, offset, order + "f4", step, count) for offset in offsets]
+    return np.stack(columns, axis=1).astype(np.float32, copy=False)
+
+
+def _column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: int) -> NDArray[Any]:
+    column: NDArray[Any] = np.ndarray((count,), kind, data.data, offset, (step,))
+    return column
+
+
+def decimated(cloud: CloudPoints, size: int) -> CloudPoints:
+    """Return every k-th point, so that the arrays have at most so many bytes; at least one point."""
+    n_bytes = cloud.positions.nbytes + cloud.colours.nbytes
+    step = -(-n_bytes // max(1, size))
+    if step <= 1:
+        return cloud
+    return replace(cloud, positions=cloud.positions[::step], colours=cloud.colours[::step], step=step)
+
+
+class ScanProjector:
+    """Projects scans; caches the directions of the rays for scans of the same shape."""
+
+    def __init__(self) -> None:
+        self._shape: tuple[float, float, int] = (0.0, 0.0, 0)
+        self._directions: NDArray[np.float32] = np.empty((0, 2), np.float32)
+
+    def points(self, scan: Any) -> Points:
+        """Return the points at which rays hit an object, in the frame of the scanner.
+
+        A ray counts whose range is at least `range_min` and less than `range_max`; rays without an echo are infinite or
+        NaN. The channels are ``intensity`` (where the scan has one for each ray), ``range`` and ``index``.
+        """
+        ranges = np.frombuffer(scan.ranges, np.float32)
+        with np.errstate(invalid="ignore"):
+            hits = np.flatnonzero((ranges >= scan.range_min) & (ranges < scan.range_max))
+        distances = ranges[hits]
+        positions = np.zeros((len(hits), 3), np.float32)
+        directions = self._rays(scan.angle_min, scan.angle_increment, len(ranges))
+        np.multiply(directions[hits], distances[:, np.newaxis], out=positions[:, :2])
+        channels: dict[str, NDArray[Any]] = {}
+        intensities = np.frombuffer(scan.intensities, np.float32)
+        if len(intensities) == len(ranges):
+            channels["intensity"] = intensities[hits]
+        channels["range"] = distances
+        channels["index"] = hits.astype(np.int32)
+        finite = np.isfinite(positions.sum())
+        if finite:
+            return Points(positions, channels)
+        valid = np.isfinite(positions).all(axis=1)
+        return Points(positions[valid], {name: values[valid] for name, values in channels.items()})
+
+    def _rays(self, first: float, step: float, count: int) -> NDArray[np.float32]:
+        """Return cosine and sine of each ray's angle."""
+        shape = (first, step, count)
+        if shape != self._shape:
+            with np.errstate(all="ignore"):
+                angles = first + step * np.arange(count, dtype=np.float64)
+                self._directions = np.stack([np.cos(angles), np.sin(angles)], axis=1).astype(np.float32)
+            self._shape = shape
+        return self._directions
+
+
+def swept(points: Points, parts: NDArray[Any], first: NDArray[np.float64], last: NDArray[np.float64]) -> Points:
+    """Return points that were measured on the way from one pose to another, in the frame of the poses.
+
+    Args:
+        points: in the moving frame.
+        parts: the part of the way, 0 to 1, at which each point was seen; shape (N,).
+        first: pose at the beginning, x y z qx qy qz qw.
+        last: pose at the end.
+    """
+    turned = rotate(slerp(first[3:], last[3:], parts), points.positions)
+    moved = turned + first[:3] + parts[:, np.newaxis] * (last[:3] - first[:3])
+    return Points(moved.astype(np.float32), points.channels)

@@ -1,0 +1,258 @@
+"""The files of configurations: recent ones, folders of the server, and recovery files of unsaved edits.
+
+When the program ends, unsaved edits are stored in a recovery file for each configuration: RViz asks
+before its window is closed, Ctrl-C in a terminal does not.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, foreign, phrase
+from linkwright.files.user_folders import state_folder
+from linkwright.rviz.config import file as configuration_file
+from linkwright.rviz.config.file import FileForm
+from linkwright.whole_files import write_whole_file
+
+if TYPE_CHECKING:
+    from linkwright.page.protocol.configuration import Folder
+    from linkwright.rviz.config.rviz_config import RvizConfig
+
+
+ENDING = ".rviz"
+
+_MOST_RECENT = 10
+_MOST_ENTRIES = 1000
+
+
+def configuration_path(text: str, folder: Path) -> Path:
+    """Return the file that a page names.
+
+    Args:
+        text: absolute, from ``~``, or from the folder.
+        folder: the folder of the open file.
+
+    Raises:
+        LinkwrightError: RVIZ105, its name, or that of the file it is a link to, does not end in ``.rviz``.
+    """
+    try:
+        path = Path(os.path.normpath(folder / Path(text).expanduser()))
+        ends = (path.suffix, Path(os.path.realpath(path)).suffix)
+    except (ValueError, RuntimeError, OSError):
+        ends, path = ("", ""), Path(text)
+    if "\0" in text or any(end != ENDING for end in ends):
+        hint = phrase("give it a name that ends in '{ending}'", ending=ENDING)
+        raise LinkwrightError(
+            Diagnostic("RVIZ105", phrase("'{text}' is not the name of an RViz configuration", text=text), hint=hint)
+        )
+    return path
+
+
+def list_folder(text: str | None, folder: Path) -> Folder:
+    """Return the folders and configuration files of a folder, without hidden ones.
+
+    Args:
+        text: absolute, from ``~``, or from the folder of the open file; None for that one.
+        folder: the folder of the open file.
+
+    Raises:
+        LinkwrightError: RVIZ106, it cannot be read.
+    """
+    folders, files = [], []
+    path = folder / (text or "")
+    try:
+        path = Path(os.path.normpath(folder / Path(text or "").expanduser()))
+        with os.scandir(path) as entries:
+            for entry in entries:
+                if entry.name.startswith("."):
+                    continue
+                with suppress(OSError):
+                    if entry.is_dir():
+                        folders.append(entry.name)
+                    elif entry.name.endswith(ENDING) and entry.is_file():
+                        files.append(entry.name)
+    except (OSError, ValueError, RuntimeError) as error:  # the last when there is no such user
+        reason = getattr(error, "strerror", None) or error
+        raise LinkwrightError(
+            Diagnostic(
+                "RVIZ106", phrase("cannot list the folder '{path}': {reason}", path=path, reason=foreign(reason))
+            )
+        ) from None
+    parent = None if path.parent == path else str(path.parent)
+    from linkwright.page.protocol.configuration import Folder  # here, because tokens of pages need only the folder
+
+    return Folder(str(path), parent, sorted(folders)[:_MOST_ENTRIES], sorted(files)[:_MOST_ENTRIES])
+
+
+class RecentFiles:
+    """The files that were opened or saved last, stored for the next start.
+
+    Args:
+        store: the file with their paths; by default one in the user's state folder.
+    """
+
+    def __init__(self, store: Path | None = None) -> None:
+        self._store = store or state_folder() / "recent-rviz.json"
+        self._paths: list[str] | None = None
+
+    @property
+    def paths(self) -> list[str]:
+        """Newest first."""
+        if self._paths is None:
+            self._paths = self._read()
+        return self._paths
+
+    def add(self, path: Path) -> None:
+        """Put a file at the top; a list that cannot be saved is not an error."""
+        name = str(path)
+        self._write([name, *(other for other in self._read() if other != name)][:_MOST_RECENT])
+
+    def remove(self, path: Path) -> None:
+        """Drop a file that is gone."""
+        paths = self._read()
+        if str(path) in paths:
+            self._write([other for other in paths if other != str(path)])
+
+    def _write(self, paths: list[str]) -> None:
+        self._paths = paths
+        with suppress(OSError):
+            self._store.parent.mkdir(parents=True, exist_ok=True)
+            write_whole_file(self._store, json.dumps(self._paths))
+
+    def _read(self) -> list[str]:
+        with suppress(OSError, ValueError, RecursionError):
+            paths = json.loads(self._store.read_text(encoding="utf-8"))
+            if isinstance(paths, list):
+                return [path for path in paths if isinstance(path, str)][:_MOST_RECENT]
+        return []
+
+
+_UNNAMED = "untitled"
+_UNFIT = re.compile(r"[^\w. -]+|^\.+")
+_LONGEST_NAME = 56
+"""Characters, of which a file system may count four bytes each."""
+_HOW = phrase("open that file in the page, or with 'rviz2 -d'")
+
+
+def recovery_folder() -> Path:
+    """Return the folder of these files, below the user's state."""
+    return state_folder() / "unsaved"
+
+
+def recovery_file(config: RvizConfig) -> Path:
+    """Return the recovery file of a configuration; one that was opened as such, and has no other file, keeps it."""
+    folder = recovery_folder()
+    if config.path is not None:
+        path = _absolute(config.path)
+        return folder / path.name if path.parent == _absolute(folder) else folder / _name_for(str(path))
+    name = config.document.source.name
+    return folder / (f"{_UNNAMED}{ENDING}" if name.startswith("<") else _name_for(name))  # "<default>" and the like
+
+
+def keep_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
+    """Write configurations that have unsaved edits into the recovery files.
+
+    Returns:
+        Where each of them is (RVIZ301), or that it is lost (RVIZ104).
+    """
+    diagnostics: list[Diagnostic] = []
+    taken: set[Path] = set()
+    for config in configs:
+        text = config.text()
+        if _is_saved(config, text):
+            continue
+        path = _free(recovery_file(config), taken)
+        taken.add(path)
+        with suppress(OSError):  # the write below reports the error
+            path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            configuration_file.write(path, text, FileForm())
+        except LinkwrightError as error:
+            diagnostics += error.diagnostics
+        else:
+            RecentFiles().add(path)
+            diagnostics.append(_stored_finding(config, path))
+    return diagnostics
+
+
+def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
+    """Report edits of a file that an earlier run of the program kept (RVIZ302)."""
+    path = recovery_file(config)
+    if config.path is None or _absolute(config.path) == _absolute(path) or not path.is_file():
+        return []
+    message = phrase(
+        "earlier unsaved changes of '{path}' are in '{kept}': {how}",
+        path=config.path,
+        kept=path,
+        how=_HOW,
+    )
+    return [Diagnostic("RVIZ302", message, severity=Severity.INFO)]
+
+
+def forget_unsaved(former: Path | None, config: RvizConfig, recent: RecentFiles) -> None:
+    """Remove the recovery file of a configuration that has just been saved.
+
+    Args:
+        former: the file that it had before: a recovery file that is now saved elsewhere is not needed any more.
+        config: the configuration, with the file that it was saved to.
+        recent: the list from which removed files are dropped.
+    """
+    done = {recovery_file(config)}
+    if former is not None and _absolute(former).parent == _absolute(recovery_folder()):
+        done.add(_absolute(former))
+    for path in done:
+        if config.path is None or _absolute(path) == _absolute(config.path):
+            continue
+        with suppress(OSError):
+            path.unlink()
+            recent.remove(path)
+
+
+def _stored_finding(config: RvizConfig, path: Path) -> Diagnostic:
+    if config.path is None or _absolute(config.path) == _absolute(path):
+        message = phrase("unsaved displays are stored in '{path}': {how}", path=path, how=_HOW)
+    else:
+        message = phrase(
+            "unsaved changes of '{path}' are stored in '{kept}': {how}",
+            path=config.path,
+            kept=path,
+            how=_HOW,
+        )
+    return Diagnostic("RVIZ301", message, severity=Severity.WARNING)
+
+
+def _is_saved(config: RvizConfig, text: str) -> bool:
+    """Whether the file has a text already: the user reverted all edits."""
+    if config.path is None:
+        return False
+    try:
+        return configuration_file.read(config.path)[0] == text
+    except LinkwrightError:
+        return False
+
+
+def _name_for(name: str) -> str:
+    """Return a name in the recovery folder for a configuration of this name, which a page may have chosen."""
+    mark = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # distinguishes files of the same name
+    stem = _UNFIT.sub("_", Path(name).stem)[:_LONGEST_NAME]
+    return f"{stem or _UNNAMED}-{mark}{ENDING}"
+
+
+def _free(path: Path, taken: set[Path]) -> Path:
+    """Return the file, or a free one beside it for a page's own copy of the same configuration."""
+    number, found = 1, path
+    while found in taken:
+        number += 1
+        found = path.with_name(f"{path.stem}-{number}{ENDING}")
+    return found
+
+
+def _absolute(path: Path) -> Path:
+    return Path(os.path.realpath(path))

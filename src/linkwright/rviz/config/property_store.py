@@ -1,0 +1,307 @@
+"""The values of one display's properties: read from its part of the .rviz file, written back there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+
+from linkwright.diagnostics import Diagnostic, Severity, phrase
+from linkwright.graph import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.page.protocol.displays import Property, PropertyChanged, PropertyValue, TopicOffer
+from linkwright.rviz.config.former_names import FormerKey
+from linkwright.rviz.config.schema import Path, PropertySpec, Schema, accept, from_text, in_place_of, to_text
+from linkwright.rviz.config.yaml_tree import Memory, NewSection, Scalar, Section, make_section, unmake
+
+_MANY = 30
+"""From so many properties beside each other on, an index finds them by name."""
+
+
+def property_id(owner: str, path: Iterable[str]) -> str:
+    """Return the id of the property at a path of names below a display (or ``global``), as in `protocol`."""
+    return "/".join((owner, *(name.replace("%", "%25").replace("/", "%2F") for name in path)))
+
+
+class PropertyStore:
+    """Values by path of names: those that were set, else the file's, else the defaults.
+
+    Args:
+        owner: the display's id, or ``global``.
+        section: the file, or the display's part of it; values set are written into it at once.
+        schema: returns the current specs, which change for displays whose rows come and go.
+        report: called with a value in the file that cannot be used; the default is used then.
+        base: keys from the section to the mapping with the values; made only when a value is set.
+        frames: returns the names offered for a ``frame``.
+        former: the keys of RViz 1, for a section that it wrote.
+    """
+
+    def __init__(
+        self,
+        owner: str,
+        section: Section,
+        schema: Callable[[], Schema],
+        report: Callable[[Diagnostic], None],
+        base: Path = (),
+        frames: Callable[[], list[str]] = list,
+        former: Mapping[Path, FormerKey] | None = None,
+    ) -> None:
+        self._owner = owner
+        self._section = section
+        self._schema = schema
+        self._many: tuple[Schema, dict[str, PropertySpec]] = ((), {})
+        self._report = report
+        self._base = base
+        self._frames = frames
+        self._former = former or {}
+        self._recorded: list[Memory] | None = None
+        self._new_sections: list[NewSection] = []
+        self._values: dict[Path, PropertyValue] = {}
+
+    def get(self, *path: str) -> PropertyValue:
+        """Return the value of the property at a path of names.
+
+        Raises:
+            KeyError: when the schema has no such property.
+        """
+        return self._value(path, self._spec(path))
+
+    def flag(self, *path: str) -> bool:
+        """Return the value of a ``bool``."""
+        return bool(self.get(*path))
+
+    def number(self, *path: str) -> float:
+        """Return the value of an ``int`` or ``float``."""
+        value = self.get(*path)
+        assert isinstance(value, (int, float))
+        return float(value)
+
+    def text(self, *path: str) -> str:
+        """Return the value of a ``string``, ``enum``, ``frame`` or ``color``."""
+        return str(self.get(*path))
+
+    def check(self, path: Path, value: object) -> None:
+        """Raise the errors of `set`, without storing a value."""
+        accept(self._spec(path), value)
+
+    def set(self, path: Path, value: object) -> PropertyValue:
+        """Store a value and return it as stored.
+
+        Raises:
+            KeyError: when the schema has no such property.
+            ValueError: when the property takes no such value.
+        """
+        spec = self._spec(path)
+        taken = accept(spec, value)
+        if taken != self._value(path, spec):
+            self._values[path] = taken
+            self._write(path, spec, to_text(spec, taken))
+        return taken
+
+    def set_read_only(self, path: Path, value: PropertyValue) -> bool:
+        """Set a value that the file does not store, as of a read-only property; returns whether it is new.
+
+        Raises:
+            KeyError: when the schema has no such property.
+        """
+        spec = self._spec(path)
+        if self._value(path, spec) == value:
+            return False
+        self._values[path] = value
+        return True
+
+    @contextmanager
+    def recording(self) -> Iterator[list[Memory]]:
+        """Collect the file's entries for the properties set inside the block, for `recall`."""
+        memories: list[Memory] = []
+        self._recorded = memories
+        try:
+            yield memories
+        finally:
+            self._recorded = None
+
+    def memories(self, of: Iterable[Memory]) -> list[Memory]:
+        """Return the present state of the keys of other memories."""
+        return [self._place().memory(memory.key) for memory in of]
+
+    def recall(self, memories: Iterable[Memory]) -> list[Path]:
+        """Restore entries of the file; returns the paths of the values that changed."""
+        keys = {memory.key for memory in memories}
+        place = self._place()
+        for memory in memories:
+            place.recall(memory)
+        self._new_sections = unmake(self._new_sections)
+        old = {path: value for path, value in self._values.items() if self._key(path) in keys and self._is_kept(path)}
+        for path in old:
+            del self._values[path]
+        return [path for path, value in old.items() if self.get(*path) != value]
+
+    def find(self, identity: str) -> Path | None:
+        """Return the path of the property with an id, or None."""
+        specs = self._schema()
+        owner, *names = identity.split("/")
+        path = tuple(name.replace("%2F", "/").replace("%25", "%") for name in names)
+        if owner != self._owner or not path:
+            return None
+        for name in path:
+            spec = next((spec for spec in specs if spec.name == name), None)
+            if spec is None:
+                return None
+            specs = spec.children
+        return path
+
+    def identity(self, path: Path) -> str:
+        """Return the id of the property at a path."""
+        return property_id(self._owner, path)
+
+    def rows(self) -> list[Property]:
+        """Return the rows for the page."""
+        return [self._row(spec, ()) for spec in self._schema() if self._shown(spec)]
+
+    def is_condition(self, path: Path) -> bool:
+        """Return whether the value at a path decides which other rows are shown."""
+        return any(_depends(spec, path) for spec in self._schema())
+
+    def frame_changes(self) -> list[PropertyChanged]:
+        """Return the properties whose value is the name of a frame, with the frames offered now."""
+        return [
+            PropertyChanged(self.identity((spec.name,)), self.get(spec.name), self._frames())
+            for spec in self._schema()
+            if spec.kind == "frame"
+        ]
+
+    def offer_frames(self, frames: Callable[[], list[str]]) -> None:
+        """Set the function that returns the frame names offered for properties of kind ``frame``."""
+        self._frames = frames
+
+    def _row(self, spec: PropertySpec, above: Path) -> Property:
+        path = (*above, spec.name)
+        return Property(
+            id=property_id(self._owner, path),
+            name=spec.name,
+            kind=spec.kind,
+            value=None if spec.kind == "group" else self._value(path, spec),
+            description=spec.description,
+            options=self._frames() if spec.kind == "frame" else list(spec.options),
+            minimum=spec.minimum,
+            maximum=spec.maximum,
+            read_only=spec.read_only,
+            expanded=spec.expanded,
+            children=[self._row(child, path) for child in spec.children if self._shown(child)],
+            details=spec.details,
+            topics=TopicOffer(list(spec.messages), list(spec.words)) if spec.messages else None,
+        )
+
+    def _shown(self, spec: PropertySpec) -> bool:
+        return not spec.hidden and self._condition_holds(spec)
+
+    def _condition_holds(self, spec: PropertySpec) -> bool:
+        if spec.when is None:
+            return True
+        path, value = spec.when
+        return self.get(*path) == value and self._condition_holds(self._spec(path))
+
+    def _value(self, path: Path, spec: PropertySpec) -> PropertyValue:
+        try:
+            return self._values[path]
+        except KeyError:
+            value = self._values[path] = self._from_file(path, spec)
+            return value
+
+    def _from_file(self, path: Path, spec: PropertySpec) -> PropertyValue:
+        scalar = None if spec.read_only else self._scalar(path)
+        if scalar is None or spec.kind == "group":
+            return spec.default
+        if spec.kind in ("enum", "frame") and not scalar.text:
+            return spec.default  # RViz writes this where it had nothing to choose from
+        try:
+            return from_text(spec, scalar.text)
+        except ValueError as error:
+            value = in_place_of(spec)
+            message = phrase("'{name}': {error}; {value} is used", name=spec.name, error=error, value=repr(value))
+            self._report(Diagnostic("RVIZ201", message, scalar.span, Severity.WARNING, source=self._section.source))
+            return value
+
+    def _scalar(self, path: Path) -> Scalar | None:
+        scalar = self._section.scalar(*self._base, *path)
+        former = self._former.get(path)
+        if scalar is None and former is not None:
+            scalar = self._section.scalar(*self._base, former.key)
+            return scalar and Scalar(former.read(scalar.text), scalar.span)
+        return scalar
+
+    def _write(self, path: Path, spec: PropertySpec, text: str) -> None:
+        former = self._former_key(path)
+        string = spec.kind in ("string", "frame", "enum", "color", "topic")
+        nested = spec.nested or bool(spec.children)
+        if former is not None:
+            path, text, nested = (former.key,), former.write(text), False
+            string = string and text not in ("true", "false")  # of Unreliable, which is a policy today
+        if self._recorded is not None and path[0] not in (memory.key for memory in self._recorded):
+            self._recorded.append(self._place().memory(path[0]))
+        self._place().put(path, text, string=string, nested=nested)
+
+    def _former_key(self, path: Path) -> FormerKey | None:
+        """Return the key under which RViz 1 kept a value, unless the file has the present key."""
+        return self._former.get(path) if self._section.scalar(*self._base, *path) is None else None
+
+    def _place(self) -> Section:
+        """Return the mapping with the values, created if it is missing."""
+        place, made = make_section(self._section, *self._base)
+        self._new_sections += made
+        return place
+
+    def _key(self, path: Path) -> str:
+        former = self._former_key(path)
+        return former.key if former else path[0]
+
+    def _is_kept(self, path: Path) -> bool:
+        """Return whether there is such a property, and the file has it."""
+        try:
+            return not self._spec(path).read_only
+        except KeyError:
+            return False
+
+    def _named(self, specs: Schema, name: str) -> PropertySpec | None:
+        """Return the first property of that name; an index finds it among many, such as the links of a robot."""
+        if len(specs) < _MANY:
+            return next((spec for spec in specs if spec.name == name), None)
+        if self._many[0] is not specs:
+            self._many = specs, {spec.name: spec for spec in reversed(specs)}
+        return self._many[1].get(name)
+
+    def _spec(self, path: Path) -> PropertySpec:
+        specs = self._schema()
+        found: PropertySpec | None = None
+        for name in path:
+            found = self._named(specs, name)
+            if found is None:
+                raise KeyError(f"no property {' > '.join(path)} in {self._owner}")
+            specs = found.children
+        if found is None:
+            raise KeyError(f"no property named in {self._owner}")
+        return found
+
+
+def _depends(spec: PropertySpec, path: Path) -> bool:
+    condition = spec.when is not None and spec.when[0] == path
+    return condition or any(_depends(child, path) for child in spec.children)
+
+
+def qos_of(properties: PropertyStore, name: str = "Topic", *, lasting: bool | None = None) -> QoSProfile:
+    """Return the quality of service that a Topic property requests.
+
+    Args:
+        properties: the display's properties.
+        name: the name of the property.
+        lasting: whether to receive messages that were published before, whatever the property says.
+    """
+    get = properties.text
+    keep_all = get(name, "History Policy") == "Keep All"
+    best_effort = get(name, "Reliability Policy") == "Best Effort"
+    if lasting is None:
+        lasting = get(name, "Durability Policy") == "Transient Local"
+    return QoSProfile(
+        depth=int(properties.number(name, "Depth")),
+        history=HistoryPolicy.KEEP_ALL if keep_all else HistoryPolicy.KEEP_LAST,
+        reliability=ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if lasting else DurabilityPolicy.VOLATILE,
+    )

@@ -1,0 +1,543 @@
+"""RViz's configuration files (``.rviz``): read, preserved, changed in place, written back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
+from linkwright.page.protocol.views_and_tools import View
+from linkwright.rviz.config import file as configuration_file
+from linkwright.rviz.config import yaml_tree
+from linkwright.rviz.config.file import FileForm, FileState
+from linkwright.rviz.config.former_names import GROUP, modern_class
+from linkwright.rviz.config.model_size import ModelSize
+from linkwright.rviz.config.panels import PanelsConfig
+from linkwright.rviz.config.property_store import PropertyStore
+from linkwright.rviz.config.schema import Path as PropertyPath
+from linkwright.rviz.config.schema import PropertySpec, is_on
+from linkwright.rviz.config.tools import ToolsConfig
+from linkwright.rviz.config.views import ViewsConfig
+from linkwright.rviz.config.yaml_tree import Memory, NewSection, Section, SequenceMemory
+
+__all__ = ["GLOBAL_OPTIONS", "Arrangement", "DisplayConfig", "RvizConfig"]
+
+GLOBAL_OPTIONS = (
+    PropertySpec(
+        "Fixed Frame",
+        "frame",
+        "base_link",
+        "The reference frame of the scene: everything is drawn at its pose in this frame.",
+    ),
+    PropertySpec(
+        "Backdrop",
+        "enum",
+        "Color",
+        "The background: one colour, as in RViz, or a sky and a ground in the colours of the page's theme.",
+        options=("Color", "Sky and Ground"),
+    ),
+    PropertySpec(
+        "Background Color", "color", "#303030", "The background colour of the scene.", when=(("Backdrop",), "Color")
+    ),
+    PropertySpec(
+        "Frame Rate",
+        "int",
+        30,
+        "The most transform updates a second, in hertz.",
+        minimum=1,
+        maximum=120,
+    ),
+    PropertySpec(
+        "Light",
+        "enum",
+        "Camera",
+        "The lights of the scene: one at the camera, as in RViz, or a studio, with shadows on the ground. Automatic: "
+        "the studio if a graphics card draws fast enough, else a soft light at the camera. The display of a simulated "
+        "world has a setting of its own.",
+        options=("Automatic", "Camera", "Studio"),
+    ),
+)
+
+_MANAGER = "Visualization Manager"
+_OTHER_KEYS = ("Panels", "Toolbars", "Window Geometry")
+"""A file with one of these is a configuration, even one without displays."""
+_OWN_PREFIX = "rviz_default_plugins/"
+
+_DEFAULT = """\
+Panels:
+  - Class: rviz_common/Displays
+    Name: Displays
+  - Class: rviz_common/Selection
+    Name: Selection
+  - Class: rviz_common/Tool Properties
+    Name: Tool Properties
+  - Class: rviz_common/Views
+    Name: Views
+  - Class: rviz_common/Time
+    Name: Time
+Visualization Manager:
+  Class: ""
+  Displays:
+    - Class: rviz_default_plugins/Grid
+      Enabled: true
+      Name: Grid
+      Value: true
+  Enabled: true
+  Global Options:
+    Background Color: 48; 48; 48
+    Fixed Frame: map
+    Frame Rate: 30
+  Name: root
+  Tools:
+    - Class: rviz_default_plugins/Interact
+    - Class: rviz_default_plugins/MoveCamera
+    - Class: rviz_default_plugins/Select
+    - Class: rviz_default_plugins/FocusCamera
+    - Class: rviz_default_plugins/Measure
+    - Class: rviz_default_plugins/SetInitialPose
+    - Class: rviz_default_plugins/SetGoal
+    - Class: rviz_default_plugins/PublishPoint
+  Value: true
+  Views:
+    Current:
+      Class: rviz_default_plugins/Orbit
+      Name: Current View
+      Value: Orbit (rviz)
+    Saved: ~
+"""
+
+_KEY = "Displays"
+_BOX = ("Enabled", "Value")
+
+
+class DisplayConfig:
+    """An entry of ``Displays``.
+
+    Args:
+        section: its part of the file.
+        group: the group it is in, or None.
+        report: called with entries below it that cannot be used.
+
+    Attributes:
+        cls: RViz 2's name of its class, even if the file has RViz 1's.
+        displays: the displays of a group.
+        identity: its id in pages; empty until it has one.
+    """
+
+    def __init__(
+        self, section: Section, group: DisplayConfig | None, report: Callable[[Diagnostic], None] = lambda _: None
+    ) -> None:
+        self.section = section
+        self.group = group
+        self.cls = modern_class(self.written_class)
+        self.identity = ""
+        self.displays: list[DisplayConfig] = read_displays(section, self, report) if self.is_group else []
+
+    @property
+    def written_class(self) -> str:
+        """The name of its class as the file has it."""
+        scalar = self.section.scalar("Class")
+        return scalar.text if scalar else ""
+
+    @property
+    def is_group(self) -> bool:
+        """Whether it contains displays instead of drawing."""
+        return self.cls == GROUP
+
+    @property
+    def name(self) -> str:
+        """The name in the Displays panel; by default that of its class."""
+        scalar = self.section.scalar("Name")
+        return scalar.text if scalar else self.cls.rpartition("/")[2]
+
+    @name.setter
+    def name(self, name: str) -> None:
+        self.section.put(("Name",), name, string=True)
+
+    @property
+    def checked(self) -> bool:
+        """The display's own check box: ``Enabled``, else ``Value``; without both it is off, as in RViz."""
+        text = self.section.text("Enabled")
+        if text is None:
+            text = self.section.text("Value")
+        return text is not None and is_on(text)
+
+    @checked.setter
+    def checked(self, value: bool) -> None:
+        if value == self.checked:
+            return
+        present = [key for key in _BOX if self.section.scalar(key)]
+        for key in present or _BOX[:1]:
+            self.section.put((key,), "true" if value else "false")
+
+    @property
+    def box(self) -> list[Memory]:
+        """The values of the keys of the check box, for `recall`."""
+        return [self.section.memory(key) for key in _BOX]
+
+    @box.setter
+    def box(self, memories: list[Memory]) -> None:
+        for memory in memories:
+            self.section.recall(memory)
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it is drawn: its check box and those of the groups around it are on."""
+        return self.checked and (self.group is None or self.group.enabled)
+
+    def walk(self) -> Iterator[DisplayConfig]:
+        """Yield the display and its descendants, each group before its content."""
+        yield self
+        for display in self.displays:
+            yield from display.walk()
+
+
+def read_displays(
+    parent: Section, group: DisplayConfig | None, report: Callable[[Diagnostic], None]
+) -> list[DisplayConfig]:
+    """Return the entries of ``Displays`` in a section; those without a class are reported (RVIZ202) and ignored."""
+    displays = []
+    for section in parent.sections(_KEY):
+        if section.scalar("Class") is None:
+            message = phrase("a display without a 'Class' is left out")
+            report(Diagnostic("RVIZ202", message, section.span(), Severity.WARNING, source=section.source))
+        else:
+            displays.append(DisplayConfig(section, group, report))
+    return displays
+
+
+def place(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig], index: int) -> None:
+    """Insert an entry among those of a parent, in the file too."""
+    before = siblings[index].section if index < len(siblings) else None
+    yaml_tree.insert_section(parent, _KEY, display.section, before)
+    siblings.insert(index, display)
+
+
+def displace(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig]) -> None:
+    """Remove an entry from those of a parent, in the file too."""
+    yaml_tree.remove_section(parent, _KEY, display.section)
+    siblings.remove(display)
+
+
+_MODEL_DISPLAYS: tuple[tuple[str, dict[str, str]], ...] = (
+    ("RobotModel", {"Description Topic": "/robot_description"}),
+    ("TF", {}),
+)
+_MODEL_GRID = {"Alpha": "0.6", "Color": "136; 142; 150", "Plane Cell Count": "20"}
+"""Lines that are visible on the grounds of both themes, and reach beyond the visible area."""
+_MODEL_DISTANCE = 3.0
+_MODEL_PITCH = 0.5
+"""A view from a little above: a standing robot hides less of itself than from RViz's 45 degrees."""
+
+
+@dataclass(frozen=True, slots=True)
+class Arrangement:
+    """The order and grouping of the displays: the items of ``Displays`` of each group."""
+
+    displays: dict[DisplayConfig | None, list[DisplayConfig]]
+    memories: dict[DisplayConfig | None, SequenceMemory]
+
+
+class RvizConfig:
+    """A configuration file.
+
+    Keys, their order, Qt's window state and displays of classes that are unknown to this program are kept and written
+    back. Missing keys have RViz's defaults and stay missing until they are set. A file without changes is written back
+    to the letter; a changed file loses its comments, as in RViz.
+
+    Attributes:
+        path: the file it was read from or saved to, or None.
+        document: the whole file.
+        displays: the entries of ``Displays``; groups hold others.
+        options: the Global Options.
+        views: the current view and the saved ones.
+        tools: the tools.
+        panels: the open panels.
+        warnings: findings on parts of the file that cannot be used.
+    """
+
+    def __init__(self, document: Section, path: Path | None = None, form: FileForm | None = None) -> None:
+        self.path = path
+        self.warnings: list[Diagnostic] = []
+        self.document = document
+        self._form = form or FileForm()
+        self._new_sections: list[NewSection] = []
+        self._state: FileState | None = configuration_file.state_of(path) if path else None
+        self.options = PropertyStore(
+            "global",
+            document,
+            lambda: GLOBAL_OPTIONS,
+            self.warnings.append,
+            base=(_MANAGER, "Global Options"),
+        )
+        self.options.rows()  # before any access, so that all warnings are known from the start
+        self.displays: list[DisplayConfig] = read_displays(
+            document.section(_MANAGER) or yaml_tree.new_section(document.source), None, self.warnings.append
+        )
+        self.views = ViewsConfig(document, self.warnings.append)
+        self.tools = ToolsConfig(document, self.warnings.append)
+        self.panels = PanelsConfig(document, self.warnings.append)
+        self._unchosen_view: View | None = None
+        self._proposed: _Proposed | None = None
+
+    @classmethod
+    def load(cls, path: str | Path) -> RvizConfig:
+        """Read a file.
+
+        Raises:
+            LinkwrightError: RVIZ101, it cannot be read; RVIZ102, it is not YAML; RVIZ103, it is not a configuration.
+        """
+        path = Path(path)
+        text, form = configuration_file.read(path)
+        return cls.parse(text, str(path), path, form)
+
+    @classmethod
+    def parse(
+        cls, text: str, name: str = "<rviz>", path: Path | None = None, form: FileForm | None = None
+    ) -> RvizConfig:
+        """Read a text; `name` is its name in messages.
+
+        Raises:
+            LinkwrightError: RVIZ102, it is not YAML; RVIZ103, it is not a configuration.
+        """
+        document = yaml_tree.parse(text, name)
+        if document.section(_MANAGER) is None and not set(_OTHER_KEYS) & set(document.keys()):
+            message = phrase(
+                "'{name}' is not an RViz configuration: it has no '{manager}'", name=name, manager=_MANAGER
+            )
+            raise LinkwrightError(Diagnostic("RVIZ103", message, document.span(), source=document.source))
+        return cls(document, path, form)
+
+    @classmethod
+    def default(cls) -> RvizConfig:
+        """Return RViz's configuration without a file: a Grid, Fixed Frame ``map``."""
+        return cls.parse(_DEFAULT, "<default>")
+
+    @classmethod
+    def for_model(
+        cls, fixed_frame: str, *, size: ModelSize | None = None, frames: bool = True, name: str = "<model>"
+    ) -> RvizConfig:
+        """Return a configuration with Grid, RobotModel and TF for one robot.
+
+        Args:
+            fixed_frame: the Fixed Frame, usually the robot's root link.
+            size: the size of the robot, for grid and axes; None for RViz's defaults.
+            frames: whether TF is enabled; it covers a robot that has visuals.
+            name: the name of the model's file, under which unsaved edits are stored.
+        """
+        config = cls.parse(_DEFAULT, name)
+        for name, values in _MODEL_DISPLAYS:
+            display = config.make(_OWN_PREFIX + name, name)
+            for key, value in values.items():
+                display.section.put((key,), value, string=True, nested=True)
+            display.checked = frames or name != "TF"
+            config.insert(display)
+        config.options.set(("Fixed Frame",), fixed_frame)
+        for key, value in _MODEL_GRID.items():
+            config.displays[0].section.put((key,), value)
+        config.options.set(("Backdrop",), "Sky and Ground")
+        config.options.set(("Light",), "Automatic")
+        view = config.views.current
+        view.values |= {"Distance": _MODEL_DISTANCE, "Pitch": _MODEL_PITCH}
+        if size is not None:
+            for display_config, path, length in _sizes(config.displays, size):
+                display_config.section.put(path, f"{length:g}")
+            view.values |= {"Distance": size.distance, "Focal Shape Size": size.focal_shape}
+        config.propose_view(view.values)
+        config._proposed = _Proposed(config.displays, size)
+        return config
+
+    def propose_view(self, values: Mapping[str, Any]) -> None:
+        """Set values of the view until a page has drawn the scene, and fits the camera to it."""
+        view = self.views.current
+        view.values |= values
+        self.views.current = view
+        self._unchosen_view = self.views.current
+
+    def follow(self, frame: str, distance: float) -> None:
+        """Make the view follow a frame, with grid and axes of RViz's size: for a mobile robot.
+
+        Args:
+            frame: the robot's frame.
+            distance: the camera's distance, m.
+        """
+        view = self.views.current
+        view.values |= {"Target Frame": frame, "Distance": distance}
+        self.views.current = view
+        self._proposed = None
+
+    @property
+    def shows_whole_robot(self) -> bool:
+        """Whether the user has not chosen a view yet: pages then fit the camera to the robot."""
+        return self._unchosen_view == self.views.current
+
+    @property
+    def awaits_size(self) -> bool:
+        """Whether `sizes_for` still has sizes to set: no page has measured the robot for grid and axes yet."""
+        return self._proposed is not None
+
+    @property
+    def spacing(self) -> float | None:
+        """The usual distance of a link's frame from its parent's, m, while `awaits_size`; None if unknown."""
+        size = None if self._proposed is None else self._proposed.size
+        return None if size is None else size.spacing
+
+    def sizes_for(self, diagonal: float, ground: float = 0.0) -> list[tuple[DisplayConfig, PropertyPath, float]]:
+        """Return new values for the default grid and axes of a robot whose size was unknown: display, property, value.
+
+        Only once, and only for properties that the user has not changed since.
+
+        Args:
+            diagonal: the diagonal of the robot's bounding box, m.
+            ground: the height of the ground below the robot, in the Fixed Frame, m.
+        """
+        proposed, self._proposed = self._proposed, None
+        if proposed is None or not isfinite(diagonal + ground) or diagonal <= 0:
+            return []
+        return proposed.mended(diagonal, ground)
+
+    def copy(self) -> RvizConfig:
+        """Return a copy that has no file."""
+        copied = RvizConfig.parse(self.text(), self.document.source.name)
+        copied._unchosen_view = self._unchosen_view
+        if self._proposed is not None:
+            copied._proposed = self._proposed.among(dict(zip(self.walk(), copied.walk(), strict=True)))
+        return copied
+
+    # --- displays ----------------------------------------------------------------------------------------------
+
+    def walk(self) -> Iterator[DisplayConfig]:
+        """Yield every display, each group before its content."""
+        for display in self.displays:
+            yield from display.walk()
+
+    def make(self, cls: str, name: str) -> DisplayConfig:
+        """Return an enabled display with the defaults of its class; `insert` puts it into the file."""
+        section = yaml_tree.new_section(self.document.source)
+        section.put(("Class",), cls, string=True)
+        section.put(("Enabled",), "true")
+        section.put(("Name",), name, string=True)
+        if cls != GROUP:
+            section.put(("Value",), "true")
+        return DisplayConfig(section, None)
+
+    def duplicate(self, display: DisplayConfig) -> DisplayConfig:
+        """Return a copy of a display's entry; `insert` puts it into the file."""
+        return DisplayConfig(yaml_tree.copy_section(display.section), None)
+
+    def insert(self, display: DisplayConfig, group: DisplayConfig | None = None, index: int | None = None) -> None:
+        """Insert a display into a group, or at the top level: before the display at an index, or last.
+
+        Raises:
+            ValueError: the target is not a group, or is inside the display itself.
+        """
+        if group is not None and (not group.is_group or group in display.walk()):
+            raise ValueError(f"'{display.name}' cannot be put into '{group.name}'")
+        siblings = self.siblings(group)
+        place(display, self._parent(group), siblings, len(siblings) if index is None else index)
+        display.group = group
+
+    def remove(self, display: DisplayConfig) -> None:
+        """Remove a display from the file."""
+        displace(display, self._parent(display.group), self.siblings(display.group))
+
+    def make_group(self, name: str) -> DisplayConfig:
+        """Return an empty group; `insert` puts it into the file."""
+        return self.make(GROUP, name)
+
+    def arrangement(self) -> Arrangement:
+        """Return the present arrangement, for `arrange`."""
+        groups = [None, *(display for display in self.walk() if display.is_group)]
+        return Arrangement(
+            {group: list(self.siblings(group)) for group in groups},
+            {group: self._remember(group) for group in groups},
+        )
+
+    def arrange(self, arrangement: Arrangement) -> None:
+        """Restore an arrangement of displays."""
+        for group, displays in arrangement.displays.items():
+            self.siblings(group)[:] = displays
+            for display in displays:
+                display.group = group
+            yaml_tree.recall_sequence(self._parent(group), "Displays", arrangement.memories[group])
+        self._new_sections = yaml_tree.unmake(self._new_sections)
+
+    def siblings(self, group: DisplayConfig | None) -> list[DisplayConfig]:
+        """Return the displays in a group, or those at the top level for None."""
+        return self.displays if group is None else group.displays
+
+    def _remember(self, group: DisplayConfig | None) -> SequenceMemory:
+        holder = group.section if group is not None else self.document.section(_MANAGER)
+        return yaml_tree.remember_sequence(holder, "Displays") if holder is not None else SequenceMemory(None, None)
+
+    def _parent(self, group: DisplayConfig | None) -> Section:
+        """Return the section that has ``Displays``; that of the top level is created if it is missing."""
+        if group is not None:
+            return group.section
+        manager, made = yaml_tree.make_section(self.document, _MANAGER)
+        self._new_sections += made
+        return manager
+
+    # --- file --------------------------------------------------------------------------------------------------
+
+    def text(self) -> str:
+        """Return the file's text with the values set so far."""
+        source = self.document.source
+        if yaml_tree.same(self.document, yaml_tree.parse(source.text, source.name)):
+            return source.text
+        return yaml_tree.write(self.document).replace("\n", self._form.newline)
+
+    def save(self, path: str | Path | None = None) -> None:
+        """Write to a file, by default the present one, which is the configuration's file from then on.
+
+        Raises:
+            ValueError: it has no file and `path` is None.
+            LinkwrightError: RVIZ104, the file cannot be written.
+        """
+        target = Path(path) if path is not None else self.path
+        if target is None:
+            raise ValueError("no file to save to")
+        configuration_file.write(target, self.text(), self._form)
+        self.path = target
+        self._state = configuration_file.state_of(target)
+
+    @property
+    def changed_on_disk(self) -> bool:
+        """Return whether another program has changed the file since it was read or saved."""
+        return self.path is not None and configuration_file.state_of(self.path) not in (self._state, None)
+
+
+class _Proposed:
+    """The proposed values of grid and axes for a robot whose meshes are not measured yet; None for no size."""
+
+    def __init__(self, displays: Sequence[DisplayConfig], size: ModelSize | None) -> None:
+        self._displays = tuple(displays)
+        self.size = size
+        found = _sizes(displays, size or _ANY_SIZE, ground=1.0)
+        self._texts = {path: display.section.text(*path) for display, path, _ in found}
+
+    def mended(self, diagonal: float, ground: float) -> list[tuple[DisplayConfig, PropertyPath, float]]:
+        """Return the values that should be different, and were not changed since."""
+        spacing = diagonal if self.size is None else self.size.spacing
+        found = _sizes(self._displays, ModelSize(diagonal, spacing), ground)
+        return [change for change in found if change[0].section.text(*change[1]) == self._texts[change[1]]]
+
+    def among(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _Proposed | None:
+        """Return the proposal for copies of the displays, or None if one is gone."""
+        found = [copies[display] for display in self._displays if display in copies]
+        return _Proposed(found, self.size) if len(found) == len(self._displays) else None
+
+
+_ANY_SIZE = ModelSize(1.0, 1.0)
+
+
+def _sizes(
+    displays: Sequence[DisplayConfig], size: ModelSize, ground: float = 0.0
+) -> list[tuple[DisplayConfig, PropertyPath, float]]:
+    """Return values for displays of `RvizConfig.for_model` by a robot's size and ground: display, property, value."""
+    grid, _, tf = displays
+    offset = [(grid, ("Offset", "Z"), round(ground, 4))] if ground else []
+    return [(grid, ("Cell Size",), size.cell), (tf, ("Marker Scale",), size.marker_scale), *offset]

@@ -1,0 +1,331 @@
+"""Property declarations: names, kinds, defaults and bounds, and the validation of values.
+
+From a `PropertySpec` come the row of the page, the reading and writing of the .rviz file, and the checks of the
+page's values. Names and defaults are RViz's; so is clamping a number into its bounds.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from contextlib import suppress
+from dataclasses import dataclass
+
+from linkwright.diagnostics import phrase
+from linkwright.page.protocol.displays import PropertyKind, PropertyValue, RowDetails
+
+Path = tuple[str, ...]
+
+FIXED_FRAME = "<Fixed Frame>"
+"""The value of a frame property that refers to the Fixed Frame, as in RViz."""
+
+MAXIMUM_TEXT = 4096
+"""Longest string accepted from a page, characters."""
+
+_HEX_COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
+_SHORT_COLOUR = re.compile(r"#[0-9a-fA-F]{3}")
+_RVIZ_COLOUR = re.compile(r"([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*(;.*)?")
+_YAML_NUMBER = re.compile(r"[+-]?\.(inf|nan)", re.IGNORECASE)
+_INFINITE = 3.4028234663852886e38
+"""Replaces infinity, which JSON lacks: the largest 32-bit float, as in RViz."""
+_BOOLEANS = dict.fromkeys(("true", "1", "yes", "on"), True) | dict.fromkeys(("false", "", "0"), False)
+
+
+@dataclass(frozen=True, slots=True)
+class PropertySpec:
+    """The declaration of a property.
+
+    Attributes:
+        name: as RViz shows it and as the file spells its key.
+        kind: the kind of its values; a ``group`` has none.
+        default: RViz's default.
+        description: the tooltip.
+        options: the values of an ``enum``.
+        minimum: of an ``int`` or ``float``, inclusive.
+        maximum: of an ``int`` or ``float``, inclusive.
+        messages: of a ``topic``, the types of the topics offered; by default those of the display.
+        words: of a ``topic``, parts of the names of the topics offered, in lower case; by default any name.
+        children: the rows below it.
+        when: path within the display and value of the property that must hold for this row to be shown; the conditions
+            of that property must hold too.
+        expanded: whether its children are shown at the start.
+        nested: whether the file stores its value under ``Value``, because it has children there.
+        hidden: whether it has a value in the file but no row, as properties that RViz hides.
+        read_only: whether only the program sets it; the file does not have it.
+        details: the subject of read-only rows that pages add below it, see `Property`.
+    """
+
+    name: str
+    kind: PropertyKind
+    default: PropertyValue = None
+    description: str = ""
+    options: tuple[str, ...] = ()
+    minimum: float | None = None
+    maximum: float | None = None
+    messages: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
+    children: tuple[PropertySpec, ...] = ()
+    when: tuple[tuple[str, ...], PropertyValue] | None = None
+    expanded: bool = False
+    nested: bool = False
+    hidden: bool = False
+    read_only: bool = False
+    details: RowDetails | None = None
+
+
+Schema = tuple[PropertySpec, ...]
+
+
+def vector(name: str, description: str) -> PropertySpec:
+    """Return a property of three floats X, Y, Z in metres, 0 by default, in the form of RViz's VectorProperty."""
+    return PropertySpec(
+        name, "group", description=description, children=tuple(PropertySpec(axis, "float", 0.0) for axis in "XYZ")
+    )
+
+
+BILLBOARDS = (("Line Style",), "Billboards")
+"""The condition for the width of lines."""
+
+
+def alpha(
+    description: str = "Opacity: 0 is invisible.", default: float = 1.0, when: tuple[Path, str] | None = None
+) -> PropertySpec:
+    """Return the property for a display's opacity."""
+    return PropertySpec("Alpha", "float", default, description, minimum=0.0, maximum=1.0, when=when)
+
+
+def length(name: str, default: float, description: str, when: tuple[Path, str] | None = None) -> PropertySpec:
+    """Return a property for a length in metres."""
+    return PropertySpec(name, "float", default, description, when=when)
+
+
+def line_style(*children: PropertySpec) -> PropertySpec:
+    """Return a property for the style of lines, thin or with a width."""
+    return PropertySpec(
+        "Line Style",
+        "enum",
+        "Lines",
+        "Lines are one pixel wide; billboards have a width in metres.",
+        options=("Lines", "Billboards"),
+        children=children,
+    )
+
+
+def line_width() -> PropertySpec:
+    """Return a property for the width of lines."""
+    return PropertySpec("Line Width", "float", 0.03, "Width of the lines, in metres.", minimum=0.001, when=BILLBOARDS)
+
+
+def accept(spec: PropertySpec, value: object) -> PropertyValue:
+    """Return the value to store for one that a page sent: converted to the kind's type and clamped to the bounds.
+
+    Raises:
+        ValueError: the property does not accept it; the text states the expected value.
+    """
+    if spec.read_only:
+        raise ValueError("only the program sets it")
+    taken = _validated(spec, value)
+    if taken is None:
+        raise ValueError(
+            phrase(
+                "{format}, not {value}",
+                format=_EXPECTED[spec.kind].format(options=", ".join(spec.options)),
+                value=_shown(value),
+            )
+        )
+    return taken
+
+
+def from_text(spec: PropertySpec, text: str) -> PropertyValue:
+    """Return the value that a scalar of a .rviz file represents.
+
+    Raises:
+        ValueError: it represents none; the text states the expected value.
+    """
+    return accept(spec, _converted(spec, text.strip()))
+
+
+def in_place_of(spec: PropertySpec) -> PropertyValue:
+    """Return the value for an unreadable text in a file: true for a box, as in RViz, else the default.
+
+    To Qt, and so to RViz, every text is true except ``false``, ``0`` and an empty one: ``no`` is true.
+    """
+    return True if spec.kind == "bool" else spec.default
+
+
+def is_on(text: str) -> bool:
+    """Return whether the text of a box in a file means true to RViz, see `in_place_of`."""
+    return _BOOLEANS.get(text.strip().lower(), True)
+
+
+def to_text(spec: PropertySpec, value: PropertyValue) -> str:
+    """Return the spelling of a value in a .rviz file."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        text = repr(value)
+        mantissa, exponent, power = text.partition("e")
+        return f"{mantissa}.0e{power}" if exponent and "." not in mantissa else text
+    if spec.kind == "color" and isinstance(value, str):
+        return "; ".join(str(int(value[start : start + 2], 16)) for start in (1, 3, 5))
+    return str(value)
+
+
+_EXPECTED = {
+    "group": phrase("no value is expected"),
+    "bool": phrase("true or false is expected"),
+    "int": phrase("an integer is expected"),
+    "float": phrase("a finite number is expected"),
+    "string": phrase("a text of at most {maximum_text} characters is expected", maximum_text=MAXIMUM_TEXT),
+    "color": "a colour such as #a0a0a4 is expected",
+    "enum": "one of {options} is expected",
+    "frame": phrase("the name of a frame is expected"),
+    "topic": phrase("the name of a topic is expected"),
+}
+
+
+def _validated(spec: PropertySpec, value: object) -> PropertyValue:
+    kind = spec.kind
+    if kind == "bool":
+        return value if isinstance(value, bool) else None
+    if kind in ("int", "float"):
+        return _number(spec, value)
+    if not isinstance(value, str) or len(value) > MAXIMUM_TEXT or kind == "group":
+        return None
+    if kind == "enum":
+        return value if value in spec.options else None
+    if kind == "color":
+        return value.lower() if _HEX_COLOUR.fullmatch(value) else None
+    if kind == "frame":
+        return value.strip().removeprefix("/") or None  # tf2 knows no leading slash; RViz strips it too
+    return value
+
+
+def _number(spec: PropertySpec, value: object) -> int | float | None:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    if not math.isfinite(number):
+        return None
+    if spec.minimum is not None:
+        number = max(number, float(spec.minimum))
+    if spec.maximum is not None:
+        number = min(number, float(spec.maximum))
+    if spec.kind == "float":
+        return number
+    return int(number) if number.is_integer() and abs(number) < 2**53 else None
+
+
+def _converted(spec: PropertySpec, text: str) -> object:
+    """Return the value that Qt reads from a spelling for RViz, or the text itself for `accept` to refuse."""
+    kind = spec.kind
+    if kind == "bool":
+        return _BOOLEANS.get(text.lower(), text)
+    if kind in ("int", "float"):
+        return _spelt_number(spec, text)
+    if kind == "color":
+        return _spelt_colour(text)
+    return text
+
+
+def _spelt_number(spec: PropertySpec, text: str) -> object:
+    if "_" in text or not text.isascii():
+        return text  # valid numbers in Python, but not in Qt
+    try:
+        number = float(text.replace(".", "", 1) if _YAML_NUMBER.fullmatch(text) else text)
+    except ValueError:
+        return text
+    if math.isnan(number):
+        return spec.default  # RViz writes one after its camera was lost, and would draw nothing with it
+    return number if math.isfinite(number) else math.copysign(_INFINITE, number)
+
+
+def _spelt_colour(text: str) -> str:
+    found = _RVIZ_COLOUR.fullmatch(text)
+    if found:  # a fourth part, such as an alpha, is ignored
+        return "#" + "".join(f"{min(max(int(part), 0), 255):02x}" for part in found.groups()[:3])
+    if _SHORT_COLOUR.fullmatch(text):
+        return "#" + "".join(2 * digit for digit in text[1:])
+    if text.isalpha():
+        import webcolors  # type: ignore[import-untyped]  # it ships no types; here, because names are rare
+
+        with suppress(ValueError):
+            return str(webcolors.name_to_hex(text))  # has the names that Qt has: those of SVG
+    return text
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+SYSTEM_DEFAULT = "System Default"
+FILTER_SIZE = "Filter size"
+
+
+def topic_spec(
+    name: str = "Topic",
+    default: str = "",
+    description: str = "The topic to subscribe to.",
+    *,
+    depth: int = 5,
+    durability: str = "Volatile",
+    reliability: str = "Reliable",
+    filter_size: int | None = None,
+    durability_help: str = "Whether to receive messages that were published before.",
+    when: tuple[Path, str] | None = None,
+    messages: tuple[str, ...] = (),
+) -> PropertySpec:
+    """Return the property of a topic with its quality of service.
+
+    Args:
+        name: the name of the property.
+        default: topic.
+        description: the tooltip.
+        depth: RViz's default for the queue size.
+        durability: RViz's default.
+        reliability: RViz's default.
+        filter_size: default number of messages that wait for transforms; None if they need none.
+        durability_help: the tooltip of ``Durability Policy``.
+        when: as `PropertySpec.when`.
+        messages: as `PropertySpec.messages`.
+    """
+    children = [
+        PropertySpec("Depth", "int", depth, "The size of the message queue.", minimum=1, maximum=1000),
+        PropertySpec(
+            "History Policy",
+            "enum",
+            "Keep Last",
+            "Whether the queue keeps only the last messages, or all.",
+            options=("Keep Last", "Keep All", SYSTEM_DEFAULT),
+        ),
+        PropertySpec(
+            "Reliability Policy",
+            "enum",
+            reliability,
+            "Whether every message must arrive, or may be lost.",
+            options=("Reliable", "Best Effort", SYSTEM_DEFAULT),
+        ),
+        PropertySpec(
+            "Durability Policy",
+            "enum",
+            durability,
+            durability_help,
+            options=("Volatile", "Transient Local", SYSTEM_DEFAULT),
+        ),
+    ]
+    if filter_size is not None:
+        children.append(
+            PropertySpec(
+                FILTER_SIZE,
+                "int",
+                filter_size,
+                "The number of messages that may wait for their transforms.",
+                minimum=1,
+                maximum=1000,
+            )
+        )
+    return PropertySpec(name, "topic", default, description, messages=messages, children=tuple(children), when=when)

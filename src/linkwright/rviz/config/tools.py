@@ -1,0 +1,208 @@
+"""RViz's tools: the properties of each class, and the tools of a .rviz file.
+
+How a tool uses the mouse is the page's part: `frontend/src/scene/tools`. Names, topics and defaults are RViz's
+(rviz_default_plugins) and nav2's (nav2_rviz_plugins).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.rviz.config.former_names import former_keys, modern_class
+from linkwright.rviz.config.property_store import PropertyStore
+from linkwright.rviz.config.schema import PropertySpec, Schema, topic_spec
+from linkwright.rviz.config.yaml_tree import Section, ensure_section, insert_section, new_section, remove_section
+
+
+@dataclass(frozen=True, slots=True)
+class ToolKind:
+    """A class of tools.
+
+    Attributes:
+        name: the label of its button, as in RViz.
+        schema: its properties.
+        publishes: the type of the messages that it publishes on its ``Topic``; None for a tool that publishes nothing.
+        action: the name and the type of the action that it sends goals to; None for no action.
+    """
+
+    name: str
+    schema: Schema = ()
+    publishes: str | None = None
+    action: tuple[str, str] | None = None
+
+
+def _topic(default: str, description: str) -> PropertySpec:
+    """Return a Topic to publish to, with its quality of service; it need not exist yet."""
+    return replace(topic_spec(default=default, description=description), kind="string")
+
+
+TOOL_KINDS: dict[str, ToolKind] = {
+    "rviz_default_plugins/Interact": ToolKind(
+        "Interact",
+        (
+            PropertySpec(
+                "Hide Inactive Objects",
+                "bool",
+                True,
+                "Hide the other interactive markers while one is dragged.",
+            ),
+        ),
+    ),
+    "rviz_default_plugins/MoveCamera": ToolKind("Move Camera"),
+    "rviz_default_plugins/Select": ToolKind("Select"),
+    "rviz_default_plugins/FocusCamera": ToolKind("Focus Camera"),
+    "rviz_default_plugins/Measure": ToolKind(
+        "Measure", (PropertySpec("Line color", "color", "#808000", "The colour of the measuring line."),)
+    ),
+    "rviz_default_plugins/SetInitialPose": ToolKind(
+        "2D Pose Estimate",
+        (
+            _topic("/initialpose", "The topic to publish pose estimates to."),
+            PropertySpec("Covariance x", "float", 0.25, "Covariance along x, in square metres.", minimum=0.0),
+            PropertySpec("Covariance y", "float", 0.25, "Covariance along y, in square metres.", minimum=0.0),
+            PropertySpec(
+                "Covariance yaw",
+                "float",
+                (math.pi / 12) ** 2,
+                "Covariance of the direction, in square radians.",
+                minimum=0.0,
+            ),
+        ),
+        "geometry_msgs/msg/PoseWithCovarianceStamped",
+    ),
+    "rviz_default_plugins/SetGoal": ToolKind(
+        "2D Goal Pose", (_topic("/goal_pose", "The topic to publish goals to."),), "geometry_msgs/msg/PoseStamped"
+    ),
+    "rviz_default_plugins/PublishPoint": ToolKind(
+        "Publish Point",
+        (
+            _topic("/clicked_point", "The topic to publish points to."),
+            PropertySpec("Single click", "bool", True, "Return to the default tool after one click."),
+        ),
+        "geometry_msgs/msg/PointStamped",
+    ),
+    "nav2_rviz_plugins/GoalTool": ToolKind("Nav2 Goal", action=("navigate_to_pose", "nav2_msgs/action/NavigateToPose")),
+}
+"""The classes in the order of RViz's default toolbar, then those of other packages."""
+
+USUAL_TOOLS = tuple(cls for cls in TOOL_KINDS if cls.startswith("rviz_default_plugins/"))
+"""The toolbar of a file that lists no tools."""
+
+
+def tool_name(cls: str) -> str:
+    """Return the label of a tool's button: for an unknown class its name with spaces, as in RViz."""
+    kind = TOOL_KINDS.get(cls)
+    return kind.name if kind else re.sub(r"(?<!^)(?=[A-Z])", " ", cls.rpartition("/")[2])
+
+
+_MANAGER = "Visualization Manager"
+_TOOLS = "Tools"
+
+MAXIMUM_TOOLS = 100
+"""Most tools that pages may add; each may have a publisher."""
+
+
+@dataclass(frozen=True, slots=True)
+class ToolEntry:
+    """An entry of ``Tools``.
+
+    Attributes:
+        id: stable while the file is open.
+        cls: RViz 2's name of its class, even if the file has RViz 1's.
+        section: its part of the file; that of an unknown class is kept unchanged.
+        properties: its values.
+    """
+
+    id: str
+    cls: str
+    section: Section
+    properties: PropertyStore
+
+
+class ToolsConfig:
+    """``Tools`` of a file. If it lists none, RViz's default ones apply, which the file lists after the first change.
+
+    Args:
+        document: the file.
+        report: called with values that cannot be used.
+    """
+
+    def __init__(self, document: Section, report: Callable[[Diagnostic], None]) -> None:
+        self._document = document
+        self._report = report
+        self._count = 0
+        self._entries: dict[str, ToolEntry] = {}
+        for section in document.sections(_MANAGER, _TOOLS):
+            scalar = section.scalar("Class")
+            if scalar is not None:
+                self._remember(scalar.text, section)
+        self._are_listed = bool(self._entries)
+        if not self._entries:
+            for cls in USUAL_TOOLS:
+                self._remember(cls, self._new(cls))
+
+    @property
+    def entries(self) -> list[ToolEntry]:
+        """The tools, in their order."""
+        return list(self._entries.values())
+
+    def find(self, identity: str) -> ToolEntry | None:
+        """Return the tool with an id, or None."""
+        return self._entries.get(identity)
+
+    def add(self, cls: str) -> ToolEntry:
+        """Add a tool at the end.
+
+        Raises:
+            ValueError: there is no such class, or there are too many tools.
+        """
+        if len(self._entries) >= MAXIMUM_TOOLS:
+            raise ValueError(f"there are {MAXIMUM_TOOLS} tools already")
+        if cls not in TOOL_KINDS:
+            raise ValueError(f"no tool is of the class {cls!r}")
+        self.list_all()
+        section = self._new(cls)
+        insert_section(self._manager(), _TOOLS, section)
+        return self._remember(cls, section)
+
+    def remove(self, identity: str) -> ToolEntry:
+        """Remove a tool, and return it.
+
+        Raises:
+            KeyError: there is no such tool.
+        """
+        entry = self._entries[identity]
+        self.list_all()
+        del self._entries[identity]
+        remove_section(self._manager(), _TOOLS, entry.section)
+        return entry
+
+    def list_all(self) -> None:
+        """Write the default tools into a file that lists none, before one of them is changed."""
+        if not self._are_listed:
+            for entry in self._entries.values():
+                insert_section(self._manager(), _TOOLS, entry.section)
+        self._are_listed = True
+
+    def _manager(self) -> Section:
+        return ensure_section(self._document, _MANAGER)
+
+    def _new(self, cls: str) -> Section:
+        section = new_section(self._document.source)
+        section.put(("Class",), cls, string=True)
+        return section
+
+    def _remember(self, written: str, section: Section) -> ToolEntry:
+        """List a tool whose class has a name of RViz 2 or RViz 1."""
+        cls = modern_class(written)
+        self._count += 1
+        identity = f"tool-{self._count}"
+        schema: Schema = TOOL_KINDS[cls].schema if cls in TOOL_KINDS else ()
+        store = PropertyStore(identity, section, lambda: schema, self._report, former=former_keys(written))
+        entry = ToolEntry(identity, cls, section, store)
+        self._entries[identity] = entry
+        return entry

@@ -1,0 +1,334 @@
+"""RViz's views: the properties of each class, and the current and saved views of a .rviz file.
+
+From the properties come the rows of the Views panel, the reading and writing of ``Views`` and the checks of pages'
+values. How each class turns its values into a camera, and what the mouse does to them, is the page's:
+`frontend/src/state/views`. Names and defaults are RViz's (rviz_common ``ViewController``, rviz_default_plugins).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from linkwright.diagnostics import Diagnostic, Severity, phrase
+from linkwright.page.protocol.displays import Property, PropertyValue
+from linkwright.page.protocol.views_and_tools import View, ViewClass
+from linkwright.rviz.config.former_names import modern_class
+from linkwright.rviz.config.property_store import PropertyStore
+from linkwright.rviz.config.schema import FIXED_FRAME, MAXIMUM_TEXT, Path, PropertySpec, Schema, vector
+from linkwright.rviz.config.yaml_tree import (
+    Memory,
+    Section,
+    ensure_section,
+    insert_section,
+    new_section,
+    remove_section,
+)
+
+ORBIT = "rviz_default_plugins/Orbit"
+FPS = "rviz_default_plugins/FPS"
+CURRENT_NAME = "Current View"
+PITCH_LIMIT = math.pi / 2 - 0.001
+
+_EIGHTH_TURN = 0.785398  # as RViz writes it
+
+_NEAR_CLIP = PropertySpec(
+    "Near Clip Distance",
+    "float",
+    0.01,
+    "The near clipping distance of the camera, in metres.",
+    minimum=0.001,
+    maximum=10000.0,
+)
+_STEREO = PropertySpec(
+    "Enable Stereo Rendering",
+    "bool",
+    False,
+    hidden=True,
+    children=(
+        PropertySpec("Stereo Eye Separation", "float", 0.06),
+        PropertySpec("Stereo Focal Distance", "float", 1.0),
+        PropertySpec("Swap Stereo Eyes", "bool", False),
+    ),
+)
+"""Properties for stereo screens: RViz too hides these rows on other screens. The file keeps them."""
+_INVERT_Z = PropertySpec(
+    "Invert Z Axis", "bool", False, "Turns the camera upside down, for frames whose z axis points down."
+)
+_TARGET = PropertySpec("Target Frame", "frame", FIXED_FRAME, "The frame whose motion the camera follows.")
+_YAW_HELP = "Rotation of the camera about the z axis, in radians."
+_PITCH_HELP = "How far the camera looks down, in radians."
+
+_ORBIT: Schema = (
+    _NEAR_CLIP,
+    _STEREO,
+    _INVERT_Z,
+    _TARGET,
+    PropertySpec("Distance", "float", 10.0, "From the focal point to the camera, in metres.", minimum=0.001),
+    PropertySpec(
+        "Focal Shape Size", "float", 0.05, "Diameter of the disc at the focal point, in metres.", minimum=0.001
+    ),
+    PropertySpec(
+        "Focal Shape Fixed Size", "bool", True, "The disc keeps its size; otherwise it grows with the distance."
+    ),
+    PropertySpec("Yaw", "float", _EIGHTH_TURN, _YAW_HELP),
+    PropertySpec("Pitch", "float", _EIGHTH_TURN, _PITCH_HELP, minimum=-PITCH_LIMIT, maximum=PITCH_LIMIT),
+    vector("Focal Point", "The point that the camera orbits, in the target frame, in metres."),
+)
+_FPS: Schema = (
+    _NEAR_CLIP,
+    _STEREO,
+    _TARGET,
+    PropertySpec("Yaw", "float", 0.0, _YAW_HELP),
+    PropertySpec("Pitch", "float", 0.0, _PITCH_HELP, minimum=-PITCH_LIMIT, maximum=PITCH_LIMIT),
+    PropertySpec(
+        "Position",
+        "group",
+        description="The position of the camera in the target frame, in metres.",
+        children=(
+            PropertySpec("X", "float", 5.0),
+            PropertySpec("Y", "float", 5.0),
+            PropertySpec("Z", "float", 10.0),
+        ),
+    ),
+)
+_TOP_DOWN_ORTHO: Schema = (
+    _NEAR_CLIP,
+    _STEREO,
+    _TARGET,
+    PropertySpec("Scale", "float", 10.0, "Pixels per metre; a negative scale turns the image upside down."),
+    PropertySpec("Angle", "float", 0.0, "The rotation of the image about the z axis, in radians."),
+    PropertySpec("X", "float", 0.0, "The centre of the image along x in the target frame, in metres."),
+    PropertySpec("Y", "float", 0.0, "The centre of the image along y in the target frame, in metres."),
+)
+
+VIEW_SCHEMAS: dict[str, Schema] = {
+    FPS: _FPS,
+    ORBIT: _ORBIT,
+    "rviz_default_plugins/ThirdPersonFollower": _ORBIT,
+    "rviz_default_plugins/TopDownOrtho": _TOP_DOWN_ORTHO,
+    "rviz_default_plugins/XYOrbit": _ORBIT,
+}
+"""The properties of each class, in the order in which RViz lists the classes."""
+
+STAND_INS = {"rviz_default_plugins/FrameAligned": FPS}
+"""Classes that are shown as a similar one: a FrameAligned is an FPS that can be aligned and locked."""
+
+
+def value_paths(schema: Schema) -> dict[str, Path]:
+    """Return the properties that have a value, by their names joined with ``/``, as in `View.values`."""
+    return {"/".join(path): path for path, spec in _walk(schema, ()) if spec.kind != "group"}
+
+
+def view_classes() -> list[ViewClass]:
+    """Return the classes for the page."""
+    return [
+        ViewClass(cls, [_row(spec, ()) for spec in schema if not spec.hidden], _defaults(schema))
+        for cls, schema in VIEW_SCHEMAS.items()
+    ]
+
+
+def _defaults(schema: Schema) -> dict[str, PropertyValue]:
+    return {"/".join(path): spec.default for path, spec in _walk(schema, ()) if spec.kind != "group"}
+
+
+def _walk(schema: Schema, above: Path) -> list[tuple[Path, PropertySpec]]:
+    found = []
+    for spec in schema:
+        path = (*above, spec.name)
+        found += [(path, spec), *_walk(spec.children, path)]
+    return found
+
+
+def _row(spec: PropertySpec, above: Path) -> Property:
+    path = (*above, spec.name)
+    return Property(
+        id="/".join(path),
+        name=spec.name,
+        kind=spec.kind,
+        value=spec.default,
+        description=spec.description,
+        minimum=spec.minimum,
+        maximum=spec.maximum,
+        expanded=spec.expanded,
+        children=[_row(child, path) for child in spec.children],
+    )
+
+
+_MANAGER = "Visualization Manager"
+_VIEWS = "Views"
+_SAVED = "Saved"
+
+MAXIMUM_SAVED = 1000
+"""Most saved views; pages may not add more."""
+
+Report = Callable[[Diagnostic], None]
+
+
+class ViewEntry:
+    """An entry of ``Views``; its unknown keys are kept.
+
+    A view of a class that `VIEW_SCHEMAS` lacks is shown as an Orbit, or as the class that replaces it, and stays
+    unchanged in the file until a value is set.
+
+    Args:
+        section: the file, or the view's part of it.
+        base: keys from the section to the view.
+        report: called with findings about an unknown class (RVIZ203) and unusable values (RVIZ201).
+    """
+
+    def __init__(self, section: Section, base: Path, report: Report) -> None:
+        self._section = section
+        self._base = base
+        self._report = report
+        self._cls = self._known_class()
+        self._store = self._make_store(self._cls)
+        self._view = self._read()
+
+    @property
+    def view(self) -> View:
+        """Return the current view; a copy."""
+        return View(self._view.cls, self._view.name, dict(self._view.values))
+
+    def set(self, view: View) -> None:
+        """Write a view; equal values keep their spelling.
+
+        Raises:
+            ValueError: its class is unknown, or does not have one of the values.
+        """
+        if view == self._view:
+            return
+        if len(view.name) > MAXIMUM_TEXT:
+            raise ValueError(f"the name of a view has at most {MAXIMUM_TEXT} characters")
+        if view.cls not in VIEW_SCHEMAS:
+            raise ValueError(f"no view is of the class {view.cls!r}")
+        paths = value_paths(VIEW_SCHEMAS[view.cls])
+        store = self._store if view.cls == self._cls else self._make_store(view.cls)
+        for name, value in view.values.items():
+            if name not in paths:
+                raise ValueError(f"a view of the class {view.cls!r} has no value {name!r}")
+            store.check(paths[name], value)
+        self._write_class(view.cls)
+        if self._name() != view.name:
+            self._section.put((*self._base, "Name"), view.name, string=True)
+        for name, value in view.values.items():
+            store.set(paths[name], value)
+        self._store, self._cls = store, view.cls
+        self._view = self._read()
+
+    def _write_class(self, cls: str) -> None:
+        """Write another class, and remove the keys that only the former class has."""
+        scalar = self._section.scalar(*self._base, "Class")
+        written = modern_class(scalar.text) if scalar else ""
+        if cls in (written, STAND_INS.get(written)):
+            return
+        section = ensure_section(self._section, *self._base)
+        known = {spec.name for spec in VIEW_SCHEMAS[cls]}
+        for spec in VIEW_SCHEMAS[self._cls]:
+            if spec.name not in known:
+                section.recall(Memory(spec.name, None))
+        section.put(("Class",), cls, string=True)
+        section.put(("Name",), self._name(), string=True)
+        package, _, name = cls.partition("/")
+        section.put(("Value",), f"{name} ({package})", string=True)
+
+    def _read(self) -> View:
+        paths = value_paths(VIEW_SCHEMAS[self._cls])
+        return View(self._cls, self._name(), {name: self._store.get(*path) for name, path in paths.items()})
+
+    def _name(self) -> str:
+        scalar = self._section.scalar(*self._base, "Name")
+        return scalar.text if scalar else CURRENT_NAME
+
+    def _make_store(self, cls: str) -> PropertyStore:
+        schema: Schema = VIEW_SCHEMAS[cls]
+        return PropertyStore("view", self._section, lambda: schema, self._report, base=self._base)
+
+    def _known_class(self) -> str:
+        scalar = self._section.scalar(*self._base, "Class")
+        if scalar is None:
+            return ORBIT
+        cls = modern_class(scalar.text)
+        if cls in VIEW_SCHEMAS:
+            return cls
+        shown = STAND_INS.get(cls, ORBIT)
+        message = phrase(
+            "the view '{text}' is shown as an {rpartition} view", text=scalar.text, rpartition=shown.rpartition("/")[2]
+        )
+        self._report(Diagnostic("RVIZ203", message, scalar.span, Severity.WARNING, source=self._section.source))
+        return shown
+
+
+class ViewsConfig:
+    """``Views`` of a file.
+
+    Args:
+        document: the file.
+        report: called with findings about unusable parts.
+    """
+
+    def __init__(self, document: Section, report: Report) -> None:
+        self._document = document
+        self._current = ViewEntry(document, (_MANAGER, _VIEWS, "Current"), report)
+        self._saved: dict[str, tuple[Section, ViewEntry]] = {}
+        self._count = 0
+        for section in document.sections(_MANAGER, _VIEWS, _SAVED):
+            if section.scalar("Class") is not None:  # RViz skips views without a class
+                self._remember(section, ViewEntry(section, (), report))
+
+    @property
+    def current(self) -> View:
+        """The current view."""
+        return self._current.view
+
+    @current.setter
+    def current(self, view: View) -> None:
+        """Raises ValueError for a view that is not valid."""
+        self._current.set(view)
+
+    @property
+    def saved(self) -> dict[str, View]:
+        """The saved views by ids that are stable while the file is open, in the order of the file."""
+        return {identity: entry.view for identity, (_, entry) in self._saved.items()}
+
+    def save(self, view: View) -> str:
+        """Add a view to the saved ones, and return its id.
+
+        Raises:
+            ValueError: the view is not valid, or there are too many.
+        """
+        if len(self._saved) >= MAXIMUM_SAVED:
+            raise ValueError(f"there are {MAXIMUM_SAVED} saved views already")
+        section = new_section(self._document.source)
+        entry = ViewEntry(section, (), _unheard)
+        entry.set(view)
+        insert_section(ensure_section(self._document, _MANAGER, _VIEWS), _SAVED, section)
+        return self._remember(section, entry)
+
+    def change(self, identity: str, view: View) -> None:
+        """Change the name or the values of a saved view.
+
+        Raises:
+            KeyError: there is no such saved view.
+            ValueError: the view is not valid.
+        """
+        self._saved[identity][1].set(view)
+
+    def remove(self, identity: str) -> None:
+        """Remove a saved view.
+
+        Raises:
+            KeyError: there is no such saved view.
+        """
+        section, _ = self._saved.pop(identity)
+        remove_section(ensure_section(self._document, _MANAGER, _VIEWS), _SAVED, section)
+
+    def _remember(self, section: Section, entry: ViewEntry) -> str:
+        self._count += 1
+        identity = f"view-{self._count}"
+        self._saved[identity] = (section, entry)
+        return identity
+
+
+def _unheard(diagnostic: Diagnostic) -> None:
+    """Ignore a finding: the values that were just written are valid."""

@@ -1,0 +1,143 @@
+"""The context of a viewer: its node, files and pages, and notifications of changes in the graph."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.graph import Node
+from linkwright.graph.introspection.graph_queries import GraphQueries
+from linkwright.graph.time.clock import ROSClock
+from linkwright.packages import PackageFinder
+from linkwright.page.audience import PageGroup
+from linkwright.page.files import Downloads, MeshFolders
+from linkwright.rviz.frames.history import FrameHistory
+from linkwright.rviz.published_topics import PublishedTopics
+
+_QUIET = 0.1
+"""Seconds to collect changes: a node that starts creates dozens of endpoints."""
+
+
+class GraphChanges:
+    """Notifies listeners of the changes of a graph; costs nothing while there are none.
+
+    Args:
+        graph: the graph to listen to; its changes may happen in any thread.
+    """
+
+    def __init__(self, graph: GraphQueries) -> None:
+        self._graph = graph
+        self._listeners: dict[Callable[[], None], None] = {}
+        self._loop = asyncio.get_running_loop()
+        self._due: asyncio.TimerHandle | None = None
+
+    def listen(self, changed: Callable[[], None]) -> None:
+        """Register a callback for changes, called on the loop."""
+        if not self._listeners:
+            self._graph.watch(self._changed)
+        self._listeners[changed] = None
+
+    def ignore(self, changed: Callable[[], None]) -> None:
+        """Unregister a callback of `listen`."""
+        self._listeners.pop(changed, None)
+        if not self._listeners:
+            self._graph.unwatch(self._changed)
+            if self._due is not None:
+                self._due.cancel()
+                self._due = None
+
+    def _changed(self) -> None:
+        with suppress(RuntimeError):  # the loop is closed: there are no listeners any more
+            self._loop.call_soon_threadsafe(self._wait)
+
+    def _wait(self) -> None:
+        if self._due is None and self._listeners:
+            self._due = self._loop.call_later(_QUIET, self._notify)
+
+    def _notify(self) -> None:
+        self._due = None
+        for changed in tuple(self._listeners):
+            if changed in self._listeners:
+                changed()
+
+
+class HeldTime:
+    """Whether the viewer's clock is held at a past time, by the component that shows the past.
+
+    Attributes:
+        switching: whether the clock is being held or released: displays must not reset because of that.
+    """
+
+    def __init__(self) -> None:
+        self._held = False
+        self.switching = False
+
+    def show(self, clock: ROSClock, now_ns: int) -> bool:
+        """Make a clock show a time, nanoseconds since the epoch; False if it shows simulated time."""
+        if clock.ros_time_is_active and not self._held:
+            return False
+        clock.override(now_ns)
+        self._held = True
+        self._switch(clock, held=True)
+        return True
+
+    def release(self, clock: ROSClock) -> None:
+        """Make the clock show the present."""
+        if self._held:
+            self._held = False
+            self._switch(clock, held=False)
+
+    def _switch(self, clock: ROSClock, *, held: bool) -> None:
+        self.switching = True
+        try:
+            clock.set_ros_time_is_active(held)
+        finally:
+            self.switching = False
+
+
+@dataclass(frozen=True, slots=True)
+class ViewerContext:
+    """The node, the files and the pages of a viewer.
+
+    Attributes:
+        node: the viewer's node, to subscribe and to log with.
+        library: reads descriptions, each once for the whole process.
+        finder: finds packages.
+        pages: every open page.
+        transforms: the history of transforms, to place messages by the time in their headers.
+        graph_changes: notifies of nodes or endpoints that appear or disappear.
+        published: the topics that others publish.
+        meshes: the folders that pages may read from.
+        downloads: files that were made for a page, to be fetched once.
+        held_time: whether its clock shows the past.
+        display_ids: ids that no display of the viewer has had.
+        folder: the working directory of the program, for files that pages create.
+    """
+
+    node: Node
+    library: DescriptionLibrary
+    finder: PackageFinder
+    pages: PageGroup
+    transforms: FrameHistory
+    graph_changes: GraphChanges
+    published: PublishedTopics
+    meshes: MeshFolders = field(default_factory=MeshFolders)
+    downloads: Downloads = field(default_factory=Downloads)
+    held_time: HeldTime = field(default_factory=HeldTime)
+    display_ids: Iterator[str] = field(default_factory=lambda: map("display-{}".format, itertools.count(1)))
+    folder: Path = field(default_factory=Path.cwd)
+
+    def report(self, diagnostic: Diagnostic) -> None:
+        """Show a finding in the terminal."""
+        where = f"{diagnostic.span}: " if diagnostic.span else ""
+        logger = self.node.get_logger()
+        if diagnostic.severity is Severity.ERROR:  # two calls, as a logger identifies calls by their lines
+            logger.error(where + diagnostic.message)
+        else:
+            logger.warning(where + diagnostic.message)

@@ -1,0 +1,279 @@
+"""The base of all displays: a check box, properties, status rows, content, and the events that it handles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.page.audience import PageGroup
+from linkwright.page.outbox import Payload, ScaledData, Shrink
+from linkwright.page.protocol.binary import DisplayForgotten, pack_data
+from linkwright.page.protocol.displays import (
+    Display,
+    DisplayProperties,
+    DisplayStatus,
+    PropertyChanged,
+    StatusLevel,
+    StatusRow,
+)
+from linkwright.page.protocol.message import DataContent, ServerMessage
+from linkwright.rviz.config.former_names import former_keys
+from linkwright.rviz.config.property_store import PropertyStore
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import FIXED_FRAME, Path, Schema
+from linkwright.rviz.config.yaml_tree import Memory
+from linkwright.rviz.context import ViewerContext
+from linkwright.rviz.frames.stream import FrameView, TimeControl
+
+
+class DisplayHost(Protocol):
+    """A visualization, as its displays see it.
+
+    Attributes:
+        context: the viewer's node, files and pages.
+        pages: the pages that see the display.
+        frames: the frames now.
+        time: whether time is paused, and what it is synchronized with.
+    """
+
+    context: ViewerContext
+    pages: PageGroup
+    frames: FrameView
+    time: TimeControl
+
+    def robot_changed(self, gone: set[str]) -> None:
+        """Handle a display's new robot; `gone` are the frames that only the former one had."""
+
+
+Pose = NDArray[np.float64]
+"""x, y, z (metres), qx, qy, qz, qw of a frame in the Fixed Frame; shape (7,)."""
+
+_RANK: dict[StatusLevel, int] = {"ok": 0, "warn": 1, "error": 2}
+
+
+def worst(rows: list[StatusRow]) -> StatusLevel:
+    """Return the level of a display's own row: the worst of its status rows."""
+    return max((row.level for row in rows), key=_RANK.__getitem__, default="ok")
+
+
+class ViewerDisplay:
+    """A display of the Displays panel.
+
+    A subclass sets its RViz class and its properties, and overrides the methods of its events: start and stop,
+    new values, changed frames.
+
+    Args:
+        host: the visualization that it is part of.
+        identity: its id in the page, stable for its life.
+        config: its entry of the .rviz file.
+    """
+
+    CLASS: ClassVar[str]
+    SCHEMA: ClassVar[Schema] = ()
+    SUPPORTED: ClassVar[bool] = True
+    DRAWN_AS: ClassVar[str] = ""
+    """The RViz class whose drawing the page uses, for a display of a package without its own; empty for its own."""
+    TOPIC: ClassVar[Path] = ("Topic",)
+    """The property that receives the topic when the display is added for a topic."""
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        self.host = host
+        self.context = host.context
+        self.pages = host.pages
+        self.id = identity
+        self.config = config
+        self.properties = PropertyStore(
+            identity,
+            config.section,
+            self.schema,
+            host.context.report,
+            frames=self._reference_frames,
+            former=former_keys(config.written_class),
+        )
+        self.status: list[StatusRow] = []
+
+    @classmethod
+    def messages_shown(cls) -> tuple[str, ...]:
+        """Return the types of the topics that it can be added for."""
+        message: str = getattr(cls, "MESSAGE", "")
+        return (message,) if message else ()
+
+    @classmethod
+    def topic_value(cls, topic: str) -> str:
+        """Return the value of the property `TOPIC` that shows a topic."""
+        return topic
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it is drawn: its check box and those of the groups around it are on."""
+        return self.config.enabled
+
+    def schema(self) -> Schema:
+        """Return the current properties."""
+        return self.SCHEMA
+
+    def row(self) -> Display:
+        """Return the display's row for pages."""
+        return Display(
+            id=self.id,
+            cls=self.config.cls,
+            drawing=self.DRAWN_AS or self.config.cls,
+            name=self.config.name,
+            group=self.config.group.identity if self.config.group else None,
+            enabled=self.config.checked,
+            supported=self.SUPPORTED,
+            level=worst(self.status),
+            status=self.status,
+            properties=self.properties.rows(),
+        )
+
+    def set_property(self, path: Path, value: object) -> None:
+        """Set a value from a page, send it to all pages, and apply it.
+
+        Raises:
+            ValueError: the property does not accept the value.
+        """
+        taken = self.properties.set(path, value)
+        self.changed(path)
+        if self.properties.is_condition(path):
+            self.publish_properties()
+        self.pages.publish(PropertyChanged(self.property_id(path), taken))
+
+    def set_checked(self, value: bool) -> None:
+        """Set the check box, and send it to all pages; `enabled_changed` is called later."""
+        self.config.checked = value
+        self.pages.publish(PropertyChanged(f"{self.id}/Enabled", value))
+
+    def recall(self, memories: Sequence[Memory]) -> None:
+        """Restore the file's values of some properties, send them to all pages, and apply them."""
+        for path in self.properties.recall(memories):
+            self.changed(path)
+        self.properties.recall(memories)  # `changed` may have set further properties, which are recalled too
+        self.recalled()
+        self.publish_properties()
+
+    def property_id(self, path: Path) -> str:
+        """Return the id of one of its properties."""
+        return self.properties.identity(path)
+
+    def publish_properties(self) -> None:
+        """Send the property rows again."""
+        self.pages.publish(DisplayProperties(self.id, self.properties.rows()))
+
+    def set_status(self, rows: list[StatusRow]) -> None:
+        """Show status rows, none while the display is off; pages receive them only if they differ."""
+        if not self.enabled:
+            rows = []
+        if rows != self.status:
+            self.status = rows
+            self.pages.publish(DisplayStatus(self.id, worst(rows), rows))
+
+    def _reference_frames(self) -> list[str]:
+        return [FIXED_FRAME, *sorted(self.host.frames.names)]
+
+    def start(self) -> None:
+        """Start: subscribe, read files."""
+
+    def stop(self) -> None:
+        """Stop for good."""
+
+    def changed(self, path: Path) -> None:
+        """Handle a property's new value."""
+
+    def recalled(self) -> None:
+        """Update derived state: values were restored and `changed` was called for each."""
+
+    def enabled_changed(self) -> None:
+        """Handle a change of the check box of the display, or of a group around it."""
+        self.frames_changed()
+
+    def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
+        """Handle a new arrangement: displays were added, removed, moved or renamed; each group precedes its content."""
+
+    def frames_changed(self) -> None:
+        """Handle frames that appeared, disappeared, or gained or lost their transform; or another Fixed Frame."""
+
+    def receive(self, message: Any) -> None:
+        """Handle a page's message for this display, such as the result of loading a mesh or an action on a marker."""
+
+    def time_changed(self) -> None:
+        """Handle a pause, a resume, or another source of time."""
+
+    def time_reset(self) -> None:
+        """Handle a reset of time: forget earlier messages."""
+
+    def messages(self) -> list[ServerMessage]:
+        """Return messages for a page that opens now, besides the display's row."""
+        return []
+
+    def data(self) -> list[Payload]:
+        """Return content for a page that opens now, so that it draws the same as the others."""
+        return []
+
+
+class DataDisplay(ViewerDisplay):
+    """A display with content and with status rows that come and go one by one."""
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._rows: dict[str, StatusRow] = {}
+        self._data: dict[str, bytes | ScaledData] = {}
+
+    def send(
+        self,
+        content: DataContent,
+        *,
+        key: str = "",
+        frame: str = "",
+        pose: Pose | None = None,
+        stamp_ns: int = 0,
+        shrink: Shrink | None = None,
+    ) -> None:
+        """Send pages content to draw; see `pack_data`. It is stored for pages that open later.
+
+        With `shrink` pages with a slow line receive as much of it as the line carries.
+        """
+        pack = partial(pack_data, self.id, key=key, frame=frame, pose=pose, stamp=stamp_ns / 1e9)
+        waits_under = f"data {self.id} {key}"
+        packed = pack(content) if shrink is None else ScaledData(waits_under, content, shrink, pack)
+        self.pages.send_data(waits_under, packed)
+        self._replaced(key)  # after the new content has its place in the queues
+        self._data[key] = packed
+
+    def forget(self, key: str | None = None) -> None:
+        """Remove the data that was sent under a key from pages, or all data."""
+        for data_key in self._data if key is None else (key,):
+            self._replaced(data_key)
+        if key is None:
+            self._data.clear()
+        else:
+            self._data.pop(key, None)
+        self.pages.publish(DisplayForgotten(self.id, key))
+
+    def set_status_row(self, name: str, level: StatusLevel, text: str) -> None:
+        """Set a status row; a phrase is shown in the language of each page."""
+        row = StatusRow(name, level, text)
+        if self._rows.get(name) != row:
+            self._rows[name] = row
+            self.set_status(list(self._rows.values()))
+
+    def delete_status_row(self, name: str | None = None) -> None:
+        """Remove a status row, or all."""
+        if name is None:
+            self._rows.clear()
+            self.set_status([])
+        elif self._rows.pop(name, None) is not None:
+            self.set_status(list(self._rows.values()))
+
+    def data(self) -> list[Payload]:
+        """Return the content drawn now."""
+        return list(self._data.values())
+
+    def _replaced(self, key: str) -> None:
+        before = self._data.get(key)
+        if isinstance(before, ScaledData):
+            before.gone = True

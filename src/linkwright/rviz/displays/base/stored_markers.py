@@ -1,0 +1,48 @@
+"""Displays that are drawn as markers: pages receive new and changed markers, and the ids of removed ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.diagnostics import phrase
+from linkwright.page.files import MeshIndex
+from linkwright.page.outbox import Payload
+from linkwright.page.protocol.robot import MeshStatus
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.displays.base.display import DisplayHost
+from linkwright.rviz.displays.base.topic_display import TopicDisplay
+from linkwright.rviz.markers import MarkerStore
+
+
+class StoredMarkersDisplay(TopicDisplay):
+    """A display with a `MarkerStore`, which a subclass fills; `show_markers` sends what has changed."""
+
+    TRANSFORMED = False
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._store = MarkerStore(identity)
+        self._meshes = MeshIndex(host.context.finder)
+
+    def stop(self) -> None:
+        """Stop listening, and withdraw the files that markers named from pages."""
+        super().stop()
+        self.context.meshes.replace(self.id, {})
+
+    def data(self) -> list[Payload]:
+        """The markers."""
+        return [self._store]
+
+    def receive(self, message: Any) -> None:
+        """Show a page's report on a marker's mesh or texture in the status."""
+        if isinstance(message, MeshStatus) and message.error is not None and message.link in self._store:
+            self.set_status_row(
+                message.link,
+                "error",
+                phrase("Mesh resource marker [{link}]: {error}", link=message.link, error=message.error[:500]),
+            )
+
+    def show_markers(self) -> None:
+        """Send the changes: all of a message at once."""
+        self.context.meshes.replace(self.id, self._meshes.folders)
+        self.pages.send_data(self._store.key, self._store)

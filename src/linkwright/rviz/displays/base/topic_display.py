@@ -1,0 +1,544 @@
+"""Displays of a topic's messages: the subscription, waiting for transforms, the data for pages."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+import traceback
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, joined, phrase
+from linkwright.graph import ExtrapolationException, QoSProfile, Subscription, TransformException
+from linkwright.page.protocol.message import DataContent
+from linkwright.rviz.config.property_store import qos_of
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import FILTER_SIZE, Path, Schema, topic_spec
+from linkwright.rviz.displays.base.display import DataDisplay, DisplayHost, Pose
+
+
+class SideTopic:
+    """Subscribes to a topic beside the display's own. While time is paused its messages wait.
+
+    Args:
+        host: the display's host.
+        message_type: the type of its messages.
+        on_message: called with each of them.
+    """
+
+    def __init__(self, host: DisplayHost, message_type: str, on_message: Callable[[Any], None]) -> None:
+        self._host = host
+        self._type = message_type
+        self._on_message = on_message
+        self._subscription: Subscription[Any] | None = None
+        self._held: deque[Any] = deque()
+
+    def listen(self, topic: str, qos: QoSProfile) -> Phrase | None:
+        """Subscribe to a topic instead of the former one; returns RViz's text for the failure, or None."""
+        self.close()
+        self._held = deque(maxlen=max(1, qos.depth))
+        try:
+            self._subscription = self._host.context.node.create_subscription(self._type, topic, self._received, qos)
+        except LinkwrightError as error:
+            return phrase("Error subscribing: {message}", message=error.diagnostics[0].message)
+        return None
+
+    def close(self) -> None:
+        """Stop listening."""
+        if self._subscription is not None:
+            with suppress(ValueError):  # the node may have been destroyed before
+                self._host.context.node.destroy_subscription(self._subscription)
+            self._subscription = None
+        self._held.clear()
+
+    def resume(self) -> None:
+        """Handle the messages that were held while time was paused."""
+        while self._held and not self._host.time.paused:
+            self._on_message(self._held.popleft())
+
+    def _received(self, message: Any) -> None:
+        if self._host.time.paused:
+            self._held.append(message)
+        else:
+            self._on_message(message)
+
+
+def camera_info_topic(image: str) -> str:
+    """Return the topic of an image's CameraInfo by ROS's convention: beside the image, whatever its transport."""
+    for transport in ("/compressed", "/compressedDepth", "/theora"):
+        image = image.removesuffix(transport)
+    return image.rpartition("/")[0] + "/camera_info"
+
+
+TOPIC = "Topic"
+TRANSFORM = "Transform"
+
+_FAILURE = "Failure"
+"""The status row of a message that made a display fail; RViz has no such row."""
+
+_LATE = 1.0
+"""Seconds to wait for a message's transforms before it is an error: usually they arrive later than the message."""
+
+_COUNT_PERIOD = 1.0
+"""Seconds between two updates of the row that counts messages or gives the reason why there are none."""
+
+_OFFERED_LESS = {
+    "RELIABILITY": ("Reliability Policy", "Best Effort"),
+    "DURABILITY": ("Durability Policy", "Volatile"),
+}
+"""Rows of a topic with which it may request too much, and the value that every publisher offers."""
+
+_OTHER_CLOCK = 5.0
+"""Seconds between a message's stamp and the local time that indicate different clocks, not a slow computer."""
+
+_MOST_OTHERS = 3
+"""Topics of the same type that are named if the display's topic has no publisher: the most similar names first."""
+
+
+class TopicDisplay(DataDisplay, ABC):
+    """A display of the messages of one type on one topic.
+
+    A subclass sets `CLASS`, `MESSAGE` and its properties, among them a `topic_spec`, and overrides `process_message`.
+    It subscribes only while it is enabled, as in RViz.
+
+    Attributes:
+        last: the message shown now, to show it again when a property changes.
+    """
+
+    MESSAGE: ClassVar[str] = ""
+    """The type of its messages, such as ``sensor_msgs/msg/LaserScan``."""
+
+    SCHEMA: ClassVar[Schema] = (topic_spec(),)
+
+    TOPIC_ROW: ClassVar[str] = TOPIC
+    """The status row about the arrival of messages."""
+
+    TRANSFORMED: ClassVar[bool] = True
+    """Whether messages wait until the frame in their header can be placed in the Fixed Frame at their time."""
+
+    OCCASIONAL: ClassVar[bool] = False
+    """Whether messages are rare, such as plans: if a publisher has sent none yet, that is not a warning."""
+
+    FOLLOWS_TRANSFORMS: ClassVar[bool] = False
+    """Whether `transforms_came` is called although messages do not wait: the display places parts of them itself."""
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self.last: Any = None
+        self._subscription: Subscription[Any] | None = None
+        self._release: Callable[[], None] | None = None
+        self._waiting: deque[Any] = deque()
+        self._held: deque[Any] = deque()
+        self._fixed_frame = ""
+        self._failing = False
+        self._count = 0
+        self._since = 0.0
+        self._report_timer: asyncio.TimerHandle | None = None
+        self._incompatibility: Phrase | None = None
+        self._late: asyncio.TimerHandle | None = None
+        self._late_reason = ""
+
+    # --- what subclasses override ------------------------------------------------------------------------------
+
+    @abstractmethod
+    def process_message(self, message: Any, pose: Pose | None) -> None:
+        """Show a message.
+
+        Args:
+            message: a message of the type `MESSAGE`; it must not be changed.
+            pose: the pose of the frame in its header, at its time; None when the display is not `TRANSFORMED`.
+        """
+
+    def reset(self) -> None:
+        """Forget all content: the topic or the Fixed Frame has changed, or time was reset."""
+        self.forget()
+
+    def transforms_came(self) -> None:
+        """Handle new transforms."""
+        self._try_waiting()
+
+    def frame_of(self, message: Any) -> tuple[str, int]:
+        """Return the frame of a message and its time in nanoseconds (0 for the latest), from its header."""
+        stamp = message.header.stamp
+        return message.header.frame_id, stamp.sec * 1_000_000_000 + stamp.nanosec
+
+    def subscription(self) -> tuple[str, str, QoSProfile]:
+        """Return the type, topic and quality of service to subscribe with; an empty topic means no subscription."""
+        return self.MESSAGE, self.properties.text(TOPIC).strip(), qos_of(self.properties)
+
+    def most_waiting(self) -> int:
+        """Return the number of messages that may wait for their transforms."""
+        return int(self.properties.number(TOPIC, FILTER_SIZE))
+
+    # --- what subclasses call ----------------------------------------------------------------------------------
+
+    def show_again(self) -> None:
+        """Show the last message again."""
+        if self.last is not None:
+            self._offer(self.last)
+
+    # --- life --------------------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Subscribe, if the display is enabled."""
+        self._fixed_frame = self.host.frames.fixed_frame
+        if self.enabled:
+            self._subscribe()
+
+    def stop(self) -> None:
+        """Unsubscribe."""
+        self._unsubscribe()
+
+    def changed(self, path: Path) -> None:
+        """Subscribe to another topic, or with another quality of service."""
+        if path[0] == TOPIC and path != (TOPIC, FILTER_SIZE):
+            self._restart()
+
+    def enabled_changed(self) -> None:
+        """Subscribe or unsubscribe."""
+        self._restart()
+
+    def frames_changed(self) -> None:
+        """Show the last message in the other Fixed Frame."""
+        if self.fixed_frame_changed():
+            self._waiting.clear()
+            self.reset()
+            self.show_again()
+        self._try_waiting()
+
+    def time_changed(self) -> None:
+        """Show the messages that were received while time was paused."""
+        self._try_waiting()
+        while self._held and not self.host.time.paused:
+            self._offer(self._held.popleft())
+
+    def time_reset(self) -> None:
+        """Show nothing until new messages arrive."""
+        self.last = None
+        self._waiting.clear()
+        self._held.clear()
+        self.reset()
+
+    def fixed_frame_changed(self) -> bool:
+        """Return whether the Fixed Frame has changed since the last call."""
+        before, self._fixed_frame = self._fixed_frame, self.host.frames.fixed_frame
+        return before != self._fixed_frame
+
+    def _restart(self) -> None:
+        self._unsubscribe()
+        self.last = None
+        self._failing = False
+        self.reset()
+        self.delete_status_row()
+        if self.enabled:
+            self._subscribe()
+
+    def _subscribe(self) -> None:
+        message, topic, qos = self.subscription()
+        self._count, self._since, self._incompatibility = 0, time.monotonic(), None
+        if not topic:
+            self.set_status_row(self.TOPIC_ROW, "error", phrase("Error subscribing: Empty topic name"))
+            return
+        from linkwright.graph import SubscriptionEventCallbacks  # here, because the view of a robot has no topics
+
+        try:
+            self._subscription = self.context.node.create_subscription(
+                message,
+                topic,
+                self._received,
+                qos,
+                event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._incompatible),
+            )
+        except LinkwrightError as error:
+            self.set_status_row(
+                self.TOPIC_ROW, "error", phrase("Error subscribing: {message}", message=error.diagnostics[0].message)
+            )
+            return
+        if self.TRANSFORMED or self.FOLLOWS_TRANSFORMS:
+            self._release = self.context.transforms.use(self.transforms_came)
+        self._report_count()
+
+    def _unsubscribe(self) -> None:
+        if self._report_timer is not None:
+            self._report_timer.cancel()
+            self._report_timer = None
+        if self._subscription is not None:
+            with suppress(ValueError):  # the node may have been destroyed before
+                self.context.node.destroy_subscription(self._subscription)
+            self._subscription = None
+        if self._release is not None:
+            self._release()
+            self._release = None
+        self._in_time()
+        self._waiting.clear()
+        self._held.clear()
+
+    def _incompatible(self, info: Any) -> None:
+        policy = getattr(info.last_policy_kind, "name", str(info.last_policy_kind))
+        self._incompatibility = phrase(
+            "A publisher offers incompatible QoS. Last incompatible policy: {policy}", policy=policy
+        )
+        row, offered = _OFFERED_LESS.get(policy, ("", ""))
+        if row:
+            self._incompatibility = phrase(
+                "{problem}. Choose {offered} for {row} below {topic}",
+                problem=self._incompatibility,
+                offered=offered,
+                row=row,
+                topic=TOPIC,
+            )
+        if self._count == 0:
+            self._report_count()
+
+    def _report_count(self) -> None:
+        """Show the number of messages, or why there are none; repeated while there are none."""
+        if self._count > 0:
+            seconds = time.monotonic() - self._since
+            text = phrase("{count} messages received", count=self._count)
+            if self._count > 1 and seconds > 0:
+                rate = self._count / seconds
+                text = phrase("{count} messages received at {rate:.0f} hz.", count=self._count, rate=rate)
+            self.set_status_row(self.TOPIC_ROW, "ok", text)
+            return
+        self.set_status_row(
+            self.TOPIC_ROW,
+            "ok" if self._is_awaited() else "warn",
+            self._incompatibility or phrase("No messages received: {reason}", reason=self._silence()),
+        )
+        self._report_count_later()
+
+    def _is_awaited(self) -> bool:
+        """Whether messages are rare and the topic has a publisher for them."""
+        message, topic, _ = self.subscription()
+        publishers = self.context.published.publishers(topic)
+        return self.OCCASIONAL and self._incompatibility is None and any(kind == message for _, kind in publishers)
+
+    def _report_count_later(self) -> None:
+        def report() -> None:
+            self._report_timer = None
+            self._report_count()
+
+        if self._report_timer is None:
+            self._report_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD, report)
+
+    def _silence(self) -> Phrase:
+        """Return the reason why no messages arrive, as far as the graph knows, and topics of the same type."""
+        message, topic, _ = self.subscription()
+        publishers = self.context.published.publishers(topic)
+        types = {topic_type for _, topic_type in publishers}
+        if types and message not in types:
+            return phrase("the topic carries {types}, not {message}", types=joined(sorted(types)), message=message)
+        if publishers:
+            return phrase("no message arrived yet from {nodes}", nodes=joined(sorted({name for name, _ in publishers})))
+        there = self.context.published.of_type(message)
+        if there:
+            from difflib import SequenceMatcher  # here, because most topics have a publisher
+
+            there = sorted(there, key=lambda name: -SequenceMatcher(None, topic, name).ratio())[:_MOST_OTHERS]
+            return phrase(
+                "the topic has no publisher; there is {message} on {topics}", message=message, topics=joined(there)
+            )
+        return phrase("the topic has no publisher")
+
+    # --- messages ----------------------------------------------------------------------------------------------
+
+    def _received(self, message: Any) -> None:
+        self._count += 1
+        if self._count == 1:
+            self._report_count()
+        else:
+            self._report_count_later()
+        if self.TRANSFORMED:
+            self.host.time.took(self.config.name, self.frame_of(message)[1])
+        if self.host.time.paused:
+            self._held.append(message)
+            while len(self._held) > max(1, self.subscription()[2].depth):
+                self._held.popleft()
+        else:
+            self._offer(message)
+
+    def _offer(self, message: Any) -> None:
+        if not self.TRANSFORMED:
+            self._process(message, None)
+            return
+        if self._waiting or not self._place(message):
+            self._waiting.append(message)
+            while len(self._waiting) > self.most_waiting():
+                self._waiting.popleft()
+
+    def _try_waiting(self) -> None:
+        while self._waiting and not self.host.time.paused and self._place(self._waiting[0]):
+            self._waiting.popleft()
+
+    def _place(self, message: Any) -> bool:
+        frame, stamp_ns = self.frame_of(message)
+        frame = frame.removeprefix("/")
+        try:
+            pose = self.context.transforms.pose(self._fixed_frame, frame, stamp_ns)
+        except TransformException as error:
+            reason = phrase(
+                "Could not transform from [{frame}] to [{fixed_frame}]: {reason}",
+                frame=frame,
+                fixed_frame=self._fixed_frame,
+                reason=error.diagnostics[0].message,
+            )
+            self._could_not_place(reason, stamp_ns, is_late=isinstance(error, ExtrapolationException))
+            return False
+        self._in_time()
+        self.set_status_row(TRANSFORM, "ok", phrase("Transform OK"))
+        self._process(message, pose)
+        return True
+
+    def _could_not_place(self, reason: Phrase, stamp_ns: int, *, is_late: bool) -> None:
+        """Report a message without a transform; if it is only late, after a while without placed messages."""
+        if not is_late:
+            self.set_status_row(TRANSFORM, "error", reason)
+            return
+        self._late_reason = self._with_clocks(reason, stamp_ns)
+        if self._late is None:
+            self._late = asyncio.get_running_loop().call_later(_LATE, self._report_late)
+
+    def _with_clocks(self, reason: Phrase, stamp_ns: int) -> Phrase:
+        """Return the reason, with advice about clocks if the message's stamp is far from the local time."""
+        ahead = (stamp_ns - self.context.node.get_clock().now().nanoseconds) * 1e-9
+        if abs(ahead) < _OTHER_CLOCK:
+            return reason
+        if ahead > 0:
+            return phrase(
+                "The message's stamp is {seconds:.0f} s after the local time: check the clocks of both "
+                "computers and use_sim_time of their nodes. {reason}",
+                seconds=ahead,
+                reason=reason,
+            )
+        return phrase(
+            "The message's stamp is {seconds:.0f} s before the local time: check the clocks of both computers "
+            "and use_sim_time of their nodes. {reason}",
+            seconds=-ahead,
+            reason=reason,
+        )
+
+    def _report_late(self) -> None:
+        self._late = None
+        if self._waiting:
+            self.set_status_row(TRANSFORM, "error", self._late_reason)
+
+    def _in_time(self) -> None:
+        if self._late is not None:
+            self._late.cancel()
+            self._late = None
+
+    def _process(self, message: Any, pose: Pose | None) -> None:
+        """Show a message. An unexpected failure must not stop the following ones."""
+        self.last = message
+        try:
+            self.process_message(message, pose)
+        except Exception as error:  # noqa: BLE001  # the message is a stranger's
+            if not self._failing:
+                self.context.node.get_logger().error(f"'{self.config.name}' failed:\n{traceback.format_exc().rstrip()}")
+            self._failing = True
+            self.set_status_row(
+                _FAILURE,
+                "error",
+                phrase("The message could not be shown: {reason}", reason=foreign(error or type(error).__name__)),
+            )
+            return
+        if self._failing:
+            self._failing = False
+            self.delete_status_row(_FAILURE)
+
+
+_MESSAGE = "Message"
+_INVALID = phrase("Message contained invalid floating point values (nans or infs)")
+
+
+@dataclass(slots=True)
+class _Shown:
+    content: DataContent
+    frame: str
+    pose: Pose | None
+    stamp_ns: int
+
+
+class RecentDisplay(TopicDisplay):
+    """Shows the content of each of the last messages, at its frame's pose at the message's time.
+
+    A subclass names the property with their number in `LENGTH` (0 for all of them); without one it shows one message.
+    """
+
+    LENGTH: ClassVar[Path | None] = None
+
+    IN_FIXED_FRAME: ClassVar[bool] = False
+    """Whether contents are in the Fixed Frame already."""
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._shown: deque[_Shown] = deque()
+        self._number = 0
+
+    @abstractmethod
+    def content(self, message: Any) -> DataContent | None:
+        """Return the content of a message, in the frame of `frame_of`, or None to ignore it."""
+
+    def process_message(self, message: Any, pose: Pose | None) -> None:
+        """Show a message, and drop the oldest one."""
+        assert pose is not None
+        content = self.content(message)
+        if content is None:
+            return
+        frame, stamp_ns = self.frame_of(message)
+        if self.IN_FIXED_FRAME:
+            frame, pose = "", None
+        self._shown.append(_Shown(content, frame, pose, stamp_ns))
+        length = self._length()
+        if length and len(self._shown) > length:
+            self._shown.popleft()
+        self._send(self._shown[-1])
+
+    def changed(self, path: Path) -> None:
+        """Show as many messages as the property sets."""
+        super().changed(path)
+        if path == self.LENGTH:
+            length = self._length()
+            recent = list(self._shown)[-length:]
+            self.reset()
+            for shown in recent:
+                self._shown.append(shown)
+                self._send(shown)
+
+    def reset(self) -> None:
+        """Forget all messages."""
+        self._shown.clear()
+        self._number = 0
+        super().reset()
+
+    def refuse(self, text: str) -> None:
+        """Show the problem of the last message."""
+        self.set_status_row(_MESSAGE, "error", text)
+
+    def accept(self) -> None:
+        """Clear the problem of the previous message."""
+        self.delete_status_row(_MESSAGE)
+
+    def is_finite(self, *numbers: ArrayLike) -> bool:
+        """Return whether all numbers are finite, and show in the status if they are not."""
+        if all(np.isfinite(number).all() for number in numbers):
+            self.accept()
+            return True
+        self.refuse(_INVALID)
+        return False
+
+    def _send(self, shown: _Shown) -> None:
+        length = self._length()
+        key = str(self._number % length if length else self._number)
+        self._number += 1
+        self.send(shown.content, key=key, frame=shown.frame, pose=shown.pose, stamp_ns=shown.stamp_ns)
+
+    def _length(self) -> int:
+        return 1 if self.LENGTH is None else int(self.properties.number(*self.LENGTH))

@@ -1,0 +1,76 @@
+"""The classes of displays by the names that .rviz files have for them.
+
+Displays are found through the entry points ``linkwright.displays``, named as .rviz files name their class. A display is
+imported when the first one of its class is made: most configurations have a few of them, and the program must start
+quickly.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+from linkwright.diagnostics import phrase
+from linkwright.extensions import extensions
+from linkwright.page.protocol.displays import StatusRow
+from linkwright.rviz.config.former_names import GROUP as GROUP_CLASS
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay
+
+
+class GroupDisplay(ViewerDisplay):
+    """Contains other displays, and switches them off together."""
+
+    CLASS = GROUP_CLASS
+
+
+class UnsupportedDisplay(ViewerDisplay):
+    """A display of an unknown class."""
+
+    CLASS = ""
+    SUPPORTED = False
+
+    def start(self) -> None:
+        """Show in the status that it is not drawn."""
+        self.enabled_changed()
+
+    def enabled_changed(self) -> None:
+        """Show in the status that it is not drawn, if the user enables it."""
+        text = phrase("Displays of class '{name}' are kept in the file but not drawn", name=self.config.cls)
+        self.set_status([StatusRow("Class", "warn", text)])
+
+
+GROUP = "linkwright.displays"
+"""The group of the entry points."""
+
+
+def has_display(cls: str) -> bool:
+    """Return whether displays of a class are drawn, or are groups."""
+    return cls in extensions(GROUP)
+
+
+def display_classes() -> list[type[ViewerDisplay]]:
+    """Return the classes of displays that are drawn, and groups, without those that cannot be imported."""
+    return [found for cls in extensions(GROUP) if isinstance(found := _display_class(cls), type)]
+
+
+def make_display(host: DisplayHost, identity: str, config: DisplayConfig) -> ViewerDisplay:
+    """Return the display for an entry of the file; an `UnsupportedDisplay` for a class that is not drawn."""
+    if not has_display(config.cls):
+        return UnsupportedDisplay(host, identity, config)
+    found = _display_class(config.cls)
+    if isinstance(found, str):
+        host.context.node.get_logger().error(f"Displays of class '{config.cls}' cannot be imported: {found}")
+        return UnsupportedDisplay(host, identity, config)
+    return found(host, identity, config)
+
+
+@cache
+def _display_class(cls: str) -> type[ViewerDisplay] | str:
+    """Return the class that draws a display of a name in .rviz files, or why it cannot be loaded."""
+    try:
+        found = extensions(GROUP)[cls].load()
+    except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong
+        return f"{type(error).__name__}: {error}"
+    if not (isinstance(found, type) and issubclass(found, ViewerDisplay)):
+        return f"{found!r} is not a class derived from ViewerDisplay"
+    return found

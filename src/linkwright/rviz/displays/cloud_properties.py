@@ -1,0 +1,151 @@
+"""The properties that all displays of points share: RViz's PointCloudCommon and its transformers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from linkwright.rviz.clouds import AXES, TRANSFORMERS, ColourSettings
+from linkwright.rviz.config.property_store import PropertyStore
+from linkwright.rviz.config.schema import Path, PropertySpec, Schema, alpha
+
+DECAY_TIME = "Decay Time"
+COLOUR_TRANSFORMER = "Color Transformer"
+POSITION_TRANSFORMER = "Position Transformer"
+CHANNEL = "Channel Name"
+AUTO_INTENSITY = "Autocompute Intensity Bounds"
+AUTO_VALUES = "Autocompute Value Bounds"
+MIN_INTENSITY, MAX_INTENSITY = INTENSITY_BOUNDS = ("Min Intensity", "Max Intensity")
+VALUE_BOUNDS = ("Min Value", "Max Value")
+
+STYLE_SPECS: Schema = (
+    PropertySpec("Selectable", "bool", True, "Whether the points can be selected."),
+    PropertySpec(
+        "Style",
+        "enum",
+        "Flat Squares",
+        "The shape of a point, from the fastest to the slowest to draw.",
+        options=("Points", "Squares", "Flat Squares", "Spheres", "Boxes", "Tiles"),
+    ),
+    PropertySpec("Size (m)", "float", 0.01, "Size of a point, in metres; not of the style Points.", minimum=0.0001),
+    PropertySpec("Size (Pixels)", "float", 3.0, "Size of a point of the style Points, in pixels.", minimum=1.0),
+    alpha("Opacity of the points: 0 is invisible."),
+    PropertySpec(DECAY_TIME, "float", 0.0, "Seconds that points stay; 0 shows the newest message only.", minimum=0.0),
+)
+
+_INTENSITY = ((COLOUR_TRANSFORMER,), "Intensity")
+_AXIS = ((COLOUR_TRANSFORMER,), "AxisColor")
+_PLAIN = (("Use rainbow",), False)
+
+TRANSFORMER_SPECS: Schema = (
+    PropertySpec(POSITION_TRANSFORMER, "enum", "XYZ", "The source of the points' positions.", options=("XYZ",)),
+    PropertySpec(
+        COLOUR_TRANSFORMER, "enum", "", "The source of the points' colours.", options=tuple(sorted(TRANSFORMERS))
+    ),
+    PropertySpec(
+        CHANNEL,
+        "string",
+        "intensity",
+        "The channel that gives the intensity.",
+        options=("intensity",),
+        when=_INTENSITY,
+    ),
+    PropertySpec(
+        "Use rainbow",
+        "bool",
+        True,
+        "Use the colours of the rainbow, instead of a gradient between two colours.",
+        when=_INTENSITY,
+    ),
+    PropertySpec("Invert Rainbow", "bool", False, "Reverse the rainbow.", when=(("Use rainbow",), True)),
+    PropertySpec("Min Color", "color", "#000000", "Colour of the least intensity.", when=_PLAIN),
+    PropertySpec("Max Color", "color", "#ffffff", "Colour of the largest intensity.", when=_PLAIN),
+    PropertySpec(
+        AUTO_INTENSITY, "bool", True, "Use the least and the largest intensity of each message.", when=_INTENSITY
+    ),
+    PropertySpec(
+        MIN_INTENSITY, "float", 0.0, "The intensity that gets the first colour.", when=((AUTO_INTENSITY,), False)
+    ),
+    PropertySpec(
+        MAX_INTENSITY, "float", 4096.0, "The intensity that gets the last colour.", when=((AUTO_INTENSITY,), False)
+    ),
+    PropertySpec("Axis", "enum", "Z", "The axis along which the colour changes.", options=AXES, when=_AXIS),
+    PropertySpec(
+        AUTO_VALUES,
+        "bool",
+        True,
+        "Use the least and the largest coordinate of each message.",
+        when=_AXIS,
+        expanded=True,
+        children=(
+            PropertySpec(
+                VALUE_BOUNDS[0],
+                "float",
+                -10.0,
+                "The coordinate that gets the first colour, in metres.",
+                when=((AUTO_VALUES,), False),
+            ),
+            PropertySpec(
+                VALUE_BOUNDS[1],
+                "float",
+                10.0,
+                "The coordinate that gets the last colour, in metres.",
+                when=((AUTO_VALUES,), False),
+            ),
+        ),
+    ),
+    PropertySpec(
+        "Use Fixed Frame", "bool", True, "Use the coordinates in the Fixed Frame, not in the message's.", when=_AXIS
+    ),
+    PropertySpec("Color", "color", "#ffffff", "The colour of every point.", when=((COLOUR_TRANSFORMER,), "FlatColor")),
+)
+
+COLOUR_PROPERTIES = frozenset(spec.name for spec in TRANSFORMER_SPECS) - {"Color", POSITION_TRANSFORMER}
+"""The properties that affect the colours of points; the page applies a single colour itself."""
+
+
+def scalar_specs(channel: str, least: float, largest: float, *, inverted: bool | None = None) -> Schema:
+    """Return the properties of a display that shows one number as a point: RViz hides those without a choice.
+
+    Args:
+        channel: the channel with the number.
+        least: default of ``Min Intensity``.
+        largest: default of ``Max Intensity``.
+        inverted: value of ``Invert Rainbow``, which is hidden then; None if the user may choose.
+    """
+    changes: dict[str, dict[str, Any]] = {
+        POSITION_TRANSFORMER: {"hidden": True},
+        COLOUR_TRANSFORMER: {"hidden": True, "default": "Intensity"},
+        CHANNEL: {"hidden": True, "default": channel},
+        AUTO_INTENSITY: {"hidden": True, "default": False},
+        MIN_INTENSITY: {"default": least},
+        MAX_INTENSITY: {"default": largest},
+    }
+    if inverted is not None:
+        changes["Invert Rainbow"] = {"hidden": True, "default": inverted}
+    return tuple(replace(spec, **changes.get(spec.name, {})) for spec in (*STYLE_SPECS, *TRANSFORMER_SPECS))
+
+
+def colour_settings(properties: PropertyStore) -> ColourSettings:
+    """Return the values of the properties about colours."""
+    flag, number, text = properties.flag, properties.number, properties.text
+
+    def bounds(auto: str, *paths: Path) -> tuple[float, float] | None:
+        return None if flag(auto) else (number(*paths[0]), number(*paths[1]))
+
+    return ColourSettings(
+        transformer=text(COLOUR_TRANSFORMER),
+        channel=text(CHANNEL),
+        rainbow=flag("Use rainbow"),
+        inverted=flag("Invert Rainbow"),
+        darkest=_rgb(text("Min Color")),
+        brightest=_rgb(text("Max Color")),
+        intensities=bounds(AUTO_INTENSITY, (MIN_INTENSITY,), (MAX_INTENSITY,)),
+        axis=AXES.index(text("Axis")),
+        values=bounds(AUTO_VALUES, (AUTO_VALUES, VALUE_BOUNDS[0]), (AUTO_VALUES, VALUE_BOUNDS[1])),
+        in_fixed_frame=flag("Use Fixed Frame"),
+    )
+
+
+def _rgb(colour: str) -> tuple[int, int, int]:
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)

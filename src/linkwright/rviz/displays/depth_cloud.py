@@ -1,0 +1,336 @@
+"""rviz_default_plugins/DepthCloud."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from dataclasses import replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from linkwright.diagnostics import foreign, phrase
+from linkwright.graph import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.images import RAW, TRANSPORTS, BadImageError, ImageSource, RangeFinder, Unpacker, picture_of
+from linkwright.rviz.clouds import BadCloudError, DepthCamera, DepthCloudBuilder, Points
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import Path, PropertySpec, Schema
+from linkwright.rviz.displays.base.display import DisplayHost, Pose
+from linkwright.rviz.displays.base.topic_display import SideTopic, camera_info_topic
+from linkwright.rviz.displays.cloud_properties import POSITION_TRANSFORMER, STYLE_SPECS, TRANSFORMER_SPECS
+from linkwright.rviz.displays.point_clouds import CloudDisplay
+
+RELIABILITY = "Reliability Policy"
+DEPTH_TOPIC, DEPTH_TRANSPORT = "Depth Map Topic", "Depth Map Transport Hint"
+INFO_TOPIC = "CameraInfo Topic"
+COLOUR_TOPIC, COLOUR_TRANSPORT = "Color Image Topic", "Color Transport Hint"
+QUEUE_SIZE = "Queue Size"
+AUTO_SIZE, SIZE_FACTOR = "Auto Size", "Auto Size Factor"
+OCCLUSION, OCCLUSION_TIMEOUT = "Occlusion Compensation", "Occlusion Time-Out"
+TOPIC_FILTER = "Topic Filter"
+_IMAGE = "sensor_msgs/msg/Image"
+
+SOURCES = frozenset((RELIABILITY, DEPTH_TOPIC, DEPTH_TRANSPORT, INFO_TOPIC, COLOUR_TOPIC, COLOUR_TRANSPORT, QUEUE_SIZE))
+"""The properties that select the sources of messages."""
+
+DEPTH_SCHEMA: Schema = (
+    PropertySpec(
+        RELIABILITY,
+        "enum",
+        "Best effort",
+        "Whether every message must arrive, or may be lost.",
+        options=("System Default", "Reliable", "Best effort"),
+    ),
+    PropertySpec(TOPIC_FILTER, "bool", True, "Offer only topics whose names suggest depth and colour images."),
+    PropertySpec(
+        DEPTH_TOPIC,
+        "topic",
+        "",
+        "sensor_msgs/msg/Image with depths: 16UC1 in millimetres or 32FC1 in metres.",
+        messages=(_IMAGE,),
+        words=("depth",),
+    ),
+    PropertySpec(
+        DEPTH_TRANSPORT, "enum", RAW, "The image transport of the depths: raw, or compressedDepth.", options=TRANSPORTS
+    ),
+    PropertySpec(
+        INFO_TOPIC,
+        "topic",
+        "",
+        "sensor_msgs/msg/CameraInfo of the depths; without one, camera_info beside them.",
+        messages=("sensor_msgs/msg/CameraInfo",),
+    ),
+    PropertySpec(
+        COLOUR_TOPIC,
+        "topic",
+        "",
+        "sensor_msgs/msg/Image with the colours of the points.",
+        messages=(_IMAGE,),
+        words=("color", "rgb", "bgr", "gray", "mono"),
+    ),
+    PropertySpec(
+        COLOUR_TRANSPORT, "enum", RAW, "The image transport of the colours: raw, or compressed.", options=TRANSPORTS
+    ),
+    PropertySpec(QUEUE_SIZE, "int", 5, "The size of the message queue.", minimum=1, maximum=1000),
+    PropertySpec(
+        AUTO_SIZE,
+        "bool",
+        True,
+        "Make each point as large as its pixel is at its depth.",
+        expanded=True,
+        children=(
+            PropertySpec(
+                SIZE_FACTOR,
+                "float",
+                1.0,
+                "Times so much.",
+                minimum=0.0001,
+                when=((AUTO_SIZE,), True),
+            ),
+        ),
+    ),
+    PropertySpec(
+        OCCLUSION,
+        "bool",
+        False,
+        "Keep points that nearer ones cover, until the camera moves.",
+        expanded=True,
+        children=(
+            PropertySpec(
+                OCCLUSION_TIMEOUT,
+                "float",
+                30.0,
+                "Seconds until covered points are removed.",
+                when=((OCCLUSION,), True),
+            ),
+        ),
+    ),
+    *STYLE_SPECS,
+    *(replace(spec, hidden=True) if spec.name == POSITION_TRANSFORMER else spec for spec in TRANSFORMER_SPECS),
+)
+
+DEPTH_SCHEMA_UNFILTERED: Schema = tuple(replace(spec, words=()) for spec in DEPTH_SCHEMA)
+"""The schema for ``Topic Filter`` off: topics of any name are offered."""
+
+_SYNC_NS = 500_000_000
+"""The largest time between a colour image and its depths, nanoseconds."""
+
+# The camera has moved if its pose changes by more than these, metres and radians.
+_MOVED = 0.01
+_TURNED = np.radians(0.5)
+
+
+class DepthCloudDisplay(CloudDisplay):
+    """The points of a depth image, coloured by a colour image if there is one."""
+
+    CLASS = "rviz_default_plugins/DepthCloud"
+    MESSAGE = "sensor_msgs/msg/Image"
+    SCHEMA = DEPTH_SCHEMA
+    TOPIC = (DEPTH_TOPIC,)
+    TOPIC_ROW: ClassVar[str] = "Depth Map"
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        self._filters = True
+        super().__init__(host, identity, config)
+        self._filters = self.properties.flag(TOPIC_FILTER)
+        self._infos = SideTopic(host, "sensor_msgs/msg/CameraInfo", self._info_received)
+        self._colours: SideTopic | None = None
+        self._depth_unpacker = Unpacker()
+        self._colour_unpacker = Unpacker()
+        self._builder = DepthCloudBuilder()
+        self._info: Any = None
+        self._pixel = 0.0
+        self._recent: deque[Any] = deque()
+        self._pending: tuple[Any, Pose] | None = None
+        self._camera_pose: Pose | None = None
+
+    def subscription(self) -> tuple[str, str, QoSProfile]:
+        """Return the subscription to the depth map, by its transport."""
+        source = self._depth_source()
+        return source.message_type, source.topic, self._qos()
+
+    def most_waiting(self) -> int:
+        """Return the number of depth maps that may wait for their transforms."""
+        return int(self.properties.number(QUEUE_SIZE))
+
+    def pixel_size(self) -> float:
+        """Return the width of a pixel at a distance of one metre, if points are to be as large as pixels."""
+        return self._pixel * self.properties.number(AUTO_SIZE, SIZE_FACTOR) if self.properties.flag(AUTO_SIZE) else 0.0
+
+    def process_message(self, message: Any, pose: Pose | None) -> None:
+        """Show a depth map as soon as its colours have arrived."""
+        assert pose is not None
+        colour = self._colour_of(message) if self._wants_colour() else None
+        if self._info is None or (colour is None and self._wants_colour()):
+            self._pending = (message, pose)
+            return
+        self._pending = None
+        self._show_depths(message, pose, colour)
+
+    def schema(self) -> Schema:
+        """Return the properties; with ``Topic Filter`` topics are offered by their names."""
+        return DEPTH_SCHEMA if self._filters else DEPTH_SCHEMA_UNFILTERED
+
+    def changed(self, path: Path) -> None:
+        """Subscribe to other topics, or show the last depths differently."""
+        if path[0] in SOURCES:
+            self._restart()
+            return
+        if path == (TOPIC_FILTER,):
+            self._filters = self.properties.flag(TOPIC_FILTER)
+            self.publish_properties()
+        super().changed(path)
+        if path[0] in (AUTO_SIZE, OCCLUSION):
+            self.show_again()
+
+    def time_changed(self) -> None:
+        """Show the messages that were received while time was paused."""
+        self._infos.resume()
+        if self._colours is not None:
+            self._colours.resume()
+        super().time_changed()
+
+    def reset(self) -> None:
+        """Forget all covered points."""
+        self._builder.reset()
+        self._camera_pose = None
+        self._pending = None
+        if self.last is None:
+            self._info = None
+            self._recent.clear()
+        super().reset()
+
+    # --- topics ------------------------------------------------------------------------------------------------
+
+    def _qos(self) -> QoSProfile:
+        reliable = self.properties.text(RELIABILITY) == "Reliable"
+        return QoSProfile(
+            depth=int(self.properties.number(QUEUE_SIZE)),
+            history=HistoryPolicy.KEEP_LAST,
+            reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        )
+
+    def _depth_source(self) -> ImageSource:
+        return ImageSource.of(self.properties.text(DEPTH_TOPIC), self.properties.text(DEPTH_TRANSPORT))
+
+    def _colour_source(self) -> ImageSource:
+        return ImageSource.of(self.properties.text(COLOUR_TOPIC), self.properties.text(COLOUR_TRANSPORT))
+
+    def _subscribe(self) -> None:
+        depth, colour = self._depth_source(), self._colour_source()
+        for name, source in ((DEPTH_TRANSPORT, depth), (COLOUR_TRANSPORT, colour)):
+            if not source.is_read:
+                choice = phrase("choose raw, compressed or compressedDepth")
+                self.set_status_row(
+                    name,
+                    "error",
+                    phrase(
+                        "Images of transport '{transport}' are not supported: {choice}",
+                        transport=source.transport,
+                        choice=choice,
+                    ),
+                )
+        if not (depth.is_read and colour.is_read):
+            return
+        super()._subscribe()
+        if not depth.topic:
+            return
+        info = self.properties.text(INFO_TOPIC).strip() or camera_info_topic(depth.base)
+        problem = self._infos.listen(info, self._qos())
+        self.set_status_row(
+            "Depth Camera Info",
+            "error" if problem else "warn",
+            problem or phrase("No CameraInfo received on [{topic}]", topic=info),
+        )
+        if colour.topic:
+            self._colours = SideTopic(self.host, colour.message_type, self._colour_received)
+            if problem := self._colours.listen(colour.topic, self._qos()):
+                self.set_status_row("Message", "error", problem)
+            self.choose_transformer("RGB8")
+
+    def _unsubscribe(self) -> None:
+        super()._unsubscribe()
+        self._infos.close()
+        if self._colours is not None:
+            self._colours.close()
+            self._colours = None
+
+    def _info_received(self, info: Any) -> None:
+        self._info = info
+        self.set_status_row("Depth Camera Info", "ok", phrase("OK"))
+        self._try_pending()
+
+    def _colour_received(self, message: Any) -> None:
+        self._recent.append(message)
+        while len(self._recent) > self.most_waiting():
+            self._recent.popleft()
+        self._try_pending()
+
+    def _try_pending(self) -> None:
+        if self._pending is not None:
+            self.process_message(*self._pending)
+
+    def _wants_colour(self) -> bool:
+        return bool(self.properties.text(COLOUR_TOPIC).strip())
+
+    def _colour_of(self, depth: Any) -> Any:
+        """Return the colour image nearest in time, or None if there is none near."""
+        at = self.frame_of(depth)[1]
+        nearest = min(self._recent, key=lambda image: abs(self.frame_of(image)[1] - at), default=None)
+        if nearest is None or abs(self.frame_of(nearest)[1] - at) > _SYNC_NS:
+            return None
+        return nearest
+
+    # --- points ------------------------------------------------------------------------------------------------
+
+    def _show_depths(self, message: Any, pose: Pose, colour: Any) -> None:
+        try:
+            points = self._points(message, pose, colour)
+        except BadCloudError as error:
+            self.set_status_row("Message", "error", foreign(error))
+            return
+        except BadImageError as error:
+            self.set_status_row(
+                "Message", "error", phrase("Error updating depth cloud: {reason}", reason=foreign(error))
+            )
+            return
+        frames = (message.header.frame_id, colour.header.frame_id if colour is not None else message.header.frame_id)
+        if frames[0] != frames[1]:
+            text = phrase(
+                "Depth image frame id [{depth}] doesn't match color image frame id [{color}]",
+                depth=frames[0],
+                color=frames[1],
+            )
+            self.set_status_row("Message", "warn", text)
+        else:
+            self.set_status_row("Message", "ok", phrase("Ok"))
+        self.show(points, pose, self.frame_of(message)[1])
+
+    def _points(self, message: Any, pose: Pose, colour: Any) -> Points:
+        depth = self._depth_unpacker.image(message, self._depth_source().transport)
+        self.set_status_row(
+            "Depth Image Size", "ok", phrase("{width} x {height}", width=depth.width, height=depth.height)
+        )
+        image = None
+        if colour is not None:
+            colour = self._colour_unpacker.image(colour, self._colour_source().transport)
+            self.set_status_row(
+                "Image Size", "ok", phrase("{width} x {height}", width=colour.width, height=colour.height)
+            )
+            image = picture_of(colour, RangeFinder())
+        camera = DepthCamera.of(self._info, depth.width, depth.height)
+        self._pixel = camera.pixel
+        keep = self.properties.number(OCCLUSION, OCCLUSION_TIMEOUT) if self.properties.flag(OCCLUSION) else None
+        if keep is not None and self._has_moved(pose):
+            self._builder.reset()
+        return self._builder.points(depth, camera, image, keep_covered=keep, now=time.monotonic())
+
+    def _has_moved(self, pose: Pose) -> bool:
+        before = self._camera_pose
+        if before is not None:
+            distance = float(np.linalg.norm(pose[:3] - before[:3]))
+            turn = 2.0 * np.arccos(min(1.0, abs(float(np.dot(pose[3:], before[3:])))))
+            if distance <= _MOVED and turn <= _TURNED:
+                return False
+        self._camera_pose = pose
+        return True

@@ -1,0 +1,150 @@
+"""Detections: an image, with boxes of vision_msgs/Detection2DArray over it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import phrase
+from linkwright.page.protocol.detections import PictureBoxes
+from linkwright.rviz.config.property_store import qos_of
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import Path, PropertySpec, Schema, topic_spec
+from linkwright.rviz.displays.base.display import DisplayHost, Pose
+from linkwright.rviz.displays.base.topic_display import SideTopic
+from linkwright.rviz.displays.class_colors import class_color
+from linkwright.rviz.displays.detections import best_result
+from linkwright.rviz.displays.detector_threshold import DetectorThreshold
+from linkwright.rviz.displays.image import ImageDisplay
+
+DETECTIONS = "Detections Topic"
+THRESHOLD = "Threshold"
+_TYPE = "vision_msgs/msg/Detection2DArray"
+_BOXES = "boxes"
+_MOST_IMAGES = 10
+"""Images that wait for their detections."""
+
+_PATIENCE = 1.0
+"""Seconds without detections after which images are shown at once."""
+
+
+class DetectionPictureDisplay(ImageDisplay):
+    """Images with boxes around the detected objects, in a panel of their own.
+
+    While detections arrive, an image is shown together with those of its stamp, as late as the detector is. Detections
+    of an image that is no longer stored are drawn over the current image.
+    """
+
+    CLASS = "linkwright/Detections"
+    SCHEMA = (
+        *ImageDisplay.SCHEMA,
+        topic_spec(DETECTIONS, "/yolo/detections", _TYPE, messages=(_TYPE,)),
+        PropertySpec(
+            THRESHOLD,
+            "float",
+            0.0,
+            "Detections of a lower score are left out: by their node, if it has a parameter 'threshold', else here.",
+            minimum=0.0,
+            maximum=1.0,
+        ),
+        PropertySpec("Show Score", "bool", True, "Write class and score above each box."),
+    )
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._side = SideTopic(host, _TYPE, self._detected)
+        self._threshold = DetectorThreshold(host.context.node, partial(self.set_status_row, THRESHOLD))
+        self._images: deque[Any] = deque(maxlen=_MOST_IMAGES)
+        self._detected_at = float("-inf")
+
+    def schema(self) -> Schema:
+        """Return the properties of an image, and those of boxes."""
+        return (*super().schema(), *self.SCHEMA[len(ImageDisplay.SCHEMA) :])
+
+    def changed(self, path: Path) -> None:
+        """Subscribe to other detections, or apply another threshold."""
+        super().changed(path)
+        if path[0] == DETECTIONS:
+            self._threshold.close()
+            self.delete_status_row(THRESHOLD)
+            if self.enabled:
+                self._listen()
+        elif path[0] == THRESHOLD and self.enabled:
+            self._threshold.set(self.properties.text(DETECTIONS).strip(), self.properties.number(THRESHOLD))
+
+    def process_image(self, message: Any, pose: Pose | None) -> None:
+        """Show an image, or store it until its detections are received."""
+        if asyncio.get_running_loop().time() - self._detected_at < _PATIENCE:
+            self._images.append(message)
+            return
+        self._images.clear()
+        self.forget(_BOXES)
+        super().process_image(message, pose)
+
+    def time_changed(self) -> None:
+        """Show the messages that were received while time was paused."""
+        self._side.resume()
+        super().time_changed()
+
+    def reset(self) -> None:
+        """Forget image and boxes."""
+        self._images.clear()
+        self._detected_at = float("-inf")
+        super().reset()
+
+    def _subscribe(self) -> None:
+        super()._subscribe()
+        self._listen()
+
+    def _unsubscribe(self) -> None:
+        super()._unsubscribe()
+        self._side.close()
+        self._threshold.close()
+
+    def _listen(self) -> None:
+        topic = self.properties.text(DETECTIONS).strip()
+        problem = self._side.listen(topic, qos_of(self.properties, DETECTIONS)) if topic else phrase("Empty topic name")
+        if problem:
+            self.set_status_row(DETECTIONS, "error", problem)
+        else:
+            self.delete_status_row(DETECTIONS)
+
+    def _detected(self, message: Any) -> None:
+        self._detected_at = asyncio.get_running_loop().time()
+        _, stamp_ns = self.frame_of(message)
+        image = next((image for image in self._images if self.frame_of(image)[1] == stamp_ns), None)
+        content = _boxes(message, of_image=image is not None)
+        if content is None:
+            self.set_status_row(
+                DETECTIONS, "error", phrase("Message contained invalid floating point values (nans or infs)")
+            )
+            return
+        self.delete_status_row(DETECTIONS)
+        self.send(content, key=_BOXES, stamp_ns=stamp_ns)
+        if image is not None:
+            while self._images.popleft() is not image:
+                pass
+            super().process_image(image, None)
+
+
+def _boxes(message: Any, *, of_image: bool) -> PictureBoxes | None:
+    """Return the boxes, or None if a number is not finite."""
+    detections = list(message.detections)
+    results = [best_result(detection) for detection in detections]
+    middles = [detection.bbox.center for detection in detections]
+    boxes = np.array(
+        [
+            (middle.position.x, middle.position.y, found_object.bbox.size_x, found_object.bbox.size_y, middle.theta)
+            for middle, found_object in zip(middles, detections, strict=True)
+        ],
+        dtype=np.float32,
+    ).reshape(-1, 5)
+    if not np.isfinite(boxes).all():
+        return None
+    colors = np.array([class_color(name, {}) for name, _ in results], dtype=np.uint8).reshape(-1, 3)
+    scores = np.array([score for _, score in results], dtype=np.float32)
+    return PictureBoxes(boxes, colors, scores, [name for name, _ in results], of_image)

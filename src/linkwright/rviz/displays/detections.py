@@ -1,0 +1,188 @@
+"""Detection3D, Detection3DArray, BoundingBox3D and BoundingBox3DArray: boxes of vision_msgs in the scene."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import foreign
+from linkwright.page.protocol.detections import SolidBoxes
+from linkwright.page.protocol.message import DataContent
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import Path, PropertySpec, Schema, topic_spec
+from linkwright.rviz.displays.base.display import DisplayHost, Pose
+from linkwright.rviz.displays.base.topic_display import RecentDisplay
+from linkwright.rviz.displays.class_colors import Color, class_color, read_class_colors
+
+ONLY_EDGE, CONFIG_PATH, LIFETIME = "Only Edge", "ConfigPath", "Lifetime"
+
+_LOOK: Schema = (
+    PropertySpec(ONLY_EDGE, "bool", False, "Draw only the edges of the boxes."),
+    PropertySpec(
+        "Line Width",
+        "float",
+        0.05,
+        "Width of the edges, in metres.",
+        minimum=0.01,
+        maximum=0.1,
+        when=((ONLY_EDGE,), True),
+    ),
+    PropertySpec("Alpha", "float", 1.0, "Opacity of the boxes.", minimum=0.1, maximum=1.0),
+)
+_COLOUR = PropertySpec("Color", "color", "#ffff00", "Colour of the boxes.")
+CLASS_COLOURS = PropertySpec(
+    CONFIG_PATH, "string", "", "A YAML file with colours of classes, such as 'ball: {r: 255, g: 0, b: 0}'."
+)
+_CLASSES: Schema = (
+    PropertySpec("Show Score", "bool", False, "Write class and score above each box."),
+    CLASS_COLOURS,
+    PropertySpec(LIFETIME, "int", 0, "Seconds that a message is shown; 0 shows it until the next.", minimum=0),
+)
+
+
+class _BoxDisplay(RecentDisplay):
+    """The boxes of the last message."""
+
+    def _content(
+        self, boxes: Sequence[Any], colors: Sequence[Color], scores: Sequence[float], names: Sequence[str]
+    ) -> DataContent | None:
+        poses = np.array([_numbers(box.center) for box in boxes], dtype=np.float32).reshape(-1, 7)
+        sizes = np.array([(box.size.x, box.size.y, box.size.z) for box in boxes], dtype=np.float32).reshape(-1, 3)
+        if not self.is_finite(poses, sizes):
+            return None
+        marked = np.array(colors, dtype=np.uint8).reshape(-1, 3)
+        return SolidBoxes(poses, sizes, marked, np.array(scores, dtype=np.float32), list(names))
+
+
+def _numbers(pose: Any) -> tuple[float, ...]:
+    """Return x y z qx qy qz qw; a quaternion of zeros, the default of messages, means no rotation."""
+    position, turn = pose.position, pose.orientation
+    w = turn.w if any((turn.x, turn.y, turn.z, turn.w)) else 1.0
+    return (position.x, position.y, position.z, turn.x, turn.y, turn.z, w)
+
+
+class BoundingBox3DArrayDisplay(_BoxDisplay):
+    """Boxes of one colour."""
+
+    CLASS = "vision_msgs_rviz_plugins/BoundingBox3DArray"
+    MESSAGE = "vision_msgs/msg/BoundingBox3DArray"
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, _COLOUR)
+
+    def content(self, message: Any) -> DataContent | None:
+        """The boxes."""
+        boxes = self.boxes_of(message)
+        return self._content(boxes, [(255, 255, 255)] * len(boxes), [-1.0] * len(boxes), [""] * len(boxes))
+
+    def boxes_of(self, message: Any) -> Sequence[Any]:
+        """Return the BoundingBox3D of a message."""
+        return list(message.boxes)
+
+
+class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
+    """A box, in the Fixed Frame: its message has no header."""
+
+    CLASS = "vision_msgs_rviz_plugins/BoundingBox3D"
+    MESSAGE = "vision_msgs/msg/BoundingBox3D"
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, _COLOUR)
+
+    def frame_of(self, message: Any) -> tuple[str, int]:
+        """Return the Fixed Frame, at the latest time."""
+        return self.host.frames.fixed_frame, 0
+
+    def boxes_of(self, message: Any) -> Sequence[Any]:
+        """Return the one box."""
+        return [message]
+
+
+def best_result(detection: Any) -> tuple[str, float]:
+    """Return class and score of the likeliest hypothesis of a Detection2D or Detection3D, or no class and -1."""
+    best = max(
+        (result.hypothesis for result in detection.results), key=lambda hypothesis: hypothesis.score, default=None
+    )
+    return ("", -1.0) if best is None else (best.class_id, best.score)
+
+
+class Detection3DArrayDisplay(_BoxDisplay):
+    """Detections as boxes with the colours of their classes."""
+
+    CLASS = "vision_msgs_rviz_plugins/Detection3DArray"
+    MESSAGE = "vision_msgs/msg/Detection3DArray"
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, *_CLASSES)
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._table: dict[str, Color] = {}
+        self._end: asyncio.TimerHandle | None = None
+
+    def start(self) -> None:
+        """Read the colours, and subscribe."""
+        self._read_colors()
+        super().start()
+
+    def stop(self) -> None:
+        """Unsubscribe."""
+        self._cancel_end()
+        super().stop()
+
+    def changed(self, path: Path) -> None:
+        """Apply other colours or another lifetime."""
+        super().changed(path)
+        if path == (CONFIG_PATH,):
+            self._read_colors()
+        if path in ((CONFIG_PATH,), (LIFETIME,)):
+            self.show_again()
+
+    def process_message(self, message: Any, pose: Pose | None) -> None:
+        """Show the boxes for the time that the property sets."""
+        super().process_message(message, pose)
+        self._cancel_end()
+        seconds = int(self.properties.number(LIFETIME))
+        if seconds:
+            self._end = asyncio.get_running_loop().call_later(seconds, self.reset)
+
+    def reset(self) -> None:
+        """Forget the boxes."""
+        self._cancel_end()
+        super().reset()
+
+    def content(self, message: Any) -> DataContent | None:
+        """The boxes."""
+        detections = self.detections_of(message)
+        results = [best_result(detection) for detection in detections]
+        colors = [class_color(name, self._table) for name, _ in results]
+        boxes = [detection.bbox for detection in detections]
+        return self._content(boxes, colors, [score for _, score in results], [name for name, _ in results])
+
+    def detections_of(self, message: Any) -> Sequence[Any]:
+        """Return the Detection3D of a message."""
+        return list(message.detections)
+
+    def _read_colors(self) -> None:
+        path = self.properties.text(CONFIG_PATH).strip()
+        self._table = {}
+        self.delete_status_row(CONFIG_PATH)
+        if path:
+            try:
+                self._table = read_class_colors(path)
+            except ValueError as error:
+                self.set_status_row(CONFIG_PATH, "error", foreign(error))
+
+    def _cancel_end(self) -> None:
+        if self._end is not None:
+            self._end.cancel()
+            self._end = None
+
+
+class Detection3DDisplay(Detection3DArrayDisplay):
+    """A single detection."""
+
+    CLASS = "vision_msgs_rviz_plugins/Detection3D"
+    MESSAGE = "vision_msgs/msg/Detection3D"
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, *_CLASSES)
+
+    def detections_of(self, message: Any) -> Sequence[Any]:
+        """Return the one detection."""
+        return [message]

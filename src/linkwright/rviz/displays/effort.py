@@ -1,0 +1,191 @@
+"""rviz_default_plugins/Effort."""
+
+from __future__ import annotations
+
+import math
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.geometry.single import quaternion_multiply, rotation_from_z
+from linkwright.graph import DESCRIPTION_QOS, TransformException
+from linkwright.messages import String
+from linkwright.page.protocol.geometry import EffortRings
+from linkwright.page.protocol.message import DataContent
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import Path, PropertySpec, Schema, alpha, topic_spec
+from linkwright.rviz.displays.base.display import DisplayHost
+from linkwright.rviz.displays.base.topic_display import RecentDisplay
+from linkwright.rviz.robot import frame_of
+from linkwright.urdf import Joint
+
+_DESCRIPTION = "Robot Description"
+_PREFIX = "TF Prefix"
+_JOINTS = "Joints"
+_URDF = "URDF"
+_TURNING = ("revolute", "continuous")
+
+
+class EffortDisplay(RecentDisplay):
+    """The torques of revolute and continuous joints, as rings about their axes, larger the nearer to the limit.
+
+    RViz draws those of revolute joints only, and turned away from axes other than z.
+    """
+
+    CLASS = "rviz_default_plugins/Effort"
+    MESSAGE = "sensor_msgs/msg/JointState"
+    LENGTH = ("History Length",)
+    IN_FIXED_FRAME = True
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        alpha(),
+        PropertySpec("Width", "float", 0.02, "Width of the rings' lines, in metres."),
+        PropertySpec("Scale", "float", 1.0, "Width in metres of the ring of a joint at its effort limit."),
+        PropertySpec("History Length", "int", 1, "The number of messages that are shown.", minimum=1, maximum=100000),
+        PropertySpec(
+            _DESCRIPTION,
+            "string",
+            "/robot_description",
+            "The topic of the robot's description, std_msgs/msg/String.",
+        ),
+        PropertySpec(
+            _PREFIX,
+            "string",
+            "",
+            "The prefix of frame names: a link's frame is the prefix, a slash and the link's name.",
+        ),
+    )
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        self._joints: dict[str, Joint] | None = None
+        self._row: tuple[str, str] | None = None
+        self._descriptions: Any = None
+        super().__init__(host, identity, config)
+
+    def schema(self) -> Schema:
+        """Return the fixed properties, and a check box for each joint that has a limit."""
+        names = sorted(self._joints or ())
+        boxes = tuple(
+            PropertySpec(name, "bool", True, "Draw the ring of this joint.", nested=True, details="effort")
+            for name in names
+        )
+        return (
+            *self.SCHEMA,
+            PropertySpec(_JOINTS, "group", description="The revolute and continuous joints.", children=boxes),
+        )
+
+    def start(self) -> None:
+        """Subscribe to the robot's description too."""
+        super().start()
+        self._follow()
+
+    def stop(self) -> None:
+        """Unsubscribe."""
+        self._leave()
+        super().stop()
+
+    def changed(self, path: Path) -> None:
+        """Follow another description; drop the rings of another prefix."""
+        super().changed(path)
+        if path == (_DESCRIPTION,):
+            self._follow()
+        elif path == (_PREFIX,):
+            self.reset()
+            self.frames_changed()
+
+    def enabled_changed(self) -> None:
+        """Subscribe to the description only while the display is enabled."""
+        super().enabled_changed()
+        self._follow()
+
+    def frame_of(self, message: Any) -> tuple[str, int]:
+        """Return the frame of the first joint that is drawn: joint states have no frame."""
+        stamp = message.header.stamp
+        joint = next((self._joints[name] for name in message.name if self._joints and name in self._joints), None)
+        frame = self.host.frames.fixed_frame if joint is None else self._frame(joint)
+        return frame, stamp.sec * 1_000_000_000 + stamp.nanosec
+
+    def content(self, message: Any) -> DataContent | None:
+        """Return a ring for each joint whose frame can be placed."""
+        if self._joints is None:
+            self.refuse(phrase("Robot model might not be loaded yet"))
+            return None
+        if len(message.name) != len(message.effort):
+            self.refuse(phrase("Received a joint state msg with different joint names and efforts size!"))
+            return None
+        self.accept()
+        _, stamp_ns = self.frame_of(message)
+        rings = [
+            (joint, effort, pose)
+            for name, effort in zip(message.name, message.effort, strict=True)
+            if (joint := self._joints.get(name)) is not None
+            and (pose := self._ring_pose(joint, float(effort), stamp_ns)) is not None
+        ]
+        return EffortRings(
+            [joint.name for joint, _, _ in rings],
+            np.array([pose for _, _, pose in rings], dtype=np.float32).reshape(-1, 7),
+            np.array([effort for _, effort, _ in rings], dtype=np.float32),
+            np.array([joint.limit.effort if joint.limit else 0.0 for joint, _, _ in rings], dtype=np.float32),
+        )
+
+    def _ring_pose(self, joint: Joint, effort: float, stamp_ns: int) -> tuple[float, ...] | None:
+        if not math.isfinite(effort):
+            self.set_status_row(joint.name, "error", phrase("Invalid effort: {effort}", effort=effort))
+            return None
+        frame, fixed_frame = self._frame(joint), self.host.frames.fixed_frame
+        try:
+            pose = self.context.transforms.pose(fixed_frame, frame, stamp_ns)
+        except TransformException:
+            self.set_status_row(
+                joint.name,
+                "error",
+                phrase(
+                    "Error transforming from frame '{frame}' to frame '{fixed_frame}'",
+                    frame=frame,
+                    fixed_frame=fixed_frame,
+                ),
+            )
+            return None
+        self.set_status_row(joint.name, "ok", phrase("OK"))
+        x, y, z, *rotation = (float(part) for part in pose)
+        qx, qy, qz, qw = rotation
+        return (x, y, z, *quaternion_multiply((qx, qy, qz, qw), rotation_from_z(joint.axis)))
+
+    def _frame(self, joint: Joint) -> str:
+        return frame_of(joint.child, self.properties.text(_PREFIX))
+
+    # --- description -------------------------------------------------------------------------------------------
+
+    def _follow(self) -> None:
+        self._leave()
+        topic = self.properties.text(_DESCRIPTION).strip()
+        if not self.enabled or not topic:
+            return
+        try:
+            self._descriptions = self.context.node.create_subscription(String, topic, self._described, DESCRIPTION_QOS)
+        except LinkwrightError as error:
+            self.set_status_row(
+                _URDF, "error", phrase("Error subscribing: {message}", message=error.diagnostics[0].message)
+            )
+
+    def _leave(self) -> None:
+        if self._descriptions is not None:
+            with suppress(ValueError):  # the node may have been destroyed before
+                self.context.node.destroy_subscription(self._descriptions)
+            self._descriptions = None
+
+    def _described(self, message: String) -> None:
+        robot = self.context.library.read(message.data).robot
+        if robot is None:
+            self.set_status_row(_URDF, "error", phrase("Unable to parse robot model description!"))
+            return
+        self.set_status_row(_URDF, "ok", phrase("Robot model parsed Ok"))
+        known = self._joints
+        self._joints = {
+            joint.name: joint for joint in robot.joints.values() if joint.type in _TURNING and joint.limit is not None
+        }
+        if known is None or known.keys() != self._joints.keys():
+            self.publish_properties()
+        self.show_again()

@@ -1,0 +1,189 @@
+"""Axes and Grid, which are placed in a frame; GridCells, PointStamped, Polygon and Range, which draw messages."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.page.protocol.displays import StatusLevel
+from linkwright.page.protocol.geometry import PointMarks, PolygonLine, RangeCone
+from linkwright.page.protocol.message import DataContent
+from linkwright.page.protocol.points import CellGrid
+from linkwright.rviz.config.schema import (
+    FIXED_FRAME,
+    Path,
+    PropertySpec,
+    alpha,
+    line_style,
+    line_width,
+    topic_spec,
+    vector,
+)
+from linkwright.rviz.displays.base.display import Pose, ViewerDisplay
+from linkwright.rviz.displays.base.topic_display import TOPIC, RecentDisplay, TopicDisplay
+from linkwright.rviz.frames.stream import transform_status
+
+_FRAME = "Reference Frame"
+
+
+class AxesDisplay(ViewerDisplay):
+    """The axes of a frame: x red, y green, z blue."""
+
+    CLASS = "rviz_default_plugins/Axes"
+    SCHEMA = (
+        PropertySpec(_FRAME, "frame", FIXED_FRAME, "The frame whose axes are drawn."),
+        PropertySpec("Length", "float", 1.0, "Length of each axis, in metres.", minimum=0.0001),
+        PropertySpec("Radius", "float", 0.1, "Radius of each axis, in metres.", minimum=0.0001),
+    )
+
+    def start(self) -> None:
+        """Show in the status whether the frame can be placed."""
+        self.frames_changed()
+
+    def changed(self, path: Path) -> None:
+        """Update the status for another frame."""
+        if path == (_FRAME,):
+            self.frames_changed()
+
+    def frames_changed(self) -> None:
+        """Show in the status whether the frame can be placed."""
+        self.set_status([transform_status(self.host.frames, self.properties.text(_FRAME))])
+
+
+class GridDisplay(ViewerDisplay):
+    """A grid in a plane of a frame."""
+
+    CLASS = "rviz_default_plugins/Grid"
+    SCHEMA = (
+        PropertySpec("Reference Frame", "frame", FIXED_FRAME, "The frame whose origin is the centre of the grid."),
+        PropertySpec("Plane Cell Count", "int", 10, "Cells along each side of the grid.", minimum=1, maximum=1000),
+        PropertySpec(
+            "Normal Cell Count",
+            "int",
+            0,
+            "Layers of cells along the normal of the plane; more than 0 makes a lattice.",
+            minimum=0,
+            maximum=100,
+        ),
+        PropertySpec("Cell Size", "float", 1.0, "Side of a cell, in metres.", minimum=0.0001),
+        line_style(line_width()),
+        PropertySpec("Color", "color", "#a0a0a4", "Colour of the lines."),
+        alpha("Opacity of the lines: 0 is invisible.", 0.5),
+        PropertySpec("Plane", "enum", "XY", "The plane of the grid.", options=("XY", "XZ", "YZ")),
+        vector("Offset", "The centre of the grid in the reference frame, in metres."),
+    )
+
+    def start(self) -> None:
+        """Show in the status whether the reference frame can be placed."""
+        self.frames_changed()
+
+    def changed(self, path: Path) -> None:
+        """Update the status for another reference frame."""
+        if path == ("Reference Frame",):
+            self.frames_changed()
+
+    def frames_changed(self) -> None:
+        """Show in the status whether the reference frame can be placed."""
+        self.set_status([transform_status(self.host.frames, self.properties.text("Reference Frame"))])
+
+
+class GridCellsDisplay(TopicDisplay):
+    """Flat cells of one size."""
+
+    CLASS = "rviz_default_plugins/GridCells"
+    MESSAGE = "nav_msgs/msg/GridCells"
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        PropertySpec("Color", "color", "#19ff00", "Colour of the cells."),
+        alpha("Opacity of the cells: 0 is invisible."),
+    )
+
+    def process_message(self, message: Any, pose: Pose | None) -> None:
+        """Show the cells."""
+        cells = [coordinate for cell in message.cells for coordinate in (cell.x, cell.y, cell.z)]
+        positions = np.array(cells, dtype=np.float64).reshape(-1, 3)
+        sides = (message.cell_width, message.cell_height)
+        if not (np.isfinite(positions).all() and all(map(math.isfinite, sides))):
+            self._refuse("error", phrase("Message contained invalid floating point values (nans or infs)"))
+        elif 0.0 in sides:
+            self._refuse("error", phrase("One of the Cell's dimension is zero, cells will be invisible."))
+        elif not cells:
+            self._refuse("warn", phrase("Message is empty: there are no cells to be shown."))
+        else:
+            content = CellGrid(positions.astype(np.float32), float(sides[0]), float(sides[1]))
+            self.send(content, pose=pose, stamp_ns=self.frame_of(message)[1])
+
+    def _refuse(self, level: StatusLevel, text: Phrase) -> None:
+        """Remove the earlier cells, too, and show the reason in the row of the topic, as RViz does."""
+        self.forget()
+        self.set_status_row(TOPIC, level, text)
+
+
+class PointStampedDisplay(RecentDisplay):
+    """The last points of a topic, as spheres that stay where they were in the Fixed Frame."""
+
+    CLASS = "rviz_default_plugins/PointStamped"
+    MESSAGE = "geometry_msgs/msg/PointStamped"
+    LENGTH = ("History Length",)
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        PropertySpec("Color", "color", "#cc29cc", "The colour of the points."),
+        PropertySpec("Alpha", "float", 1.0, "Opacity: 0 is invisible.", minimum=0.0, maximum=1.0),
+        PropertySpec("Radius", "float", 0.2, "Radius of a point, in metres."),
+        PropertySpec("History Length", "int", 1, "The number of points that are shown.", minimum=1, maximum=100000),
+    )
+
+    def content(self, message: Any) -> DataContent | None:
+        """The point."""
+        point = np.array([[message.point.x, message.point.y, message.point.z]], dtype=np.float32)
+        return PointMarks(point) if self.is_finite(point[0]) else None
+
+
+class PolygonDisplay(RecentDisplay):
+    """The last polygon of a topic, as a closed line."""
+
+    CLASS = "rviz_default_plugins/Polygon"
+    MESSAGE = "geometry_msgs/msg/PolygonStamped"
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        PropertySpec("Color", "color", "#19ff00", "Colour of the line."),
+        alpha("Opacity of the line."),
+    )
+
+    def content(self, message: Any) -> DataContent | None:
+        """The corners."""
+        corners = [(point.x, point.y, point.z) for point in message.polygon.points]
+        points = np.array(corners, dtype=np.float32).reshape(-1, 3)
+        return PolygonLine(points) if self.is_finite(points) else None
+
+
+class RangeDisplay(RecentDisplay):
+    """The last measurements of a range sensor, each as a cone of its field of view."""
+
+    CLASS = "rviz_default_plugins/Range"
+    MESSAGE = "sensor_msgs/msg/Range"
+    LENGTH = ("Buffer Length",)
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        PropertySpec("Color", "color", "#ffffff", "Colour of the cones."),
+        alpha("Opacity of the cones.", 0.5),
+        PropertySpec("Buffer Length", "int", 1, "The number of measurements that are shown.", minimum=1),
+    )
+
+    def content(self, message: Any) -> DataContent | None:
+        """Return a cone, of length zero if the measurement is not valid."""
+        angle = float(message.field_of_view)
+        return RangeCone(_cone_length(message), angle if math.isfinite(angle) else 0.0)
+
+
+def _cone_length(message: Any) -> float:
+    """Return the length of the cone by RViz's rule, which is that of REP 117 for sensors with a fixed distance."""
+    measured, least, most = float(message.range), float(message.min_range), float(message.max_range)
+    if least <= measured <= most and math.isfinite(measured):
+        return measured
+    if least == most and measured == -math.inf:
+        return least
+    return 0.0

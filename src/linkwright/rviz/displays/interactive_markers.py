@@ -1,0 +1,262 @@
+"""rviz_default_plugins/InteractiveMarkers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
+from linkwright.geometry.single import Transform
+from linkwright.graph import TransformException
+from linkwright.messages import get_message
+from linkwright.page.files import MeshIndex
+from linkwright.page.protocol.displays import StatusLevel
+from linkwright.page.protocol.markers import InteractiveMarkerMoved, MarkerFeedback
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import Path, PropertySpec
+from linkwright.rviz.displays.base.display import DataDisplay, DisplayHost, Pose
+from linkwright.rviz.markers import BadMarkerError
+from linkwright.rviz.markers.interactive import ClientEvents, InteractiveMarkerClient, read_interactive_marker
+from linkwright.rviz.markers.shapes import pose_of
+
+_NAMESPACE = "Interactive Markers Namespace"
+_TRANSPARENCY = "Enable Transparency"
+_CLIENT = "Interactive Marker Client"
+
+_EVENTS = {"pose_update": 1, "menu_select": 2, "button_click": 3, "mouse_down": 4, "mouse_up": 5}
+
+
+class InteractiveMarkersDisplay(DataDisplay):
+    """The markers of an interactive marker server; the user's actions on them are sent to the server."""
+
+    CLASS = "rviz_default_plugins/InteractiveMarkers"
+    MESSAGE = "visualization_msgs/msg/InteractiveMarkerUpdate"
+    TOPIC = (_NAMESPACE,)
+    SCHEMA = (
+        PropertySpec(_NAMESPACE, "string", "", "The namespace of the interactive marker server."),
+        PropertySpec("Show Descriptions", "bool", True, "Show the description above each marker."),
+        PropertySpec("Show Axes", "bool", False, "Show the axes of each marker."),
+        PropertySpec("Show Visual Aids", "bool", False, "Show the axis along or about which a marker moves."),
+        PropertySpec(_TRANSPARENCY, "bool", True, "Whether the default arrows and rings are transparent."),
+    )
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._client: InteractiveMarkerClient | None = None
+        self._release: Any = None
+        self._markers: dict[str, Any] = {}
+        self._poses: dict[str, list[float]] = {}
+        self._unplaced: set[str] = set()
+        self._held: list[Callable[[], None]] = []
+        self._index = MeshIndex(host.context.finder)
+
+    @classmethod
+    def topic_value(cls, topic: str) -> str:
+        """Return the namespace of the server whose updates a topic carries."""
+        return topic.rpartition("/")[0]
+
+    # --- life --------------------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Connect, if the display is enabled."""
+        if self.enabled:
+            self._connect()
+
+    def stop(self) -> None:
+        """Disconnect, and withdraw the files that its markers named from pages."""
+        self._disconnect()
+        self.context.meshes.replace(self.id, {})
+
+    def changed(self, path: Path) -> None:
+        """Connect to another server, or rebuild its markers."""
+        if path in ((_NAMESPACE,), (_TRANSPARENCY,)):
+            self.reset()
+
+    def enabled_changed(self) -> None:
+        """Connect or disconnect."""
+        self.reset()
+
+    def reset(self) -> None:
+        """Start over."""
+        self._disconnect()
+        if self.enabled:
+            self._connect()
+
+    def frames_changed(self) -> None:
+        """Place the markers in the other Fixed Frame."""
+        for name in list(self._markers):
+            self._show(name)
+
+    def time_changed(self) -> None:
+        """Show the server's messages that were received while time was paused."""
+        if not self.host.time.paused:
+            held, self._held = self._held, []
+            for handle in held:
+                handle()
+
+    def receive(self, message: Any) -> None:
+        """Send the user's action on a marker to the server."""
+        if not isinstance(message, MarkerFeedback) or self._client is None:
+            return
+        marker = self._markers.get(message.marker)
+        if marker is None or len(message.pose) != 7:
+            return
+        if message.event == "pose_update":
+            self._poses[message.marker] = message.pose
+        feedback = get_message("visualization_msgs/msg/InteractiveMarkerFeedback")()
+        feedback.header = marker.header
+        feedback.client_id = self.context.node.get_fully_qualified_name() + "/" + self.id
+        feedback.marker_name = message.marker
+        feedback.control_name = message.control
+        feedback.event_type = _EVENTS[message.event]
+        feedback.menu_entry_id = max(0, min(message.menu_entry, 2**32 - 1))
+        _set_pose(feedback.pose, message.pose)
+        feedback.mouse_point_valid = len(message.mouse_point) == 3
+        if feedback.mouse_point_valid:
+            feedback.mouse_point.x, feedback.mouse_point.y, feedback.mouse_point.z = message.mouse_point
+        self._client.publish(feedback)
+
+    def _connect(self) -> None:
+        namespace = self.properties.text(_NAMESPACE).strip()
+        if not namespace:
+            self.set_status_row(_CLIENT, "error", phrase("Error connecting: empty namespace"))
+            return
+        self._release = self.context.transforms.use(self._transforms_came)
+        events = ClientEvents(
+            lambda markers: self._soon(partial(self._apply_all, markers)),
+            lambda update: self._soon(partial(self._apply_update, update)),
+            self._clear,
+            self._client_status,
+        )
+        try:
+            self._client = InteractiveMarkerClient(self.context.node, namespace, events)
+        except LinkwrightError as error:
+            self.set_status_row(
+                _CLIENT, "error", phrase("Error connecting: {message}", message=error.diagnostics[0].message)
+            )
+
+    def _disconnect(self) -> None:
+        if self._client is not None:
+            self._client.close()
+            self._client = None
+        if self._release is not None:
+            self._release()
+            self._release = None
+        self._clear()
+        self.delete_status_row()
+
+    # --- from the server ---------------------------------------------------------------------------------------
+
+    def _client_status(self, level: StatusLevel, text: Phrase) -> None:
+        self.set_status_row(_CLIENT, level, text)
+
+    def _soon(self, handle: Callable[[], None]) -> None:
+        """Handle an update of the server, or hold it back while time is paused."""
+        if self.host.time.paused:
+            self._held.append(handle)
+        else:
+            handle()
+
+    def _clear(self) -> None:
+        self._held.clear()
+        for name in self._markers:
+            self.delete_status_row(name)
+        self._markers.clear()
+        self._poses.clear()
+        self._unplaced.clear()
+        self.forget()
+
+    def _apply_all(self, markers: list[Any]) -> None:
+        self._clear()
+        for marker in markers:
+            self._apply_marker(marker)
+
+    def _apply_update(self, update: Any) -> None:
+        for marker in update.markers:
+            self._apply_marker(marker)
+        for moved in update.poses:
+            self._move(moved)
+        for name in update.erases:
+            self._erase(name)
+
+    def _apply_marker(self, marker: Any) -> None:
+        self._markers[marker.name] = marker
+        self._poses[marker.name] = pose_of(marker.pose)
+        self._data.pop(f"pose {marker.name}", None)
+        self._show(marker.name)
+
+    def _move(self, moved: Any) -> None:
+        marker = self._markers.get(moved.name)
+        if marker is None:
+            self.set_status_row(
+                moved.name, "error", phrase("Pose received for non-existing marker '{name}'", name=moved.name)
+            )
+            return
+        pose = pose_of(moved.pose)
+        self._poses[moved.name] = pose
+        same_frame = moved.header.frame_id in ("", marker.header.frame_id) and _is_latest(moved) == _is_latest(marker)
+        if moved.header.frame_id:
+            marker.header = moved.header
+        if not same_frame or not _is_latest(marker):
+            self._show(moved.name)  # its frame has moved
+        elif moved.name not in self._unplaced:
+            content = InteractiveMarkerMoved(moved.name, pose)
+            self.send(content, key=f"pose {moved.name}", frame=marker.header.frame_id.removeprefix("/"))
+
+    def _erase(self, name: str) -> None:
+        self._markers.pop(name, None)
+        self._poses.pop(name, None)
+        self._unplaced.discard(name)
+        self._data.pop(f"pose {name}", None)
+        self.forget(f"marker {name}")
+        self.delete_status_row(name)
+
+    # --- to pages ----------------------------------------------------------------------------------------------
+
+    def _show(self, name: str) -> None:
+        marker = self._markers[name]
+        frame = marker.header.frame_id.removeprefix("/")
+        try:
+            at = self._frame_pose(marker, frame)
+            shape = read_interactive_marker(
+                marker, self._index, self._relative, transparent=self.properties.flag(_TRANSPARENCY)
+            )
+        except TransformException as error:
+            self._unplaced.add(name)
+            self.set_status_row(name, "error", error.diagnostics[0].message)
+            self.forget(f"marker {name}")
+            return
+        except BadMarkerError as error:
+            self.set_status_row(name, "error", foreign(error))
+            self.forget(f"marker {name}")
+            return
+        self._unplaced.discard(name)
+        self.delete_status_row(name)
+        shape.pose = self._poses[name]
+        self.context.meshes.replace(self.id, self._index.folders)
+        self.send(shape, key=f"marker {name}", frame=frame, pose=at)
+
+    def _frame_pose(self, marker: Any, frame: str) -> Pose | None:
+        """Return the pose of the marker's frame at its time; None for a marker without a time."""
+        fixed_frame = self.host.frames.fixed_frame
+        stamp = marker.header.stamp
+        pose = self.context.transforms.pose(fixed_frame, frame, stamp.sec * 1_000_000_000 + stamp.nanosec)
+        return None if _is_latest(marker) else pose
+
+    def _relative(self, reference: str, frame: str) -> Transform:
+        x, y, z, qx, qy, qz, qw = self.context.transforms.pose(reference, frame, 0).tolist()
+        return x, y, z, qx, qy, qz, qw
+
+    def _transforms_came(self) -> None:
+        for name in list(self._unplaced):
+            self._show(name)
+
+
+def _is_latest(message: Any) -> bool:
+    return bool(message.header.stamp.sec == 0 and message.header.stamp.nanosec == 0)
+
+
+def _set_pose(message: Any, pose: list[float]) -> None:
+    position, orientation = message.position, message.orientation
+    position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, orientation.w = pose

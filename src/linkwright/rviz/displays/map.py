@@ -1,0 +1,270 @@
+"""rviz_default_plugins/Map."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.page.protocol.displays import PropertyChanged
+from linkwright.page.protocol.images import OccupancyMap
+from linkwright.rviz.config.property_store import qos_of
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import Path, PropertySpec, Schema, alpha, topic_spec
+from linkwright.rviz.displays.base.display import DisplayHost, Pose
+from linkwright.rviz.displays.base.topic_display import TOPIC, TRANSFORM, SideTopic, TopicDisplay
+
+_UPDATE_PERIOD = 0.1
+"""Seconds between two maps that pages receive because of updates."""
+
+_UPDATE_TOPIC = "Update Topic"
+_USE_TIMESTAMP = "Use Timestamp"
+_BINARY = "Binary representation"
+
+
+def _read_only_vector(name: str, axes: str, description: str) -> PropertySpec:
+    rest = tuple(PropertySpec(axis, "float", 1.0 if axis == "W" else 0.0, read_only=True) for axis in axes)
+    return PropertySpec(name, "group", description=description, children=rest)
+
+
+_SCHEMA: Schema = (
+    topic_spec(description="nav_msgs/msg/OccupancyGrid", filter_size=10),
+    topic_spec(
+        _UPDATE_TOPIC,
+        description="map_msgs/msg/OccupancyGridUpdate: the topic with updates of parts of the map; without one, the "
+        "map's topic with '_updates' behind it.",
+        messages=("map_msgs/msg/OccupancyGridUpdate",),
+    ),
+    alpha("Opacity of the map: 0 is invisible.", 0.7),
+    PropertySpec(
+        "Color Scheme", "enum", "map", "The colours for the values of the cells.", options=("map", "costmap", "raw")
+    ),
+    PropertySpec("Draw Behind", "bool", False, "Draw the map behind everything else, wherever it is."),
+    PropertySpec("Resolution", "float", 0.0, "Side of a cell, in metres.", read_only=True),
+    PropertySpec("Width", "int", 0, "Cells along x.", read_only=True),
+    PropertySpec("Height", "int", 0, "Cells along y.", read_only=True),
+    _read_only_vector("Position", "XYZ", "The position of the lower left corner in the map's frame, in metres."),
+    _read_only_vector("Orientation", "XYZW", "The rotation of the map in its frame."),
+    PropertySpec(
+        _USE_TIMESTAMP, "bool", False, "Place the map at its frame's pose at the map's time, not at the current one."
+    ),
+    PropertySpec(_BINARY, "bool", False, "Show only free and occupied cells."),
+    PropertySpec(
+        "Binary threshold",
+        "int",
+        100,
+        "The least value that counts as occupied.",
+        minimum=0,
+        maximum=100,
+    ),
+)
+
+
+class MapDisplay(TopicDisplay):
+    """An occupancy grid, with updates of parts of it.
+
+    It follows its frame, or with the timestamp stays at its frame's pose at the map's time.
+    """
+
+    CLASS = "rviz_default_plugins/Map"
+    MESSAGE = "nav_msgs/msg/OccupancyGrid"
+    SCHEMA = _SCHEMA
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._updates = SideTopic(host, "map_msgs/msg/OccupancyGridUpdate", self._updated)
+        self._map: Any = None
+        self._cells: NDArray[np.uint8] = np.empty((0, 0), np.uint8)
+        self._is_own = False  # otherwise the cells are the message's, which other displays share
+        self._pose: Pose | None = None
+        self._sent_at = 0.0
+        self._sending: asyncio.TimerHandle | None = None
+        self._follow_topic(file_too=False)
+
+    def frame_of(self, message: Any) -> tuple[str, int]:
+        """Return the map's frame, by default ``map``, and its time, the latest one unless the timestamp is used."""
+        frame, stamp_ns = super().frame_of(message)
+        return frame or "map", stamp_ns if self.properties.flag(_USE_TIMESTAMP) else 0
+
+    def process_message(self, message: Any, pose: Pose | None) -> None:
+        """Show a map; one that was updated meanwhile stays."""
+        self._pose = pose
+        if message is not self._map and not self._load(message):
+            return
+        self._send()
+
+    def changed(self, path: Path) -> None:
+        """Follow another topic, other updates, or the timestamp."""
+        if path == (TOPIC,):
+            self._follow_topic(file_too=True)
+            self.pages.publish(PropertyChanged(self.property_id((_UPDATE_TOPIC,)), self.properties.text(_UPDATE_TOPIC)))
+        super().changed(path)
+        if path[0] == _UPDATE_TOPIC:
+            self._restart()
+        elif path == (_USE_TIMESTAMP,):
+            self.show_again()
+
+    def recalled(self) -> None:
+        """Take updates from the topic beside the map's if the file does not name another."""
+        super().recalled()
+        self._follow_topic(file_too=False)
+
+    def frames_changed(self) -> None:
+        """Show in the status whether the map can be placed now."""
+        super().frames_changed()
+        if self._map is None or self.properties.flag(_USE_TIMESTAMP):
+            return
+        frame = self.frame_of(self._map)[0].removeprefix("/")
+        problem = self.host.frames.problem(frame)
+        self.set_status_row(TRANSFORM, "error" if problem else "ok", problem or phrase("Transform OK"))
+
+    def time_changed(self) -> None:
+        """Show the map and the updates that were received while time was paused."""
+        super().time_changed()
+        self._updates.resume()
+
+    def reset(self) -> None:
+        """Draw nothing; forget the map of a former topic."""
+        if self._sending is not None:
+            self._sending.cancel()
+            self._sending = None
+        if self.last is None:
+            self._map = None
+        super().reset()
+
+    def stop(self) -> None:
+        """Stop listening."""
+        super().stop()
+        if self._sending is not None:
+            self._sending.cancel()
+            self._sending = None
+
+    def _follow_topic(self, *, file_too: bool) -> None:
+        """Take updates from the topic beside the map's, as RViz does; a file without an update topic gets none."""
+        topic = self.properties.text(TOPIC).strip()
+        updates = f"{topic}_updates" if topic else ""
+        if self.config.section.text(_UPDATE_TOPIC) is None:
+            self.properties.set_read_only((_UPDATE_TOPIC,), updates)
+        elif file_too:
+            self.properties.set((_UPDATE_TOPIC,), updates)
+
+    def _subscribe(self) -> None:
+        super()._subscribe()
+        topic = self.properties.text(TOPIC).strip()
+        if not topic:
+            return
+        self.set_status_row("Message", "warn", phrase("No map received"))
+        updates = self.properties.text(_UPDATE_TOPIC).strip() or f"{topic}_updates"
+        problem = self._updates.listen(updates, qos_of(self.properties, _UPDATE_TOPIC))
+        self.set_status_row("Update Topic", "error" if problem else "ok", problem or phrase("OK"))
+
+    def _unsubscribe(self) -> None:
+        super()._unsubscribe()
+        self._updates.close()
+
+    # --- maps --------------------------------------------------------------------------------------------------
+
+    def _load(self, message: Any) -> bool:
+        info = message.info
+        cells = np.frombuffer(message.data, np.uint8)
+        origin = _pose_of(info.origin)
+        if not np.isfinite([info.resolution, *origin]).all():
+            self.set_status_row(
+                "Map", "error", phrase("Message contained invalid floating point values (nans or infs)")
+            )
+        elif info.width * info.height == 0:
+            self.set_status_row(
+                "Map", "error", phrase("Map is zero-sized ({width}x{height})", width=info.width, height=info.height)
+            )
+        elif info.width * info.height != cells.size:
+            self.set_status_row("Map", "error", _size_mismatch(info, cells))
+        else:
+            self._map = message
+            self._cells, self._is_own = cells.reshape(info.height, info.width), False
+            self.set_status_row("Message", "ok", phrase("Map received"))
+            self.set_status_row("Map", "ok", phrase("Map OK"))
+            self._publish_readings(message)
+            return True
+        return False
+
+    def _publish_readings(self, message: Any) -> None:
+        for path, value in _readings(message.info):
+            if self.properties.set_read_only(path, value):
+                self.pages.publish(PropertyChanged(self.property_id(path), value))
+
+    def _updated(self, update: Any) -> None:
+        if self._map is None:
+            return
+        info = self._map.info
+        part = np.frombuffer(update.data, np.uint8)
+        right, top = update.x + update.width, update.y + update.height
+        if update.x < 0 or update.y < 0 or right > info.width or top > info.height:
+            self.set_status_row("Update", "error", phrase("Update area outside of original map area."))
+            return
+        if part.size != update.width * update.height:
+            self.set_status_row("Update", "error", _size_mismatch(update, part))
+            return
+        if not self._is_own:
+            self._cells, self._is_own = self._cells.copy(), True
+        self._cells[update.y : top, update.x : right] = part.reshape(update.height, update.width)
+        self.set_status_row("Update", "ok", phrase("Update OK"))
+        self._send_soon()
+
+    def _send_soon(self) -> None:
+        """Send the map after a short wait, so that many updates give one map."""
+        if self._sending is None:
+            wait = max(0.0, self._sent_at + _UPDATE_PERIOD - time.monotonic())
+            self._sending = asyncio.get_running_loop().call_later(wait, self._send_updated)
+
+    def _send_updated(self) -> None:
+        self._sending = None
+        self._send()
+
+    def _send(self) -> None:
+        info = self._map.info
+        frame, stamp_ns = self.frame_of(self._map)
+        timed = self.properties.flag(_USE_TIMESTAMP)
+        content = OccupancyMap(
+            width=info.width,
+            height=info.height,
+            resolution=float(info.resolution),
+            origin=_pose_of(info.origin),
+            cells=self._cells,
+        )
+        self._sent_at = time.monotonic()
+        self.send(content, frame=frame.removeprefix("/"), pose=self._pose if timed else None, stamp_ns=stamp_ns)
+
+
+def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
+    """Return the text for a size, in a MapMetaData or an update, that does not match the number of cells."""
+    return phrase(
+        "Data size doesn't match width*height: width = {width}, height = {height}, data size = {size}",
+        width=grid.width,
+        height=grid.height,
+        size=cells.size,
+    )
+
+
+def _pose_of(origin: Any) -> list[float]:
+    """Return the pose as x y z qx qy qz qw; a quaternion of zeros means no rotation."""
+    p, q = origin.position, origin.orientation
+    turn = [q.x, q.y, q.z, q.w]
+    return [p.x, p.y, p.z, *(turn if any(turn) else [0.0, 0.0, 0.0, 1.0])]
+
+
+def _readings(info: Any) -> Iterator[tuple[Path, float | int]]:
+    """Return the values of the read-only properties, from a nav_msgs/msg/MapMetaData."""
+    yield ("Resolution",), float(info.resolution)
+    yield ("Width",), info.width
+    yield ("Height",), info.height
+    for name, part, axes in (
+        ("Position", info.origin.position, "xyz"),
+        ("Orientation", info.origin.orientation, "xyzw"),
+    ):
+        for axis in axes:
+            yield (name, axis.upper()), float(getattr(part, axis))

@@ -1,0 +1,298 @@
+"""rviz_default_plugins/Marker and rviz_default_plugins/MarkerArray, and displays that consist of markers."""
+
+from __future__ import annotations
+
+import asyncio
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from typing import Any
+
+from linkwright.diagnostics import foreign, phrase
+from linkwright.geometry.single import Transform
+from linkwright.graph import TransformException
+from linkwright.page.files import MeshIndex
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import Path, PropertySpec, Schema, topic_spec
+from linkwright.rviz.displays.base.display import DisplayHost, Pose
+from linkwright.rviz.displays.base.stored_markers import StoredMarkersDisplay
+from linkwright.rviz.displays.base.topic_display import TOPIC
+from linkwright.rviz.markers import BadMarkerError, MarkerReading, read_marker
+from linkwright.rviz.markers.shapes import ADD, DELETE, DELETE_ALL, marker_id, placed_in
+
+_NAMESPACES = "Namespaces"
+_SHORTEST_LIFE_NS = 100_000
+"""A lifetime up to this means no lifetime, as in RViz."""
+
+_EXPIRY_PERIOD = 0.1
+"""Seconds between checks for expired markers, while any have a lifetime."""
+
+_DUPLICATES = "Duplicate Marker Check"
+
+
+class _Marker:
+    """A marker as it was received, and its expiry (nanoseconds of the node's clock)."""
+
+    def __init__(self, reading: MarkerReading, message: Any, expires_ns: int | None) -> None:
+        self.reading = reading
+        self.frame: str = message.header.frame_id.removeprefix("/")
+        self.stamp_ns: int = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+        self.locked: bool = message.frame_locked
+        self.expires_ns = expires_ns
+
+
+class MarkerDisplay(StoredMarkersDisplay):
+    """Markers of one topic.
+
+    A marker whose frame cannot be placed yet appears as soon as it can; of the waiting ones, the last
+    ``Filter size`` are kept.
+    """
+
+    CLASS = "rviz_default_plugins/Marker"
+    MESSAGE = "visualization_msgs/msg/Marker"
+    SCHEMA = (topic_spec(default="visualization_marker", description="visualization_msgs/msg/Marker", filter_size=10),)
+    FOLLOWS_TRANSFORMS = True
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        self._namespaces: list[str] = []
+        super().__init__(host, identity, config)
+        self._markers: dict[str, _Marker] = {}
+        self._unplaced: set[str] = set()
+        self._arriving: dict[str, None] = {}  # those that could not be placed yet, oldest first
+        self._frame_poses: dict[tuple[str, int], Transform] = {}  # computed once: an array has thousands of a kind
+        self._expiry: asyncio.TimerHandle | None = None
+        self._clock = host.context.node.get_clock()
+
+    def schema(self) -> Schema:
+        """Return the topic, and a check box for each namespace seen."""
+        boxes = tuple(
+            PropertySpec(name, "bool", True, "Show the markers of this namespace.") for name in self._namespaces
+        )
+        return (
+            *self.SCHEMA,
+            PropertySpec(_NAMESPACES, "bool", True, "Set the boxes of all namespaces.", children=boxes),
+        )
+
+    def process_message(self, message: Any, pose: Pose | None) -> None:
+        """Apply the action of a marker."""
+        self._do(message)
+        while len(self._arriving) > self.most_waiting():
+            self._remove(next(iter(self._arriving)))
+        self._show()
+
+    def changed(self, path: Path) -> None:
+        """Follow the check box over all namespaces."""
+        super().changed(path)
+        if path == (_NAMESPACES,):
+            value = self.properties.flag(_NAMESPACES)
+            for name in self._namespaces:
+                self.properties.set((_NAMESPACES, name), value)
+            self.publish_properties()
+
+    def reset(self) -> None:
+        """Forget the markers."""
+        self._markers.clear()
+        self._unplaced.clear()
+        self._arriving.clear()
+        self._store.clear()
+        self._meshes = MeshIndex(self.context.finder)
+        self._show()
+
+    def stop(self) -> None:
+        """Stop listening, and withdraw the files that markers named from pages."""
+        super().stop()
+        if self._expiry is not None:
+            self._expiry.cancel()
+            self._expiry = None
+
+    def frames_changed(self) -> None:
+        """Place the markers in the other Fixed Frame."""
+        if self.fixed_frame_changed():
+            for identity, marker in self._markers.items():
+                self._place_marker(identity, marker)
+            self._show()
+
+    def transforms_came(self) -> None:
+        """Place the markers that had no transform before."""
+        if self._unplaced:
+            for identity in list(self._unplaced):
+                self._place_marker(identity, self._markers[identity])
+            self._show()
+
+    # --- actions -----------------------------------------------------------------------------------------------
+
+    def _do(self, message: Any) -> None:
+        if message.action == ADD:
+            self._add(message)
+        elif message.action == DELETE:
+            self._remove(marker_id(message))
+        elif message.action == DELETE_ALL:
+            for identity in [
+                each for each, marker in self._markers.items() if message.ns in ("", marker.reading.shape.namespace)
+            ]:
+                self._remove(identity)
+        else:
+            self.set_status_row(
+                marker_id(message), "error", phrase("Unknown marker action: {action}", action=message.action)
+            )
+
+    def _add(self, message: Any) -> None:
+        identity = marker_id(message)
+        try:
+            reading = read_marker(message, self._meshes)
+        except BadMarkerError as error:
+            self._remove(identity)
+            self.set_status_row(identity, "error", foreign(error))
+            return
+        if message.ns not in self._namespaces:
+            self._namespaces = sorted([*self._namespaces, message.ns])
+            self.publish_properties()
+        life_ns = message.lifetime.sec * 1_000_000_000 + message.lifetime.nanosec
+        expires_ns = self._clock.now_ns() + life_ns if life_ns > _SHORTEST_LIFE_NS else None
+        self._markers[identity] = marker = _Marker(reading, message, expires_ns)
+        if expires_ns is not None:
+            self._watch_expiry()
+        self._place_marker(identity, marker)
+        self._arriving.pop(identity, None)
+        if identity in self._unplaced:
+            self._arriving[identity] = None
+
+    def _remove(self, identity: str) -> None:
+        self._markers.pop(identity, None)
+        self._unplaced.discard(identity)
+        self._arriving.pop(identity, None)
+        self._store.remove(identity)
+        self.delete_status_row(identity)
+
+    def _place_marker(self, identity: str, marker: _Marker) -> None:
+        fixed_frame = self.host.frames.fixed_frame
+        shape = marker.reading.shape
+        try:
+            frame = self._frame_pose(fixed_frame, marker.frame, 0 if marker.locked else marker.stamp_ns)
+        except TransformException as error:
+            reason = error.diagnostics[0].message
+            text = phrase(
+                "For frame [{frame}]: No transform to fixed frame [{fixed_frame}].  TF error: [{reason}]",
+                frame=marker.frame,
+                fixed_frame=fixed_frame,
+                reason=reason,
+            )
+            self.set_status_row(identity, "error", text)
+            self._unplaced.add(identity)
+            self._store.remove(identity)
+            return
+        self._unplaced.discard(identity)
+        self._arriving.pop(identity, None)
+        if marker.reading.warning:
+            self.set_status_row(identity, "warn", marker.reading.warning)
+        else:
+            self.delete_status_row(identity)
+        if marker.locked:
+            shape.frame, shape.pose = marker.frame, list(marker.reading.pose)
+        else:
+            shape.frame, shape.pose = "", placed_in(frame, marker.reading)
+        self._store.put(shape)
+
+    def _frame_pose(self, fixed_frame: str, frame: str, stamp_ns: int) -> Transform:
+        known = self._frame_poses.get((frame, stamp_ns))
+        if known is None:
+            known = self._frame_poses[frame, stamp_ns] = tuple(
+                self.context.transforms.pose(fixed_frame, frame, stamp_ns).tolist()
+            )
+        return known
+
+    def _show(self) -> None:
+        """Send the changes: all of a message at once."""
+        self._frame_poses.clear()
+        self.show_markers()
+
+    # --- lifetimes ---------------------------------------------------------------------------------------------
+
+    def _watch_expiry(self) -> None:
+        if self._expiry is None:
+            self._expiry = asyncio.get_running_loop().call_later(_EXPIRY_PERIOD, self._expire)
+
+    def _expire(self) -> None:
+        self._expiry = None
+        now_ns = self._clock.now_ns()
+        mortal = {
+            marker_id: marker.expires_ns for marker_id, marker in self._markers.items() if marker.expires_ns is not None
+        }
+        over = [marker_id for marker_id, expires_ns in mortal.items() if expires_ns <= now_ns]
+        for identity in over:
+            self._remove(identity)
+        if over:
+            self._show()
+        if len(mortal) > len(over):
+            self._watch_expiry()
+
+
+class MarkerArrayDisplay(MarkerDisplay):
+    """Markers in arrays; any number of them may wait for their frames, while RViz drops them."""
+
+    CLASS = "rviz_default_plugins/MarkerArray"
+    MESSAGE = "visualization_msgs/msg/MarkerArray"
+    SCHEMA = (topic_spec(default="visualization_marker_array", description="visualization_msgs/msg/MarkerArray"),)
+
+    def process_message(self, message: Any, pose: Pose | None) -> None:
+        """Apply the actions of the markers, in their order."""
+        self._check_duplicates(message.markers)
+        for marker in message.markers:
+            self._do(marker)
+        self._show()
+
+    def _check_duplicates(self, markers: Any) -> None:
+        seen: set[tuple[str, int]] = set()
+        for marker in markers:
+            name = (marker.ns, marker.id)
+            if name in seen:
+                text = phrase(
+                    "Multiple Markers in the same MarkerArray message had the same ns and id: ({namespace}, {id})",
+                    namespace=marker.ns,
+                    id=marker.id,
+                )
+                self.set_status_row(_DUPLICATES, "error", text)
+                return
+            seen.add(name)
+        self.delete_status_row(_DUPLICATES)
+
+
+class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
+    """Messages of any type, drawn as the markers that `markers` returns for them: for displays of other packages.
+
+    A subclass sets `CLASS`, `MESSAGE` and `SCHEMA`, with a `topic_spec`.
+    """
+
+    DRAWN_AS = MarkerArrayDisplay.CLASS
+    SCHEMA = (topic_spec(),)
+
+    @abstractmethod
+    def markers(self, message: Any) -> Iterable[Any]:
+        """Return the markers of a message; they replace those of the message before.
+
+        Args:
+            message: a message of the type `MESSAGE`; it must not be changed.
+
+        Returns:
+            visualization_msgs/msg/Marker, each with a namespace and a number of its own. One without a frame is in that
+            of the message's header, at its time.
+        """
+
+    def process_message(self, message: Any, pose: Pose | None) -> None:
+        """Draw a message."""
+        made = list(self.markers(message))
+        header = getattr(message, "header", None)
+        for marker in made:
+            if not marker.header.frame_id and header is not None:
+                marker.header = header
+        self._check_duplicates(made)
+        for identity in self._markers.keys() - {marker_id(marker) for marker in made}:
+            self._remove(identity)
+        for marker in made:
+            self._do(marker)
+        self._show()
+
+    def changed(self, path: Path) -> None:
+        """Draw the last message again."""
+        super().changed(path)
+        if path[0] not in (TOPIC, _NAMESPACES):
+            self.show_again()

@@ -1,0 +1,192 @@
+"""The base of MoveIt's displays: a robot that can be drawn in any state, and markers in groups."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import joined, phrase, quoted_names
+from linkwright.graph import DESCRIPTION_QOS, QoSProfile
+from linkwright.page.files import MeshIndex
+from linkwright.page.protocol.markers import MarkerShape
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import Path
+from linkwright.rviz.displays.base.display import DisplayHost
+from linkwright.rviz.displays.base.stored_markers import StoredMarkersDisplay
+from linkwright.rviz.displays.base.topic_display import TRANSFORM, SideTopic
+from linkwright.rviz.displays.moveit.properties import ALL_LINKS, DESCRIPTION
+from linkwright.rviz.displays.moveit.robot import PosableRobot
+from linkwright.urdf import Robot
+
+_URDF = "URDF"
+_JOINTS = "Joints"
+STATE = "State"
+"""The status row for problems with a state of the robot."""
+
+
+class MoveItDisplay(StoredMarkersDisplay):
+    """A display of MoveIt. A subclass draws in `draw`, which is called when the robot or a property changes."""
+
+    DRAWN_AS = "rviz_default_plugins/MarkerArray"
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        self.robot: PosableRobot | None = None
+        self.link_names: tuple[str, ...] = ()
+        super().__init__(host, identity, config)
+        self._descriptions = SideTopic(host, "std_msgs/msg/String", self._described)
+        self._groups: dict[str, dict[str, MarkerShape]] = {}
+
+    # --- what subclasses override ------------------------------------------------------------------------------
+
+    def draw(self) -> None:
+        """Draw all markers again with `put`, and call `drawn`."""
+
+    def description_topic(self) -> str:
+        """Return the topic of the robot's description."""
+        return self.properties.text(DESCRIPTION).strip()
+
+    # --- what subclasses call ----------------------------------------------------------------------------------
+
+    def put(self, group: str, shapes: Iterable[MarkerShape]) -> None:
+        """Replace the markers of a group."""
+        before = self._groups.get(group, {})
+        now = {shape.id: shape for shape in shapes}
+        for identity in before.keys() - now.keys():
+            self._store.remove(identity)
+        for identity, shape in now.items():
+            if identity not in before or not _is_same(before[identity], shape):
+                self._store.put(shape)
+        self._groups[group] = now
+
+    def drawn(self) -> None:
+        """Send the markers of `put`, and show in the status which frames cannot be placed."""
+        self.show_markers()
+        self._report_frames()
+
+    def report_unknown_joints(self, joints: list[str]) -> None:
+        """Show in the status the joints of a state that the robot does not have."""
+        if joints:
+            names, more = quoted_names(joints[:5]), len(joints) - 5
+            text = phrase("The robot has no joint {names}", names=names)
+            if more > 0:
+                text = phrase("The robot has no joint {names} and {more} more", names=names, more=more)
+            self.set_status_row(_JOINTS, "warn", text)
+        else:
+            self.delete_status_row(_JOINTS)
+
+    # --- life --------------------------------------------------------------------------------------------------
+
+    def subscription(self) -> tuple[str, str, QoSProfile]:
+        """Return the type and topic to subscribe to."""
+        return self.MESSAGE, self.properties.text(*self.TOPIC).strip(), QoSProfile(depth=10)
+
+    def start(self) -> None:
+        """Subscribe to the description, too."""
+        super().start()
+        self._follow()
+
+    def stop(self) -> None:
+        """Unsubscribe."""
+        self._descriptions.close()
+        super().stop()
+
+    def enabled_changed(self) -> None:
+        """Subscribe only while it is enabled."""
+        super().enabled_changed()
+        self._follow()
+
+    def changed(self, path: Path) -> None:
+        """Subscribe to another topic, follow another description, or draw again."""
+        if path == self.TOPIC:
+            self._restart()
+            self._follow()
+        elif path == (DESCRIPTION,):
+            self._follow()
+        elif path[-1] == ALL_LINKS:
+            for name in self.link_names:
+                if name != ALL_LINKS:
+                    self.properties.set((*path[:-1], name), self.properties.flag(*path))
+            self.publish_properties()
+        self.draw()
+
+    def frames_changed(self) -> None:
+        """Show in the status which frames cannot be placed."""
+        self._report_frames()
+
+    def time_changed(self) -> None:
+        """Show the messages that were received while time was paused."""
+        self._descriptions.resume()
+        super().time_changed()
+
+    def reset(self) -> None:
+        """Forget all markers."""
+        self._groups.clear()
+        self._store.clear()
+        self.show_markers()
+
+    def _follow(self) -> None:
+        self._descriptions.close()
+        topic = self.description_topic()
+        if not self.enabled:
+            return
+        if not topic:
+            self.set_status_row(_URDF, "error", phrase("Error subscribing: Empty topic name"))
+            return
+        problem = self._descriptions.listen(topic, DESCRIPTION_QOS)
+        if problem is not None:
+            self.set_status_row(_URDF, "error", problem)
+        elif self.robot is None:
+            self.set_status_row(_URDF, "warn", phrase("No description on topic '{topic}' yet", topic=topic))
+
+    def _described(self, message: Any) -> None:
+        robot = self.context.library.read(message.data).robot
+        if robot is None or not robot.links:
+            self.set_status_row(
+                _URDF,
+                "error",
+                phrase("URDF is empty") if not message.data.strip() else phrase("URDF failed Model parse"),
+            )
+            return
+        self.set_status_row(_URDF, "ok", phrase("URDF parsed OK"))
+        self._set_robot(robot, message.data)
+
+    def _set_robot(self, robot: Robot, text: str) -> None:
+        self._meshes = MeshIndex(self.context.library.packages(text) or self.context.finder)
+        self.robot = PosableRobot(robot, self._meshes)
+        links = tuple(self.robot.shaped_links)
+        if links != self.link_names:
+            self.link_names = links
+            self.publish_properties()
+        for link, problems in self.robot.problems.items():
+            self.set_status_row(link, "error", joined(problems, "; "))
+        self.robot_changed()
+        self.draw()
+
+    def robot_changed(self) -> None:
+        """Handle another robot; `draw` is called later."""
+
+    def _report_frames(self) -> None:
+        frames = {shape.frame for shapes in self._groups.values() for shape in shapes.values()}
+        problems = [problem for frame in sorted(frames) if (problem := self.host.frames.problem(frame))]
+        if problems:
+            self.set_status_row(TRANSFORM, "error", joined(problems, "; "))
+        elif frames:
+            self.set_status_row(TRANSFORM, "ok", phrase("Transform OK"))
+        else:
+            self.delete_status_row(TRANSFORM)
+
+
+def _is_same(one: MarkerShape, other: MarkerShape) -> bool:
+    return (
+        (one.shape, one.frame, one.pose, one.scale, one.color)
+        == (other.shape, other.frame, other.pose, other.scale, other.color)
+        and _mesh_of(one) == _mesh_of(other)
+        and np.array_equal(one.points, other.points)
+        and np.array_equal(one.colors, other.colors)
+    )
+
+
+def _mesh_of(shape: MarkerShape) -> tuple[str | None, bool] | None:
+    return (shape.mesh.url, shape.mesh.embedded) if shape.mesh else None

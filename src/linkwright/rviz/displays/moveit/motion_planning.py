@@ -1,0 +1,128 @@
+"""moveit_rviz_plugin/MotionPlanning, without planning."""
+
+from __future__ import annotations
+
+from linkwright.diagnostics import phrase
+from linkwright.graph import QoSProfile
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import Path, PropertySpec, Schema
+from linkwright.rviz.displays.base.display import DisplayHost
+from linkwright.rviz.displays.base.topic_display import SideTopic
+from linkwright.rviz.displays.moveit.planning_scene import PlanningSceneDisplay
+from linkwright.rviz.displays.moveit.properties import PATH, TRAJECTORY_TOPIC, fraction, path_specs, rgb
+from linkwright.rviz.displays.moveit.robot import Look
+from linkwright.rviz.displays.moveit.trajectory import MotionPlayer
+
+_REQUEST = "Planning Request"
+
+_REQUEST_SPEC = PropertySpec(
+    _REQUEST,
+    "group",
+    description="The first and the last state of the last motion that was planned, of the links that it moves.",
+    children=(
+        PropertySpec("Query Start State", "bool", False, "Draw the first state."),
+        PropertySpec("Query Goal State", "bool", True, "Draw the last state."),
+        PropertySpec("Start State Color", "color", "#00ff00", "Colour of the first state."),
+        fraction("Start State Alpha", 1.0, "Opacity of the first state."),
+        PropertySpec("Goal State Color", "color", "#fa8000", "Colour of the last state."),
+        fraction("Goal State Alpha", 1.0, "Opacity of the last state."),
+    ),
+)
+
+
+class MotionPlanningDisplay(PlanningSceneDisplay):
+    """The planning scene, the motions that are planned in it, and the first and last state of the last one.
+
+    It does not plan: properties for planning requests are kept in the file and have no rows.
+    """
+
+    CLASS = "moveit_rviz_plugin/MotionPlanning"
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._player = MotionPlayer(self, (PATH,), self._draw_motion)
+        self._motions = SideTopic(host, "moveit_msgs/msg/DisplayTrajectory", self._player.play)
+
+    def schema(self) -> Schema:
+        """Return the properties of the scene and of motions."""
+        path = PropertySpec(PATH, "group", description="The motions.", children=path_specs(self.link_names))
+        return (*super().schema(), _REQUEST_SPEC, path)
+
+    def start(self) -> None:
+        """Subscribe to motions, too."""
+        super().start()
+        self._follow_motions()
+
+    def stop(self) -> None:
+        """Unsubscribe, and stop playing."""
+        self._motions.close()
+        self._player.forget()
+        super().stop()
+
+    def enabled_changed(self) -> None:
+        """Subscribe only while it is enabled."""
+        super().enabled_changed()
+        self._follow_motions()
+
+    def changed(self, path: Path) -> None:
+        """Subscribe to other motions; restart the motion if it loops from now on."""
+        if path == (PATH, TRAJECTORY_TOPIC):
+            self._player.forget()
+            self._follow_motions()
+        super().changed(path)
+        self._player.property_changed(path)
+
+    def time_changed(self) -> None:
+        """Show the messages that were received while time was paused."""
+        super().time_changed()
+        self._motions.resume()
+
+    def robot_changed(self) -> None:
+        """Play the motion of this robot."""
+        super().robot_changed()
+        self._player.begin_again()
+
+    def reset(self) -> None:
+        """Forget the scene and the motion."""
+        self._player.forget()
+        super().reset()
+
+    def draw(self) -> None:
+        """Draw the scene and the motion."""
+        super().draw()
+        if self.enabled:
+            self._draw_motion()
+
+    def _draw_motion(self) -> None:
+        self._player.draw(PATH)
+        self._draw_end("Start", 0)
+        self._draw_end("Goal", -1)
+        self.drawn()
+
+    def _draw_end(self, which: str, place: int) -> None:
+        group, motion, robot = f"{which} State", self._player.motion, self.robot
+        if robot is None or motion is None or not self.properties.flag(_REQUEST, f"Query {which} State"):
+            self.put(group, ())
+            return
+        look = Look(
+            group,
+            alpha=self.properties.number(_REQUEST, f"{which} State Alpha"),
+            color=rgb(self.properties.text(_REQUEST, f"{which} State Color")),
+            only=robot.links_moved_by(motion.joints),
+        )
+        self.put(group, robot.markers(motion.states[place], look))
+
+    def _follow_motions(self) -> None:
+        self._motions.close()
+        topic = self.properties.text(PATH, TRAJECTORY_TOPIC).strip()
+        if not self.enabled:
+            return
+        problem = (
+            self._motions.listen(topic, QoSProfile(depth=10))
+            if topic
+            else phrase("Error subscribing: Empty topic name")
+        )
+        if problem is None:
+            self.delete_status_row(TRAJECTORY_TOPIC)
+        else:
+            self.set_status_row(TRAJECTORY_TOPIC, "error", problem)

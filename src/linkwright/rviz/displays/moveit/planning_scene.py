@@ -1,0 +1,239 @@
+"""moveit_rviz_plugin/PlanningScene."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import suppress
+from typing import Any
+
+from linkwright.diagnostics import foreign
+from linkwright.graph import Client
+from linkwright.messages import get_message, get_service
+from linkwright.page.protocol.displays import PropertyChanged
+from linkwright.page.protocol.markers import MarkerShape
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import Path, Schema
+from linkwright.rviz.displays.base.display import DisplayHost, Pose
+from linkwright.rviz.displays.moveit.base import STATE, MoveItDisplay
+from linkwright.rviz.displays.moveit.properties import (
+    DESCRIPTION_SPEC,
+    GEOMETRY,
+    GEOMETRY_SPEC,
+    NAMESPACE,
+    NAMESPACE_SPEC,
+    ROBOT,
+    SCENE_TOPIC,
+    SCENE_TOPIC_SPEC,
+    look,
+    rgb,
+    scene_robot_spec,
+)
+from linkwright.rviz.displays.moveit.robot import JointPositions, UnusableStateError
+from linkwright.rviz.displays.moveit.scene import Scene
+from linkwright.rviz.displays.moveit.voxels import BY_PROBABILITY, octomap_markers, rendered
+
+_SERVICE = "get_planning_scene"
+_HELD = "Scene Robot holds"
+
+
+class PlanningSceneDisplay(MoveItDisplay):
+    """The robot of a planning scene, its attached objects, and the objects around it.
+
+    Topics carry only changes, so the display requests the full scene from move_group when it starts, and when
+    move_group appears later.
+    """
+
+    CLASS = "moveit_rviz_plugin/PlanningScene"
+    MESSAGE = "moveit_msgs/msg/PlanningScene"
+    TOPIC = (SCENE_TOPIC,)
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self.scene = Scene()
+        self._client: Client[Any, Any] | None = None
+        self._state: Any = None
+        self._due: asyncio.TimerHandle | None = None
+        self._reported: set[str] = set()
+
+    def schema(self) -> Schema:
+        """Return the properties, with a check box for each link."""
+        return (NAMESPACE_SPEC, DESCRIPTION_SPEC, SCENE_TOPIC_SPEC, GEOMETRY_SPEC, scene_robot_spec(self.link_names))
+
+    def description_topic(self) -> str:
+        """Return the topic in the namespace of move_group, if there is one."""
+        name, namespace = super().description_topic(), self.properties.text(NAMESPACE).strip("/ ")
+        return f"/{namespace}/{name}" if namespace and name and not name.startswith("/") else name
+
+    def start(self) -> None:
+        """Request the scene, too."""
+        super().start()
+        self._ask()
+
+    def stop(self) -> None:
+        """Unsubscribe, and cancel requests."""
+        self._leave()
+        super().stop()
+
+    def enabled_changed(self) -> None:
+        """Request the scene again, which was forgotten."""
+        super().enabled_changed()
+        self._ask()
+
+    def changed(self, path: Path) -> None:
+        """Request the scene of another move_group."""
+        if path == (NAMESPACE,):
+            self._restart()
+            self._follow()
+            self._ask()
+        super().changed(path)
+        if path == self.TOPIC:
+            self._ask()
+
+    def time_reset(self) -> None:
+        """Forget the scene, and request it."""
+        super().time_reset()
+        self._ask()
+
+    def reset(self) -> None:
+        """Forget the scene."""
+        self.scene = Scene()
+        self._state = None
+        self._reported.clear()
+        super().reset()
+
+    def robot_changed(self) -> None:
+        """Apply the last state, which may have arrived before the description."""
+        self.scene.state = JointPositions()
+        if self._state is not None:
+            self._apply_state(self._state)
+
+    def process_message(self, message: Any, pose: Pose | None) -> None:
+        """Apply changes of the scene, or another scene."""
+        before = self.scene.name
+        self.scene.apply(message)
+        if self.scene.name != before:
+            self._publish_name()
+        state = message.robot_state
+        if state.joint_state.name or state.multi_dof_joint_state.joint_names:
+            self._state = state
+            self._apply_state(state)
+        self._draw_soon()
+
+    def draw(self) -> None:
+        """Draw the scene."""
+        if self._due is not None:
+            self._due.cancel()
+            self._due = None
+        if not self.enabled:
+            return
+        self._draw_geometry()
+        self._draw_robot()
+        self._report_problems()
+        self.drawn()
+
+    # --- drawing -----------------------------------------------------------------------------------------------
+
+    def _draw_soon(self) -> None:
+        if self._due is None:
+            wait = self.properties.number(GEOMETRY, "Scene Display Time")
+            self._due = asyncio.get_running_loop().call_later(wait, self.draw)
+
+    def _draw_geometry(self) -> None:
+        shown = self.properties.flag(GEOMETRY, "Show Scene Geometry")
+        alpha = self.properties.number(GEOMETRY, "Scene Alpha")
+        color = (*rgb(self.properties.text(GEOMETRY, "Scene Color")), alpha)
+        self.put("objects", self.scene.object_markers(GEOMETRY, color) if shown else ())
+        self.put("octomap", self._octomap(alpha) if shown else ())
+
+    def _octomap(self, alpha: float) -> list[MarkerShape]:
+        octomap = self.scene.octomap
+        if octomap is None:
+            return []
+        return octomap_markers(
+            rendered(octomap.cells, self.properties.text(GEOMETRY, "Voxel Rendering")),
+            GEOMETRY,
+            frame=octomap.frame,
+            base=octomap.base,
+            alpha=alpha,
+            by_probability=self.properties.text(GEOMETRY, "Voxel Coloring") == BY_PROBABILITY,
+        )
+
+    def _draw_robot(self) -> None:
+        if self.robot is None:
+            return
+        alpha = self.properties.number(ROBOT, "Robot Alpha")
+        color = (*rgb(self.properties.text(ROBOT, "Attached Body Color")), alpha)
+        has_state = self._state is not None
+        of = look(self.properties, self.robot, ROBOT, (ROBOT,))
+        self.put("robot", self.robot.markers(self.scene.state, of) if has_state else ())
+        shown = has_state and alpha > 0.0
+        self.put("held", self.scene.held_markers(self.robot, self.scene.state, _HELD, color) if shown else ())
+
+    def _apply_state(self, message: Any) -> None:
+        if self.robot is None:
+            return
+        try:
+            self.report_unknown_joints(self.robot.set_state(self.scene.state, message))
+        except UnusableStateError as error:
+            self.set_status_row(STATE, "error", foreign(error))
+            return
+        self.delete_status_row(STATE)
+
+    def _report_problems(self) -> None:
+        for name in self._reported - self.scene.problems.keys():
+            self.delete_status_row(name)
+        self._reported = set(self.scene.problems)
+        for name, text in self.scene.problems.items():
+            self.set_status_row(name, "error", text)
+
+    def _publish_name(self) -> None:
+        path = (GEOMETRY, "Scene Name")
+        if self.properties.set_read_only(path, self.scene.name):
+            self.pages.publish(PropertyChanged(self.property_id(path), self.scene.name))
+
+    # --- asking for the whole scene ----------------------------------------------------------------------------
+
+    def _ask(self) -> None:
+        """Request the scene from move_group now or as soon as it is available."""
+        self._leave()
+        if not self.enabled:
+            return
+        namespace = self.properties.text(NAMESPACE).strip("/ ")
+        name = f"/{namespace}/{_SERVICE}" if namespace else f"/{_SERVICE}"
+        self._client = self.context.node.create_client(get_service("moveit_msgs/srv/GetPlanningScene"), name)
+        self.context.graph_changes.listen(self._ask_if_ready)
+        self._ask_if_ready()
+
+    def _ask_if_ready(self) -> None:
+        client = self._client
+        if client is None or not client.service_is_ready():
+            return
+        self.context.graph_changes.ignore(self._ask_if_ready)
+        components = get_message("moveit_msgs/msg/PlanningSceneComponents")
+        asked = components(components=_PARTS)
+        future = client.call_async(client.srv_type.Request(components=asked))
+
+        def answered(_: Any) -> None:
+            response = future.result()
+            if self._client is client and response is not None and not self.scene.is_whole:
+                self._received_scene(response.scene)
+
+        future.add_done_callback(answered)
+
+    def _received_scene(self, scene: Any) -> None:
+        if not self.host.time.paused:
+            self._process(scene, None)
+
+    def _leave(self) -> None:
+        self.context.graph_changes.ignore(self._ask_if_ready)
+        if self._due is not None:
+            self._due.cancel()
+            self._due = None
+        if self._client is not None:
+            with suppress(ValueError):  # the node may have been destroyed before
+                self.context.node.destroy_client(self._client)
+            self._client = None
+
+
+_PARTS = 1 | 2 | 4 | 8 | 16 | 32 | 64 | 512
+"""Settings, state, attached objects, names and shapes of objects, octomap, transforms, colours; see the message."""

@@ -1,0 +1,117 @@
+"""moveit_rviz_plugin/RobotState."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.diagnostics import foreign, phrase
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import PropertySpec, Schema
+from linkwright.rviz.displays.base.display import DisplayHost, Pose
+from linkwright.rviz.displays.moveit.base import STATE, MoveItDisplay
+from linkwright.rviz.displays.moveit.properties import (
+    ATTACHED,
+    DESCRIPTION_SPEC,
+    fraction,
+    link_alphas,
+    links_spec,
+    rgb,
+    rgba,
+    visibility,
+)
+from linkwright.rviz.displays.moveit.robot import JointPositions, Look, UnusableStateError
+from linkwright.rviz.displays.moveit.scene import Scene
+
+_TOPIC = "Robot State Topic"
+_ROBOT = "Robot State"
+_HELD = "Robot State holds"
+_HIGHLIGHTS = "Highlights"
+
+
+class RobotStateDisplay(MoveItDisplay):
+    """The robot in the state of the last message of a topic, with links in colours that the message gives them."""
+
+    CLASS = "moveit_rviz_plugin/RobotState"
+    MESSAGE = "moveit_msgs/msg/DisplayRobotState"
+    TOPIC = (_TOPIC,)
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._state = JointPositions()
+        self._attached = Scene()
+
+    def schema(self) -> Schema:
+        """Return the properties, with a check box for each link."""
+        return (
+            DESCRIPTION_SPEC,
+            PropertySpec(_TOPIC, "topic", "display_robot_state", "The topic of states.", messages=(self.MESSAGE,)),
+            *visibility("Visual Enabled", "Collision Enabled"),
+            fraction("Robot Alpha", 1.0, "Opacity of the robot."),
+            ATTACHED,
+            PropertySpec("Show Highlights", "bool", True, "Draw links in the colours that the message gives them."),
+            links_spec(self.link_names),
+        )
+
+    def process_message(self, message: Any, pose: Pose | None) -> None:
+        """Show a state."""
+        self._read(message)
+        self.draw()
+
+    def robot_changed(self) -> None:
+        """Show the state of this robot."""
+        if self.last is not None:
+            self._read(self.last)
+
+    def reset(self) -> None:
+        """Forget the state."""
+        self._state = JointPositions()
+        self._attached = Scene()
+        super().reset()
+
+    def draw(self) -> None:
+        """Draw the state."""
+        message, robot = self.last, self.robot
+        if robot is None or message is None or message.hide:
+            self.put(_ROBOT, ())
+            self.put(_HELD, ())
+            self.drawn()
+            return
+        properties = self.properties
+        alpha = properties.number("Robot Alpha")
+        highlights = {highlight_link.id: rgba(highlight_link.color) for highlight_link in message.highlight_links}
+        look = Look(
+            _ROBOT,
+            visual=properties.flag("Visual Enabled"),
+            collision=properties.flag("Collision Enabled"),
+            alpha=alpha,
+            alphas=link_alphas(properties, robot),
+            links=highlights if properties.flag("Show Highlights") else {},
+        )
+        self.put(_ROBOT, robot.markers(self._state, look))
+        color = (*rgb(properties.text("Attached Body Color")), alpha)
+        self.put(_HELD, self._attached.held_markers(robot, self._state, _HELD, color))
+        for name, text in self._attached.problems.items():
+            self.set_status_row(name, "error", text)
+        unknown = sorted(name for name in highlights if not robot.has_link(name))
+        if unknown:
+            self.set_status_row(_HIGHLIGHTS, "warn", phrase("The robot has no link '{name}'", name=unknown[0]))
+        else:
+            self.delete_status_row(_HIGHLIGHTS)
+        self.drawn()
+
+    def _read(self, message: Any) -> None:
+        robot = self.robot
+        if robot is None:
+            return
+        for name in self._attached.problems:
+            self.delete_status_row(name)
+        self._attached = Scene()
+        self._attached.attach(message.state.attached_collision_objects)
+        state = self._state.copy() if message.state.is_diff else JointPositions()
+        try:
+            self.report_unknown_joints(robot.set_state(state, message.state))
+        except UnusableStateError as error:
+            self.set_status_row(STATE, "error", foreign(error))
+            return
+        self.delete_status_row(STATE)
+        self._state = state

@@ -1,0 +1,271 @@
+"""moveit_rviz_plugin/Trajectory, and the player of motions."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise, zip_longest
+from typing import Any
+
+from linkwright.diagnostics import foreign, phrase
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import Path, Schema
+from linkwright.rviz.displays.base.display import DisplayHost, Pose
+from linkwright.rviz.displays.moveit.base import STATE, MoveItDisplay
+from linkwright.rviz.displays.moveit.properties import DESCRIPTION_SPEC, TRAJECTORY_TOPIC, look, path_specs
+from linkwright.rviz.displays.moveit.robot import JointPositions, PosableRobot, UnusableStateError
+
+_SECONDS = re.compile(r"([0-9]*\.?[0-9]+)\s*s?")
+_FACTOR = re.compile(r"([0-9]*\.?[0-9]+)\s*x")
+_LOOP = "Loop Animation"
+_LEAST_WAIT = 0.005
+_MOST_WAYPOINTS = 100_000
+_MOST_IN_TRAIL = 200
+"""The largest number of states drawn at once; longer trails are drawn with larger steps."""
+
+READ_AS = "3x"
+"""The value used for a State Display Time that cannot be read."""
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """The states of a robot's motion.
+
+    Attributes:
+        states: the first of them is that of the start.
+        durations: seconds from each state to the next.
+        joints: the joints that move.
+        unknown: joints that the robot does not have.
+    """
+
+    states: list[JointPositions]
+    durations: list[float]
+    joints: frozenset[str]
+    unknown: list[str]
+
+
+def read_motion(robot: PosableRobot, message: Any) -> Motion:
+    """Return the states of a moveit_msgs/msg/DisplayTrajectory.
+
+    Raises:
+        UnusableStateError: it has no states, too many, or some that cannot be shown.
+    """
+    state = JointPositions()
+    unknown = robot.set_state(state, message.trajectory_start)
+    states, durations = [state.copy()], []
+    joints: set[str] = set()
+    for part in message.trajectory:
+        one, many = part.joint_trajectory, part.multi_dof_joint_trajectory
+        if len(states) + max(len(one.points), len(many.points)) > _MOST_WAYPOINTS:
+            raise UnusableStateError(phrase("The motion has more than {most} states", most=_MOST_WAYPOINTS))
+        joints.update(one.joint_names)
+        times = [0.0]
+        for point, root_point in zip_longest(one.points, many.points):
+            if point is not None:
+                missing = robot.set_joints(state, one.joint_names, point.positions)
+                unknown += [name for name in missing if name not in unknown]
+            if root_point is not None:
+                _set_root(robot, state, many, root_point)
+            times.append(_seconds((root_point if point is None else point).time_from_start))
+            states.append(state.copy())
+        durations += [max(0.0, after - before) for before, after in pairwise(times)]
+    if len(states) < 2:
+        raise UnusableStateError(phrase("The motion has no states"))
+    return Motion(states, durations, frozenset(joints), unknown)
+
+
+def _set_root(robot: PosableRobot, state: JointPositions, trajectory: Any, point: Any) -> None:
+    """Set the root from a point of a trajectory_msgs/msg/MultiDOFJointTrajectory; unknown joints move it."""
+    for name, transform in zip(trajectory.joint_names, point.transforms, strict=False):
+        if not robot.has_joint(name):
+            robot.set_root(state, trajectory.header.frame_id, transform)
+
+
+def _seconds(duration: Any) -> float:
+    return float(duration.sec) + float(duration.nanosec) * 1e-9
+
+
+def shown_for(text: str, duration: float) -> float:
+    """Return the seconds that a state is shown.
+
+    Args:
+        text: the State Display Time.
+        duration: seconds from this state to the next in the motion.
+    """
+    text = text.strip().lower()
+    if text == "realtime":
+        return duration
+    factor = _FACTOR.fullmatch(text)
+    if factor and float(factor[1]) > 0.0:
+        return duration / float(factor[1])
+    fixed = _SECONDS.fullmatch(text)
+    return float(fixed[1]) if fixed else shown_for(READ_AS, duration)
+
+
+class MotionPlayer:
+    """Shows the states of a motion one after the other.
+
+    Args:
+        display: the display with the properties.
+        above: the path of the group that has these properties.
+        show: called when the state to draw changes.
+    """
+
+    def __init__(self, display: MoveItDisplay, above: Path, show: Callable[[], None]) -> None:
+        self._display = display
+        self._above = above
+        self._show = show
+        self._message: Any = None
+        self._next: Any = None
+        self._place = 0
+        self._timer: asyncio.TimerHandle | None = None
+        self.motion: Motion | None = None
+
+    @property
+    def is_playing(self) -> bool:
+        """Whether further states follow."""
+        return self._timer is not None
+
+    @property
+    def state(self) -> JointPositions | None:
+        """The state to draw, or None after the end."""
+        return self.motion.states[self._place] if self.motion and self.is_playing else None
+
+    def play(self, message: Any) -> None:
+        """Play a moveit_msgs/msg/DisplayTrajectory, after the present one unless that is to be interrupted."""
+        if self.is_playing and not self._flag("Interrupt Display") and not self._flag(_LOOP):
+            self._next = message
+            return
+        self._message = message
+        self._begin()
+
+    def property_changed(self, path: Path) -> None:
+        """Play the last motion again if it loops from now on."""
+        if path == (*self._above, _LOOP) and self._flag(_LOOP) and not self.is_playing:
+            self.begin_again()
+
+    def begin_again(self) -> None:
+        """Restart the last motion, because the robot was replaced."""
+        if self._message is not None:
+            self._begin()
+
+    def forget(self) -> None:
+        """Stop, and forget the motion."""
+        self._stop()
+        self._message = self._next = self.motion = None
+
+    def draw(self, group: str) -> None:
+        """Put the present state and the trail into groups of markers of the display."""
+        robot, motion = self._display.robot, self.motion
+        now, trail = [], []
+        if robot is not None and motion is not None:
+            properties = self._display.properties
+            color = properties.text(*self._above, "Robot Color") if self._flag("Color Enabled") else None
+            if self.state is not None:
+                now = robot.markers(self.state, look(properties, robot, group, self._above, color))
+            if self._flag("Show Trail"):
+                step = int(properties.number(*self._above, "Trail Step Size"))
+                step = max(step, -(-len(motion.states) // _MOST_IN_TRAIL))
+                for place in range(0, len(motion.states), step):
+                    of = look(properties, robot, f"{group} {place}", self._above, color)
+                    trail += robot.markers(motion.states[place], of)
+        self._display.put(group, now)
+        self._display.put(f"{group} trail", trail)
+
+    def _begin(self) -> None:
+        self._stop()
+        robot = self._display.robot
+        if robot is None:
+            return
+        try:
+            self.motion = read_motion(robot, self._message)
+        except UnusableStateError as error:
+            self.motion = None
+            self._display.set_status_row(STATE, "error", foreign(error))
+            self._show()
+            return
+        self._display.delete_status_row(STATE)
+        self._display.report_unknown_joints(self.motion.unknown)
+        self._place = 0
+        self._wait()
+        self._show()
+
+    def _wait(self) -> None:
+        assert self.motion is not None
+        text = self._display.properties.text(*self._above, "State Display Time")
+        durations = self.motion.durations
+        seconds = shown_for(text, durations[min(self._place, len(durations) - 1)])
+        self._timer = asyncio.get_running_loop().call_later(max(_LEAST_WAIT, seconds), self._step)
+
+    def _step(self) -> None:
+        self._timer = None
+        if self.motion is None:
+            return
+        if self._display.host.time.paused:
+            self._wait()
+            return
+        if self._place + 1 < len(self.motion.states):
+            self._place += 1
+            self._wait()
+        elif self._next is not None:
+            self._message, self._next = self._next, None
+            self._begin()
+            return
+        elif self._flag(_LOOP):
+            self._place = 0
+            self._wait()
+        self._show()
+
+    def _stop(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+    def _flag(self, name: str) -> bool:
+        return self._display.properties.flag(*self._above, name)
+
+
+class TrajectoryDisplay(MoveItDisplay):
+    """The motions of a topic, played."""
+
+    CLASS = "moveit_rviz_plugin/Trajectory"
+    MESSAGE = "moveit_msgs/msg/DisplayTrajectory"
+    TOPIC = (TRAJECTORY_TOPIC,)
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._player = MotionPlayer(self, (), self.draw)
+
+    def schema(self) -> Schema:
+        """Return the properties, with a check box for each link."""
+        return (DESCRIPTION_SPEC, *path_specs(self.link_names))
+
+    def process_message(self, message: Any, pose: Pose | None) -> None:
+        """Play a motion."""
+        self._player.play(message)
+
+    def changed(self, path: Path) -> None:
+        """Draw again; restart the motion if it loops from now on."""
+        super().changed(path)
+        self._player.property_changed(path)
+
+    def robot_changed(self) -> None:
+        """Play the motion of this robot."""
+        self._player.begin_again()
+
+    def reset(self) -> None:
+        """Forget the motion."""
+        self._player.forget()
+        super().reset()
+
+    def stop(self) -> None:
+        """Unsubscribe, and stop playing."""
+        self._player.forget()
+        super().stop()
+
+    def draw(self) -> None:
+        """Draw the state that is shown now, and the trail."""
+        self._player.draw("Planned Path")
+        self.drawn()

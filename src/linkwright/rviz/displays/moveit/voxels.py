@@ -1,0 +1,116 @@
+"""The cells of octrees as markers, and the properties that select cells and colours."""
+
+from __future__ import annotations
+
+import colorsys
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.single import Transform
+from linkwright.page.protocol.markers import MarkerShape
+from linkwright.rviz.config.schema import PropertySpec
+from linkwright.rviz.displays.moveit.octree import Cells
+from linkwright.rviz.markers.shapes import made_marker
+
+_OCCUPIED, _FREE, _ALL = "Occupied Voxels", "Free Voxels", "All Voxels"
+_BY_HEIGHT, BY_PROBABILITY = "Z-Axis", "Cell Probability"
+_LIKELY = 0.5
+"""Cells that are occupied with a higher probability."""
+
+VOXEL_RENDERING = PropertySpec(
+    "Voxel Rendering", "enum", _OCCUPIED, "The cells of the octomap to draw.", options=(_OCCUPIED, _FREE, _ALL)
+)
+VOXEL_COLORING = PropertySpec(
+    "Voxel Coloring",
+    "enum",
+    _BY_HEIGHT,
+    "Whether the colour of a cell shows its height or the probability that it is occupied.",
+    options=(_BY_HEIGHT, BY_PROBABILITY),
+)
+
+
+def rendered(cells: Cells, rendering: str) -> Cells:
+    """Return the cells that a value of `VOXEL_RENDERING` selects."""
+    if rendering == _ALL:
+        return cells
+    return cells.chosen((cells.probabilities > _LIKELY) == (rendering == _OCCUPIED))
+
+
+def octomap_markers(
+    cells: Cells, namespace: str, *, frame: str, base: Transform, alpha: float, by_probability: bool
+) -> list[MarkerShape]:
+    """Return boxes for the cells of an octree, a marker for each of their sizes, without hidden ones.
+
+    Args:
+        cells: in the frame of the tree.
+        namespace: the markers' namespace.
+        frame: the frame that they follow.
+        base: the pose of the tree in it.
+        alpha: opacity of all.
+        by_probability: whether colours show the probability that a cell is occupied, not its height.
+    """
+    cells = cells.chosen(_is_seen(cells))
+    if not len(cells.sizes):
+        return []
+    colors = np.empty((len(cells.sizes), 4), dtype=np.float32)
+    colors[:, 3] = alpha
+    if by_probability:
+        colors[:, 0] = 1.0 - cells.probabilities
+        colors[:, 1] = cells.probabilities
+        colors[:, 2] = 0.0
+    else:
+        height = cells.centers[:, 2]
+        least, span = float(height.min()), float(np.ptp(height))
+        share = np.zeros_like(height) if span == 0.0 else (height - least) / span
+        colors[:, :3] = _RAINBOW[(share * (len(_RAINBOW) - 1)).astype(np.intp)]
+    made = []
+    for size in np.unique(cells.sizes):
+        mask = cells.sizes == size
+        points = np.ascontiguousarray(cells.centers[mask], dtype=np.float32)
+        edges = [float(size)] * 3
+        name = f"octomap {size:g}"
+        made.append(
+            made_marker(
+                namespace,
+                name,
+                "cube_list",
+                base,
+                edges,
+                (0.0, 0.0, 0.0, alpha),
+                frame=frame,
+                points=points,
+                colors=np.ascontiguousarray(colors[mask]),
+            )
+        )
+    return made
+
+
+_RAINBOW = np.array([colorsys.hsv_to_rgb(0.8 * (1.0 - step / 63.0), 1.0, 1.0) for step in range(64)], dtype=np.float32)
+
+
+def _is_seen(cells: Cells) -> NDArray[np.bool_]:
+    """Return a mask of the cells with a side without a neighbour of their own size."""
+    seen = np.ones(len(cells.sizes), dtype=np.bool_)
+    for size in np.unique(cells.sizes):
+        mask = cells.sizes == size
+        codes = _codes(np.floor(cells.centers[mask] / size).astype(np.int64))
+        known = np.sort(codes)
+        around = np.ones(len(codes), dtype=np.bool_)
+        for step in _STEPS:
+            places = np.searchsorted(known, codes + step)
+            around &= known[np.minimum(places, len(known) - 1)] == codes + step
+        seen[mask] = ~around
+    return seen
+
+
+_BITS = 20
+_STEPS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2 * _BITS))
+"""The differences between the code of a cell and those of its neighbours."""
+
+
+def _codes(places: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return a code for each cell in the grid of cells of one size; a tree's grid has 2^16 of them along an axis."""
+    shifted = places + (1 << (_BITS - 1))
+    codes: NDArray[np.int64] = shifted[:, 0] << 2 * _BITS | shifted[:, 1] << _BITS | shifted[:, 2]
+    return codes

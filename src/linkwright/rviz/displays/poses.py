@@ -1,0 +1,303 @@
+"""Pose, PoseArray, PoseWithCovariance, Odometry and Path: poses as arrows or axes, and lines through them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import phrase
+from linkwright.page.protocol.binary import Floats
+from linkwright.page.protocol.geometry import ParticleMarks, PoseMarks
+from linkwright.page.protocol.message import DataContent
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import (
+    PropertySpec,
+    Schema,
+    alpha,
+    length,
+    line_style,
+    line_width,
+    topic_spec,
+    vector,
+)
+from linkwright.rviz.displays.base.display import DisplayHost
+from linkwright.rviz.displays.base.topic_display import RecentDisplay
+
+_ARROW = (("Shape",), "Arrow")
+_AXES = (("Shape",), "Axes")
+
+
+def pose_shape(*, nested: bool = False) -> Schema:
+    """Return the properties for the shape of a pose; ``nested`` as in Odometry: the sizes are below ``Shape``."""
+    description = "Whether a pose is drawn as an arrow along its x or as axes."
+    sizes = (
+        PropertySpec("Color", "color", "#ff1900", "Colour of the arrow.", when=_ARROW),
+        alpha("Opacity of the arrow.", when=_ARROW),
+        length("Shaft Length", 1.0, "Length of the arrow's shaft, in metres.", _ARROW),
+        length("Shaft Radius", 0.05, "Thickness of the arrow's shaft, in metres.", _ARROW),
+        length("Head Length", 0.3, "Length of the arrow's head, in metres.", _ARROW),
+        length("Head Radius", 0.1, "Width of the arrow's head, in metres.", _ARROW),
+        length("Axes Length", 1.0, "Length of each axis, in metres.", _AXES),
+        length("Axes Radius", 0.1, "Thickness of each axis, in metres.", _AXES),
+    )
+    options = ("Arrow", "Axes")
+    if nested:
+        return (PropertySpec("Shape", "enum", "Arrow", description, options=options, children=sizes),)
+    return (PropertySpec("Shape", "enum", "Arrow", description, options=options), *sizes)
+
+
+def covariance() -> PropertySpec:
+    """Return the properties of RViz's CovarianceProperty."""
+    position = (
+        PropertySpec("Color", "color", "#cc33cc", "Colour of the ellipsoid."),
+        alpha("Opacity of the ellipsoid.", 0.3),
+        PropertySpec("Scale", "float", 1.0, "Size of the ellipsoid, in standard deviations.", minimum=0.0),
+    )
+    orientation = (
+        PropertySpec(
+            "Frame",
+            "enum",
+            "Local",
+            "Whether the deviations are about the axes of the pose or of the frame it is given in.",
+            options=("Local", "Fixed"),
+        ),
+        PropertySpec(
+            "Color Style",
+            "enum",
+            "Unique",
+            "One colour for all three, or red, green and blue for the rotations about x, y and z.",
+            options=("Unique", "RGB"),
+        ),
+        PropertySpec(
+            "Color",
+            "color",
+            "#ffff7f",
+            "Colour of the three.",
+            when=(("Covariance", "Orientation", "Color Style"), "Unique"),
+        ),
+        alpha("Opacity of the three.", 0.5),
+        PropertySpec(
+            "Offset",
+            "float",
+            1.0,
+            "Distance from the pose, in metres; in a plane: length of the triangle.",
+            minimum=0.0,
+        ),
+        PropertySpec("Scale", "float", 1.0, "Size of the three, in standard deviations.", minimum=0.0),
+    )
+    return PropertySpec(
+        "Covariance",
+        "bool",
+        True,
+        "Draw the uncertainty of each pose.",
+        children=(
+            PropertySpec("Position", "bool", True, "Draw the uncertainty of the position.", children=position),
+            PropertySpec("Orientation", "bool", True, "Draw the uncertainty of the orientation.", children=orientation),
+        ),
+    )
+
+
+NO_COVARIANCE: Floats = np.zeros(0, dtype=np.float32)
+
+_FLAT = (("Shape",), "Arrow (Flat)")
+_SOLID = (("Shape",), "Arrow (3D)")
+
+
+def pose_row(pose: Any) -> tuple[float, ...]:
+    """Return x, y, z, qx, qy, qz, qw of a geometry_msgs/msg/Pose."""
+    at, turn = pose.position, pose.orientation
+    return (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w)
+
+
+def pose_rows(poses: Iterable[Any]) -> Floats:
+    """Return the poses as rows x y z qx qy qz qw; shape (N, 7)."""
+    return np.array([pose_row(pose) for pose in poses], dtype=np.float32).reshape(-1, 7)
+
+
+class PoseDisplay(RecentDisplay):
+    """The last pose of a topic."""
+
+    CLASS = "rviz_default_plugins/Pose"
+    MESSAGE = "geometry_msgs/msg/PoseStamped"
+    OCCASIONAL = True
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape())
+
+    def content(self, message: Any) -> DataContent | None:
+        """The pose."""
+        row = pose_row(message.pose)
+        return PoseMarks(np.array([row], dtype=np.float32), NO_COVARIANCE) if self.is_finite(row) else None
+
+
+class PoseWithCovarianceDisplay(RecentDisplay):
+    """The last pose of a topic, and its uncertainty."""
+
+    CLASS = "rviz_default_plugins/PoseWithCovariance"
+    MESSAGE = "geometry_msgs/msg/PoseWithCovarianceStamped"
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape(), covariance())
+
+    def content(self, message: Any) -> DataContent | None:
+        """The pose with its covariance."""
+        row = pose_row(message.pose.pose)
+        spread = np.asarray(message.pose.covariance, dtype=np.float64)
+        if not self.is_finite(row, spread):
+            return None
+        return PoseMarks(np.array([row], dtype=np.float32), spread.astype(np.float32))
+
+
+_LOOK_OF_POSES = (
+    PropertySpec(
+        "Shape",
+        "enum",
+        "Arrow (Flat)",
+        "Whether poses are drawn as arrows of lines, as solid arrows or as axes.",
+        options=("Arrow (Flat)", "Arrow (3D)", "Axes"),
+    ),
+    PropertySpec("Color", "color", "#ff1900", "Colour of the arrows."),
+    alpha("Opacity of the arrows."),
+)
+
+
+class PoseArrayDisplay(RecentDisplay):
+    """The poses of the last message of a topic."""
+
+    CLASS = "rviz_default_plugins/PoseArray"
+    MESSAGE = "geometry_msgs/msg/PoseArray"
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        *_LOOK_OF_POSES,
+        length("Arrow Length", 0.3, "Length of the arrows, in metres.", _FLAT),
+        length("Head Radius", 0.03, "Width of the arrows' heads, in metres.", _SOLID),
+        length("Head Length", 0.07, "Length of the arrows' heads, in metres.", _SOLID),
+        length("Shaft Radius", 0.01, "Thickness of the arrows' shafts, in metres.", _SOLID),
+        length("Shaft Length", 0.23, "Length of the arrows' shafts, in metres.", _SOLID),
+        length("Axes Length", 0.3, "Length of each axis, in metres.", _AXES),
+        length("Axes Radius", 0.01, "Thickness of each axis, in metres.", _AXES),
+    )
+
+    def content(self, message: Any) -> DataContent | None:
+        """The poses."""
+        rows = pose_rows(message.poses)
+        return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None
+
+
+class ParticleCloudDisplay(RecentDisplay):
+    """The particles of nav2's amcl: likelier ones are larger (nav2_rviz_plugins)."""
+
+    CLASS = "nav2_rviz_plugins/ParticleCloud"
+    MESSAGE = "nav2_msgs/msg/ParticleCloud"
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        *_LOOK_OF_POSES,
+        length("Min Arrow Length", 0.02, "Length of the arrow of an unlikely pose, in metres."),
+        length("Max Arrow Length", 0.3, "Length of the arrow of a certain pose, in metres."),
+        PropertySpec(
+            "Arrow Height Scale", "float", 5.0, "Height in metres at which a certain pose is drawn.", minimum=0.0
+        ),
+    )
+
+    def content(self, message: Any) -> DataContent | None:
+        """The poses and their weights."""
+        rows = pose_rows(particle.pose for particle in message.particles)
+        weights = np.array([particle.weight for particle in message.particles], dtype=np.float32)
+        return ParticleMarks(rows, weights) if self.is_finite(rows, weights) else None
+
+
+_NORM_TOLERANCE = 10e-3
+
+
+class OdometryDisplay(RecentDisplay):
+    """The path of a robot: a mark after each distance or rotation."""
+
+    CLASS = "rviz_default_plugins/Odometry"
+    MESSAGE = "nav_msgs/msg/Odometry"
+    LENGTH = ("Keep",)
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        PropertySpec(
+            "Position Tolerance",
+            "float",
+            0.1,
+            "Distance from the last mark at which a new one is drawn, in metres.",
+            minimum=0.0,
+        ),
+        PropertySpec(
+            "Angle Tolerance",
+            "float",
+            0.1,
+            "Angle from the last mark at which a new one is drawn, in radians.",
+            minimum=0.0,
+        ),
+        PropertySpec("Keep", "int", 100, "The number of marks that are kept; 0 for all.", minimum=0),
+        *pose_shape(nested=True),
+        covariance(),
+    )
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._marked: tuple[float, ...] | None = None
+
+    def content(self, message: Any) -> DataContent | None:
+        """Return the pose with its covariance, unless it is too near to the last."""
+        row = pose_row(message.pose.pose)
+        spread = np.asarray(message.pose.covariance, dtype=np.float64)
+        if not self.is_finite(row, spread):
+            return None
+        if abs(sum(part * part for part in row[3:]) - 1.0) >= _NORM_TOLERANCE:
+            self.refuse(phrase("Message contained unnormalized quaternion (squares of values don't add to 1)"))
+            return None
+        if self._is_near(row):
+            return None
+        self._marked = row
+        return PoseMarks(np.array([row], dtype=np.float32), spread.astype(np.float32))
+
+    def reset(self) -> None:
+        """Forget the marks; the next message makes one."""
+        self._marked = None
+        super().reset()
+
+    def _is_near(self, row: tuple[float, ...]) -> bool:
+        if self._marked is None:
+            return False
+        cosine = sum(a * b for a, b in zip(self._marked[3:], row[3:], strict=True))
+        angle = math.acos(min(1.0, max(-1.0, 2.0 * cosine * cosine - 1.0)))
+        return math.dist(self._marked[:3], row[:3]) < self.properties.number(
+            "Position Tolerance"
+        ) and angle < self.properties.number("Angle Tolerance")
+
+
+_AXES_SHOWN = (("Pose Style",), "Axes")
+_ARROWS_SHOWN = (("Pose Style",), "Arrows")
+
+
+class PathDisplay(RecentDisplay):
+    """The last paths of a topic, as lines through their poses, optionally with the poses."""
+
+    CLASS = "rviz_default_plugins/Path"
+    MESSAGE = "nav_msgs/msg/Path"
+    OCCASIONAL = True
+    LENGTH = ("Buffer Length",)
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        line_style(),
+        line_width(),
+        PropertySpec("Color", "color", "#19ff00", "Colour of the lines."),
+        alpha("Opacity of the lines."),
+        PropertySpec("Buffer Length", "int", 1, "The number of paths that are shown.", minimum=1),
+        vector("Offset", "Offset of the paths in the Fixed Frame, in metres."),
+        PropertySpec("Pose Style", "enum", "None", "The shape of the poses.", options=("None", "Axes", "Arrows")),
+        length("Length", 0.3, "Length of each axis, in metres.", _AXES_SHOWN),
+        length("Radius", 0.03, "Thickness of each axis, in metres.", _AXES_SHOWN),
+        PropertySpec("Pose Color", "color", "#ff55ff", "Colour of the arrows.", when=_ARROWS_SHOWN),
+        length("Shaft Length", 0.1, "Length of the arrows' shafts, in metres.", _ARROWS_SHOWN),
+        length("Head Length", 0.2, "Length of the arrows' heads, in metres.", _ARROWS_SHOWN),
+        length("Shaft Diameter", 0.1, "Thickness of the arrows' shafts, in metres.", _ARROWS_SHOWN),
+        length("Head Diameter", 0.3, "Width of the arrows' heads, in metres.", _ARROWS_SHOWN),
+    )
+
+    def content(self, message: Any) -> DataContent | None:
+        """The poses of a path."""
+        rows = pose_rows(stamped.pose for stamped in message.poses)
+        return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None

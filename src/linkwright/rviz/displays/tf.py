@@ -1,0 +1,183 @@
+"""rviz_default_plugins/TF."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Phrase, foreign, phrase
+from linkwright.page.protocol.displays import PropertyChanged, StatusRow
+from linkwright.rviz.config.rviz_config import DisplayConfig
+from linkwright.rviz.config.schema import Path, PropertySpec, Schema
+from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay
+
+if TYPE_CHECKING:
+    from linkwright.graph.names.expressions import Expression
+
+
+class FrameFilter:
+    """A regular expression that selects names of frames.
+
+    Args:
+        text: the expression, empty for none.
+
+    Attributes:
+        text: the same.
+        problem: why the expression is not valid, for the status; None if it is.
+    """
+
+    def __init__(self, text: str = "") -> None:
+        self.text = text
+        self.problem: Phrase | None = None
+        self._expression: Expression | None = None  # here, because few users write an expression
+        self._known: set[str] = set()
+        self._found: set[str] = set()
+        if text:
+            from linkwright.graph.names.expressions import Expression, ExpressionError
+
+            try:
+                self._expression = Expression(text)
+            except ExpressionError as error:
+                self.problem = phrase("This expression is not used: {reason}", reason=foreign(error))
+
+    @property
+    def is_used(self) -> bool:
+        """Whether there is an expression to match."""
+        return self._expression is not None
+
+    def found_in(self, names: Collection[str]) -> set[str]:
+        """Return the names that match the expression, or none if the match takes too long."""
+        if self._expression is not None:
+            from linkwright.graph.names.expressions import TooCostlyError
+
+            try:
+                found = self._expression.among(name for name in names if name not in self._known)
+                self._found = found | self._found.intersection(names)
+                self._known = set(names)
+            except TooCostlyError:
+                self._expression, self._found = None, set()
+                self.problem = phrase("This expression is not used: it takes too long to match the names of the frames")
+        return self._found
+
+
+_WHITELIST, _BLACKLIST = "Filter (whitelist)", "Filter (blacklist)"
+_STATIC = (
+    PropertySpec("Show Names", "bool", False, "Write each frame's name beside it."),
+    PropertySpec("Show Axes", "bool", True, "Draw each frame's axes: x red, y green, z blue."),
+    PropertySpec("Show Arrows", "bool", True, "Draw an arrow from each frame to its parent."),
+    PropertySpec("Marker Scale", "float", 1.0, "Size of names, axes and arrows.", minimum=0.0),
+    PropertySpec("Update Interval", "float", 0.0, "Seconds between updates; 0 for every frame.", minimum=0.0),
+    PropertySpec(
+        "Frame Timeout",
+        "float",
+        15.0,
+        "Seconds until a frame without new transforms is removed: grey after the first third, hidden after the second.",
+        minimum=1.0,
+    ),
+    PropertySpec(_WHITELIST, "string", "", "A regular expression: only frames in whose name it is found are shown."),
+    PropertySpec(_BLACKLIST, "string", "", "A regular expression: frames in whose name it is found are not shown."),
+)
+_FILTERS = ((_WHITELIST,), (_BLACKLIST,))
+_ALL = ("Frames", "All Enabled")
+_DEEPEST = 60
+"""Maximum nesting of the rows of the Tree, so that no chain of frames is too long for the page's JSON."""
+
+
+class TfDisplay(ViewerDisplay):
+    """Axes, names and arrows of the frames that tf knows.
+
+    RViz's read-only rows of a frame (parent, position, orientation) are the page's own, see `Property`.
+    """
+
+    CLASS = "rviz_default_plugins/TF"
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        self._shown: tuple[str, ...] = ()
+        self._parents: tuple[tuple[str, str | None], ...] = ()
+        self._schema: Schema | None = None
+        self._only = FrameFilter()
+        self._without = FrameFilter()
+        super().__init__(host, identity, config)
+
+    def schema(self) -> Schema:
+        """Return the fixed properties, a check box for each frame, and the tree of frames."""
+        if self._schema is None:
+            self._schema = (*_STATIC, self._frames_spec(), self._tree_spec())
+        return self._schema
+
+    def start(self) -> None:
+        """List the present frames."""
+        self.frames_changed()
+
+    def changed(self, path: Path) -> None:
+        """Follow a filter, or the check box over all frames."""
+        if path in _FILTERS:
+            self.frames_changed()
+        elif path == _ALL:
+            value = self.properties.flag(*_ALL)
+            for name in self._boxes():
+                self.properties.set(("Frames", name), value)
+            self.publish_properties()
+        elif path[0] == "Frames" and not self.properties.flag(*path) and self.properties.flag(*_ALL):
+            self.properties.set(_ALL, False)
+            self.pages.publish(PropertyChanged(self.property_id(_ALL), False))
+
+    def frames_changed(self) -> None:
+        """List the frames again, and show the status of each."""
+        frames = self.host.frames
+        shown = tuple(sorted(self._filtered(set(frames.names))))
+        above = {
+            name: frames.names[parent] if parent >= 0 else None
+            for name, parent in zip(frames.names, frames.parents, strict=True)
+        }
+        parents = tuple((name, above[name]) for name in shown)
+        if (shown, parents) != (self._shown, self._parents):
+            self._shown, self._parents, self._schema = shown, parents, None
+            self.publish_properties()
+        filters = ((_WHITELIST, self._only), (_BLACKLIST, self._without))
+        problems = [
+            StatusRow(name, "error", frame_filter.problem) for name, frame_filter in filters if frame_filter.problem
+        ]
+        self.set_status(problems + [self._frame_status(name) for name in shown])
+
+    def _frame_status(self, name: str) -> StatusRow:
+        problem = self.host.frames.problem(name)
+        return StatusRow(name, "warn", problem) if problem else StatusRow(name, "ok", phrase("Transform OK"))
+
+    def _filtered(self, names: set[str]) -> set[str]:
+        """Return the names that pass the filters; an unused filter passes all."""
+        only, without = (self.properties.text(*path) for path in _FILTERS)
+        if only != self._only.text:
+            self._only = FrameFilter(only)
+        if without != self._without.text:
+            self._without = FrameFilter(without)
+        found = self._only.found_in(names)
+        if self._only.is_used:
+            names = found
+        return names - self._without.found_in(names)
+
+    def _boxes(self) -> list[str]:
+        return [name for name in self._shown if name != _ALL[1]]
+
+    def _frames_spec(self) -> PropertySpec:
+        boxes = tuple(
+            PropertySpec(name, "bool", True, "Draw this frame.", nested=True, details="frame") for name in self._boxes()
+        )
+        every = PropertySpec(_ALL[1], "bool", True, "Set the boxes of all frames.")
+        return PropertySpec("Frames", "group", description="The frames that tf knows.", children=(every, *boxes))
+
+    def _tree_spec(self) -> PropertySpec:
+        below: dict[str | None, list[str]] = {}
+        shown = set(self._shown)
+        for name, parent in self._parents:
+            below.setdefault(parent if parent in shown else None, []).append(name)
+        roots = tuple(_tree(name, below, 1) for name in below.get(None, ()))
+        return PropertySpec("Tree", "group", description="The tree of frames.", children=roots)
+
+
+def _tree(name: str, below: dict[str | None, list[str]], depth: int) -> PropertySpec:
+    names = below.get(name, [])
+    if names and depth == _DEEPEST:
+        rest = PropertySpec("...", "group", description="The chain continues; it is too long to be shown here.")
+        return PropertySpec(name, "group", children=(rest,))
+    return PropertySpec(name, "group", children=tuple(_tree(child, below, depth + 1) for child in names))

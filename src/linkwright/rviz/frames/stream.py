@@ -1,0 +1,445 @@
+"""Sends transforms from the graph to the pages: at most at the Frame Rate, at once after a pause, and only changes.
+
+`TimeControl` has the time at which frames are shown, `FrameView` the information for displays.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Hashable
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.geometry.arrays import compose
+from linkwright.graph import (
+    STATIC_TF_SUBSCRIPTION_QOS,
+    TF_QOS,
+    Clock,
+    FrameSnapshot,
+    Node,
+    TransformBuffer,
+    TransformException,
+)
+from linkwright.messages import TFMessage
+from linkwright.page.protocol.binary import FrameTable, pack_transforms
+from linkwright.page.protocol.displays import StatusRow
+from linkwright.page.protocol.time import SyncMode
+from linkwright.rviz.config.schema import FIXED_FRAME
+from linkwright.rviz.frames.history import FrameHistory
+
+_SHORTEST_PAUSE = 0.004
+"""Seconds between two reads of the buffer that find nothing new, so that a flood of equal transforms costs little."""
+
+_AHEAD = 0.8
+_HURRY = 0.95
+"""Parts of the time between two updates: by the first an update may be early, after the second the next one is due.
+
+Transforms that arrive at exactly the rate, but at other moments than updates are due, hardly have to wait: each of them
+waits a little less than the one before.
+"""
+
+_AGE_PERIOD = 0.25
+"""Seconds between updates when nothing arrives: frames without new transforms must fade."""
+
+_FADE_STEP = 0.02
+"""Change of an age, as part of the Frame Timeout, that is sent again; ages below a third of it look alike."""
+
+_IDENTITY = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]])
+
+_APPROACH = 0.3
+"""Part by which the delay of Approximate approaches that of the last message, at each update (rviz_common)."""
+
+
+@dataclass(frozen=True, slots=True)
+class FrameView:
+    """The frames, their parents, and which of them can be placed in the Fixed Frame.
+
+    Attributes:
+        fixed_frame: the Fixed Frame, which may be unknown to tf.
+        names: the frames tf knows.
+        parents: index of each frame's parent in `names`, -1 for a root.
+        placed: the frames with a transform to the Fixed Frame; this one always is, as in RViz.
+    """
+
+    fixed_frame: str = ""
+    names: tuple[str, ...] = ()
+    parents: tuple[int, ...] = ()
+    placed: frozenset[str] = field(default_factory=frozenset)
+
+    def problem(self, frame: str) -> Phrase | None:
+        """Return RViz's text for a frame that cannot be placed, or None."""
+        if frame in self.placed:
+            return None
+        return phrase("No transform from [{frame}] to [{fixed_frame}]", frame=frame, fixed_frame=self.fixed_frame)
+
+
+def transform_status(frames: FrameView, frame: str) -> StatusRow:
+    """Return the Transform row of a display in a frame (or in ``<Fixed Frame>``), in RViz's words."""
+    if frame == FIXED_FRAME or frame in frames.placed:
+        return StatusRow("Transform", "ok", phrase("Transform OK"))
+    return StatusRow(
+        "Transform",
+        "error",
+        phrase("Could not transform from [{frame}] to [{fixed_frame}]", frame=frame, fixed_frame=frames.fixed_frame),
+    )
+
+
+class TimeControl:
+    """RViz's Time panel: Pause, and Synchronization with its Source.
+
+    While paused displays take no messages and frames do not move. Exact shows the frames at the time of the source's
+    last message; Approximate lets time follow the present with the source's delay.
+
+    Args:
+        clock: the viewer's.
+        changed: called when one of the attributes has changed.
+        signalled: called when the source took a message, so that frames must be updated.
+
+    Attributes:
+        paused: whether time is paused.
+        mode: Off, Exact or Approximate.
+        source: the name of the leading display.
+        sources: names of the displays that can lead, in the order of their first messages.
+    """
+
+    def __init__(
+        self, clock: Clock, changed: Callable[[], None] = lambda: None, signalled: Callable[[], None] = lambda: None
+    ) -> None:
+        self.paused = False
+        self.mode: SyncMode = "Off"
+        self.source = ""
+        self.sources: list[str] = []
+        self._clock = clock
+        self._changed = changed
+        self._signalled = signalled
+        self._exact_ns = 0
+        self._delay_ns = self._current_delay_ns = 0
+        self._paused_ns = 0
+
+    def set(self, *, paused: bool, mode: SyncMode, source: str) -> None:
+        """Pause or resume; follow a source or none."""
+        if paused and not self.paused:
+            self._paused_ns = self.now_ns()
+        if (mode, source) != (self.mode, self.source):
+            self._exact_ns = self._delay_ns = self._current_delay_ns = 0
+        self.paused, self.mode, self.source = paused, mode, source
+        self._changed()
+
+    def took(self, display: str, stamp_ns: int) -> None:
+        """Note the time of a message that a display takes, nanoseconds."""
+        if display not in self.sources:
+            self.sources.append(display)
+            self._changed()
+        if display != self.source or self.mode == "Off" or self.paused:
+            return
+        self._exact_ns = stamp_ns
+        self._delay_ns = max(0, self._clock.now_ns() - stamp_ns) if stamp_ns else 0
+        self._signalled()
+
+    def lookup_ns(self) -> int | None:
+        """Return the time at which frames are to be shown, nanoseconds; None for the latest one."""
+        if self.paused and self.mode != "Off":
+            return self._paused_ns
+        if self.mode == "Exact":
+            return self._exact_ns or None
+        if self.mode == "Approximate" and self.source in self.sources:
+            self._current_delay_ns += int(_APPROACH * (self._delay_ns - self._current_delay_ns))
+            return self._clock.now_ns() - self._current_delay_ns
+        return None
+
+    def now_ns(self) -> int:
+        """Return the ROS time that the Time panel shows, nanoseconds."""
+        if self.paused:
+            return self._paused_ns
+        if self.mode == "Exact" and self._exact_ns:
+            return self._exact_ns
+        return self._clock.now_ns() - (self._current_delay_ns if self.mode == "Approximate" else 0)
+
+    def reset(self) -> None:
+        """Forget the times of messages."""
+        self.sources.clear()
+        self._exact_ns = self._delay_ns = self._current_delay_ns = 0
+        self._paused_ns = self._clock.now_ns()
+        self._changed()
+
+
+class FrameAudience(Protocol):
+    """The pages that receive frames."""
+
+    def __len__(self) -> int:
+        """Return the number of pages; without pages nothing is computed."""
+
+    def publish(self, message: FrameTable, /) -> None:
+        """Send a new frame table, before transforms that need it."""
+
+    def send_transforms(self, frame: bytes, /) -> None:
+        """Send a binary frame."""
+
+
+class FrameStream:
+    """Maintains the tf buffer of the viewer and sends its changes.
+
+    A frame that tf does not know may be the Fixed Frame if a display places it (`FrameHistory.place`).
+
+    A robot of a single link has no transforms, so tf does not know its frame. When that is the Fixed Frame it is sent
+    all the same, as the identity: RViz places a frame in itself without asking tf.
+
+    Args:
+        node: to subscribe with.
+        pages: the pages that see the result.
+        time: whether time is paused, and the time at which frames are shown.
+        history: the history of transforms, for a time other than the latest.
+        on_frames: called when frames appear or disappear, or when it changes whether they can be placed.
+        fade_time: returns the shortest Frame Timeout of the displays, seconds; None when no display shows ages.
+        own_frames: returns the frames of robots' links, which tf may not know.
+
+    Attributes:
+        fixed_frame: the Fixed Frame.
+        rate: most updates a second, hertz.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        pages: FrameAudience,
+        time: TimeControl,
+        history: FrameHistory,
+        *,
+        on_frames: Callable[[FrameView], None],
+        fade_time: Callable[[], float | None],
+        own_frames: Callable[[], frozenset[str]],
+    ) -> None:
+        self.fixed_frame = ""
+        self.rate = 30.0
+        self._node = node
+        self._pages = pages
+        self._time = time
+        self._history = history
+        self._on_frames = on_frames
+        self._fade_time = fade_time
+        self._own_frames = own_frames
+        self._clock = node.get_clock()
+        self._buffer = TransformBuffer(node.get_logger().warning)
+        self._loop = asyncio.get_running_loop()
+        self._next_look = node.create_guard_condition(self._look_if_wanted)
+        self._wanted = False
+        self._later: asyncio.TimerHandle | None = None
+        self._ageing: asyncio.Handle | None = None
+        self._due = self._looked_at = float("-inf")
+        self._stamp_ns = 0
+        self._structure: tuple[Any, ...] = ()
+        self._table = FrameTable(0, [], [])
+        self._poses: NDArray[np.float32] = np.empty((0, 7), dtype=np.float32)
+        self._ages: NDArray[np.float64] = np.empty(0)
+        self._placed = b""
+        self._frame = b""
+        self._release: Callable[[], None] | None = None
+        self._held: dict[Hashable, tuple[TFMessage, bool]] = {}
+        self._paused_ns: int | None = None
+
+    def start(self) -> None:
+        """Subscribe, and start sending."""
+        for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
+            self._node.create_subscription(
+                TFMessage, topic, partial(self._add_transforms, static=static), qos
+            ).take_together()
+        self._history.on_own.append(self._wake)
+        self._age()
+
+    def close(self) -> None:
+        """Stop sending."""
+        if self._wake in self._history.on_own:
+            self._history.on_own.remove(self._wake)
+        for handle in (self._later, self._ageing):
+            if handle is not None:
+                handle.cancel()
+        self._later = self._ageing = None
+        self._next_look.destroy()
+        if self._release is not None:
+            self._release()
+            self._release = None
+
+    def time_changed(self) -> None:
+        """Update, because time was paused, resumed, or set to another source."""
+        if self._time.paused:
+            self._paused_ns = self._paused_ns or self._clock.now_ns()
+        else:
+            self._paused_ns = None
+            held = list(self._held.values())
+            self._held.clear()
+            for message, static in held:
+                self._add_transforms(message, static=static)
+        self.refresh()
+
+    def forget(self) -> None:
+        """Forget all moving transforms: time was reset."""
+        self._held.clear()
+        self._buffer.clear()
+        self.refresh()
+
+    def look_soon(self) -> None:
+        """Update as soon as the rate allows."""
+        self._wake()
+
+    def robot_changed(self, gone: set[str]) -> None:
+        """Forget the frames that a new robot lacks, and check whether it has one that tf does not know."""
+        known = gone.intersection(self._buffer.frames())
+        if known:
+            self._buffer.remove(known)
+        self._wake()
+
+    def refresh(self) -> None:
+        """Update now, even without pages: the Fixed Frame or the robot has changed, or a page opens."""
+        if self._later is not None:
+            self._later.cancel()
+        self._look()
+
+    @property
+    def opening(self) -> tuple[FrameTable, bytes]:
+        """Return the frame table and the last binary frame, for a page that opens; empty before there is one."""
+        return self._table, self._frame
+
+    def _add_transforms(self, message: TFMessage, *, static: bool) -> None:
+        batch = message.batch
+        if self._time.paused:
+            key = (batch.parents, batch.children, static)
+            self._held.pop(key, None)
+            self._held[key] = (message, static)
+            return
+        self._buffer.update(TFMessage(batch=batch), static=static, now_ns=self._clock.now_ns())
+        self._stamp_ns = max(self._stamp_ns, batch.stamp_ns)
+        self._wake()
+
+    def _wake(self) -> None:
+        if self._wanted or not len(self._pages):
+            return
+        self._wanted = True
+        ahead = _AHEAD / self.rate
+        due = max(self._due - ahead, self._looked_at + _SHORTEST_PAUSE)
+        if due <= self._loop.time():
+            self._next_look.trigger()
+        else:
+            self._later = self._loop.call_at(due, self._look)
+
+    def _age(self) -> None:
+        self._ageing = self._loop.call_later(_AGE_PERIOD, self._age)
+        quiet = self._loop.time() - self._looked_at > _AGE_PERIOD / 2
+        if quiet and self._fade_time() is not None and self._ages.any():
+            self._wake()
+
+    def _look_if_wanted(self) -> None:
+        if self._wanted:
+            self._look()
+
+    def _look(self) -> None:
+        self._wanted, self._later = False, None
+        self._looked_at = self._loop.time()
+        fixed_frame = self.fixed_frame
+        snapshot = self._snapshot(fixed_frame, self._paused_ns or self._clock.now_ns())
+        poses, ages = self._poses_then(snapshot, fixed_frame), snapshot.ages
+        alone = fixed_frame not in snapshot.names and self._stands_alone(fixed_frame)
+        if alone:
+            poses, ages = np.concatenate([poses, _IDENTITY]), np.append(ages, 0.0)
+        changed = self._compare_structure(snapshot, fixed_frame if alone else None)
+        rows = poses.astype(np.float32)
+        if changed or self._is_news(rows, ages):
+            self._send(rows, ages)
+        self._notify_displays(snapshot, rows, fixed_frame, changed=changed)
+
+    def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
+        """Return the poses of all frames in the Fixed Frame, which may be one that a display places."""
+        # The buffer may know the frame before the history does.
+        own = None if self._buffer.knows(fixed_frame) else self._history.own(fixed_frame)
+        if own is None or own.parent is None:
+            return self._buffer.snapshot(fixed_frame, now_ns)
+        snapshot = self._buffer.snapshot(own.parent, now_ns)
+        return replace(snapshot, poses=compose(own.pose, snapshot.poses))
+
+    def _stands_alone(self, frame: str) -> bool:
+        """Return whether a frame that tf does not know is a robot's or a display's, without a connection to tf's."""
+        own = self._history.own(frame)
+        return frame in self._own_frames() or (own is not None and own.parent is None)
+
+    def _poses_then(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
+        """Return the poses of frames at the time to be shown, or the present ones if that time is unknown."""
+        stamp_ns = self._time.lookup_ns()
+        self._follow(needed=stamp_ns is not None)
+        if stamp_ns is None:
+            return snapshot.poses
+        poses: NDArray[np.float64] = snapshot.poses.copy()
+        for row, name in enumerate(snapshot.names):
+            with suppress(TransformException):
+                poses[row] = self._history.pose(fixed_frame, name, stamp_ns)
+        return poses
+
+    def _follow(self, *, needed: bool) -> None:
+        """Subscribe to the history while another time than the latest is shown."""
+        if needed and self._release is None:
+            self._release = self._history.use(lambda: None)
+        elif not needed and self._release is not None:
+            self._release()
+            self._release = None
+
+    def _compare_structure(self, snapshot: FrameSnapshot, alone: str | None) -> bool:
+        structure = (snapshot.revision, alone)
+        if structure == self._structure:
+            return False
+        self._structure = structure
+        names, parents = list(snapshot.names), list(snapshot.parents)
+        if alone is not None:
+            names.append(alone)
+            parents.append(-1)
+        self._table = FrameTable(self._table.revision + 1, names, parents)
+        self._pages.publish(self._table)
+        return True
+
+    def _is_news(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> bool:
+        if poses.tobytes() != self._poses.tobytes():
+            return True
+        fade_time = self._fade_time()
+        if fade_time is None:
+            return False
+        if ((ages < fade_time) != (self._ages < fade_time)).any():
+            return True
+        looks = np.clip(ages, fade_time / 3, fade_time) - np.clip(self._ages, fade_time / 3, fade_time)
+        return bool(np.abs(looks).max(initial=0.0) > _FADE_STEP * fade_time)
+
+    def _send(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> None:
+        self._poses, self._ages = poses, ages
+        self._due = self._next_due()
+        self._frame = pack_transforms(self._table.revision, self._stamp_ns / 1e9, poses, ages)
+        self._pages.send_transforms(self._frame)
+
+    def _next_due(self) -> float:
+        """Return the earliest time of the next update.
+
+        A slightly late update does not delay the next one: transforms that arrive at the rate would otherwise wait
+        longer and longer, until one of them is left out.
+        """
+        period = _HURRY / self.rate
+        in_time = self._looked_at - self._due < period / 2
+        return (self._due if in_time else self._looked_at) + period
+
+    def _notify_displays(
+        self, snapshot: FrameSnapshot, poses: NDArray[np.float32], fixed_frame: str, *, changed: bool
+    ) -> None:
+        has_pose = ~np.isnan(poses[:, 0])
+        placed = has_pose.tobytes() + fixed_frame.encode()
+        if not changed and placed == self._placed:
+            return
+        self._placed = placed
+        names = self._table.names
+        self._on_frames(
+            FrameView(
+                fixed_frame=fixed_frame,
+                names=snapshot.names,
+                parents=snapshot.parents,
+                placed=frozenset(names[row] for row in np.flatnonzero(has_pose)) | {fixed_frame},
+            )
+        )

@@ -1,0 +1,60 @@
+"""The lights of a world for the page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from linkwright.geometry.single import Transform, rotate
+from linkwright.page.protocol.worlds import LightScene
+from linkwright.sdf.frames import FrameError, Frames, placed_links
+from linkwright.sdf.lights import Light
+from linkwright.sdf.worlds import World
+
+_DOWN = (0.0, 0.0, -1.0)
+
+
+def lights_of(world: World) -> list[LightScene]:
+    """Return the lights of a world and of its links that are on, without those that cannot be placed.
+
+    Args:
+        world: with its includes resolved.
+    """
+    return [*_of_world(world), *_of_links(world)]
+
+
+def _of_world(world: World) -> Iterator[LightScene]:
+    frames = Frames(world)
+    for light in world.lights:
+        if light.light_on and (not light.pose.relative_to or light.pose.relative_to in frames):
+            yield _light(light, None, frames.placed(light.pose))
+
+
+def _of_links(world: World) -> Iterator[LightScene]:
+    try:
+        links = list(placed_links(world))
+    except FrameError:
+        return
+    for placed in links:
+        for light in placed.link.lights:
+            if light.light_on:
+                yield _light(light, placed.name, placed.frames.in_link(light.pose, placed.link.name))
+
+
+def _light(light: Light, link: str | None, pose: Transform) -> LightScene:
+    x, y, z = rotate(pose[3:], light.direction)
+    length = (x * x + y * y + z * z) ** 0.5
+    found = LightScene(
+        kind=light.type,  # type: ignore[arg-type]  # the reader accepts no other words
+        link=link,
+        position=list(pose[:3]),
+        direction=[x / length, y / length, z / length] if length > 0.0 else list(_DOWN),
+        color=[light.intensity * part for part in light.diffuse[:3]],
+        shadows=light.cast_shadows,
+    )
+    if light.type != "directional":
+        fading = light.attenuation
+        found.range = fading.range
+        found.fading = [fading.constant, fading.linear, fading.quadratic]
+    if light.type == "spot" and light.spot is not None:
+        found.cone = [light.spot.inner_angle, light.spot.outer_angle]
+    return found

@@ -1,0 +1,354 @@
+"""Interactive markers: a client of a server, and the conversion of its markers to what the page draws.
+
+It receives all markers first, then changes, and all of them again after a lost change. Controls without markers
+get the arrows, rings and buttons that the ``interactive_markers`` package gives them.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any, get_args
+
+import numpy as np
+from msgspec.structs import replace
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.geometry.single import Transform, compose, invert
+from linkwright.graph import Client, Node, Publisher, QoSProfile, Subscription
+from linkwright.messages import get_message, get_service
+from linkwright.page.files import MeshIndex
+from linkwright.page.protocol.displays import StatusLevel
+from linkwright.page.protocol.markers import (
+    InteractionMode,
+    InteractiveControl,
+    InteractiveMarkerShape,
+    MarkerKind,
+    MarkerMenuEntry,
+    MarkerShape,
+    OrientationMode,
+)
+from linkwright.rviz.markers.shapes import BadMarkerError, pose_of, read_marker, unit_quaternion
+
+_PERIOD = 0.25
+"""Seconds between two checks for the server."""
+
+_UPDATE_DEPTH = 100
+_UPDATE = 1
+
+
+@dataclass(slots=True)
+class ClientEvents:
+    """The events of a connection to a server.
+
+    Attributes:
+        everything: its markers, at the beginning and after a lost update.
+        update: a visualization_msgs/msg/InteractiveMarkerUpdate.
+        gone: the server has no markers now, or has gone.
+        status: the state of the connection, for the display's status.
+    """
+
+    everything: Callable[[list[Any]], None]
+    update: Callable[[Any], None]
+    gone: Callable[[], None]
+    status: Callable[[StatusLevel, Phrase], None]
+
+
+class InteractiveMarkerClient:
+    """Connects to one server, waiting until it appears, and again when it comes back.
+
+    Args:
+        node: to subscribe with.
+        namespace: the server's namespace.
+        events: the callbacks.
+
+    Raises:
+        LinkwrightError: the namespace does not give a valid topic name.
+    """
+
+    def __init__(self, node: Node, namespace: str, events: ClientEvents) -> None:
+        self._node = node
+        self._namespace = namespace.rstrip("/")
+        self._events = events
+        self._sequence: int | None = None
+        self._early: list[Any] = []
+        self._request: Any = None
+        self._look: asyncio.TimerHandle | None = None
+        self._subscription: Subscription[Any] = node.create_subscription(
+            get_message("visualization_msgs/msg/InteractiveMarkerUpdate"),
+            f"{self._namespace}/update",
+            self._received,
+            QoSProfile(_UPDATE_DEPTH),
+        )
+        self._feedback: Publisher[Any] = node.create_publisher(
+            get_message("visualization_msgs/msg/InteractiveMarkerFeedback"),
+            f"{self._namespace}/feedback",
+            QoSProfile(_UPDATE_DEPTH),
+        )
+        self._service: Client[Any, Any] = node.create_client(
+            get_service("visualization_msgs/srv/GetInteractiveMarkers"), f"{self._namespace}/get_interactive_markers"
+        )
+        self._watch()
+
+    def publish(self, feedback: Any) -> None:
+        """Send feedback on a marker to the server."""
+        self._feedback.publish(feedback)
+
+    def close(self) -> None:
+        """Disconnect from the server."""
+        if self._look is not None:
+            self._look.cancel()
+            self._look = None
+        self._request = None
+        with suppress(ValueError):  # the node may have been destroyed before
+            self._node.destroy_subscription(self._subscription)
+            self._node.destroy_publisher(self._feedback)
+            self._node.destroy_client(self._service)
+
+    def _watch(self) -> None:
+        self._look = asyncio.get_running_loop().call_later(_PERIOD, self._watch)
+        there = self._service.service_is_ready()
+        if not there and (self._sequence is not None or self._request is not None):
+            self._begin_anew()
+        if not there:
+            self._events.status(
+                "warn", phrase("Service is not available: {name}", name=f"{self._namespace}/get_interactive_markers")
+            )
+        elif self._sequence is None and self._request is None:
+            self._ask()
+
+    def _ask(self) -> None:
+        self._events.status("ok", phrase("Sending request for interactive markers"))
+        request = self._request = self._service.call_async(self._service.srv_type.Request())
+        request.add_done_callback(lambda done: self._answered(request, done.result()))
+
+    def _answered(self, request: Any, response: Any) -> None:
+        if request is not self._request or response is None:
+            return  # from a server that has gone since
+        self._request = None
+        self._sequence = response.sequence_number
+        self._events.everything(list(response.markers))
+        self._events.status("ok", phrase("Initialized interactive marker client"))
+        early, self._early = self._early, []
+        for update in early:
+            self._received(update)
+
+    def _received(self, update: Any) -> None:
+        if self._sequence is None:
+            self._early = [*self._early, update][-_UPDATE_DEPTH:]
+            return
+        if update.seq_num <= self._sequence and update.type == _UPDATE:
+            return  # the first answer includes it already
+        expected = self._sequence + (1 if update.type == _UPDATE else 0)
+        if update.seq_num != expected:
+            self._begin_anew()
+            self._events.status(
+                "warn",
+                phrase(
+                    "Detected lost update or server restart. Resetting. Sequence {expected} expected", expected=expected
+                ),
+            )
+            return
+        if update.type == _UPDATE:
+            self._sequence = update.seq_num
+            self._events.update(update)
+
+    def _begin_anew(self) -> None:
+        self._sequence = self._request = None
+        self._early.clear()
+        self._events.gone()
+
+
+_MODES: tuple[InteractionMode, ...] = get_args(InteractionMode)
+_ORIENTATIONS: tuple[OrientationMode, ...] = get_args(OrientationMode)
+
+_RING_STEPS = 36
+_RING_WIDTH = 0.3
+"""The width of rings in relation to their inner radius, which is half the marker's scale."""
+
+_DARK = 0.6
+_NONE = np.empty((0, 4), dtype=np.float32)
+
+
+FramePlacer = Callable[[str, str], Transform]
+"""Returns the pose of the second frame in the first, now; raises a LinkwrightError if there is none."""
+
+
+def read_interactive_marker(
+    message: Any, index: MeshIndex, frames: FramePlacer, *, transparent: bool
+) -> InteractiveMarkerShape:
+    """Return the shape and the controls of an interactive marker.
+
+    Args:
+        message: a visualization_msgs/msg/InteractiveMarker.
+        index: finds the files that it names.
+        frames: places markers that name a frame of their own.
+        transparent: whether default arrows and rings are transparent.
+
+    Raises:
+        BadMarkerError: it cannot be drawn.
+    """
+    scale = message.scale or 1.0
+    pose = pose_of(message.pose)
+    if not all(map(math.isfinite, (*pose, scale))):
+        raise BadMarkerError(phrase("Marker contains invalid floats!"))
+    names: set[str] = set()
+    return InteractiveMarkerShape(
+        name=message.name,
+        description=message.description,
+        pose=pose,
+        scale=scale,
+        controls=[
+            _control(control, message, scale, _unique(control.name, names), index, frames, transparent=transparent)
+            for control in message.controls
+        ],
+        menu=[
+            MarkerMenuEntry(menu_entry.id, menu_entry.parent_id, menu_entry.title)
+            for menu_entry in message.menu_entries
+        ],
+    )
+
+
+def _unique(name: str, taken: set[str]) -> str:
+    chosen, number = name, 0
+    while chosen in taken:
+        chosen, number = f"{name}_u{number}", number + 1
+    taken.add(chosen)
+    return chosen
+
+
+def _control(
+    control: Any,
+    message: Any,
+    scale: float,
+    name: str,
+    index: MeshIndex,
+    frames: FramePlacer,
+    *,
+    transparent: bool,
+) -> InteractiveControl:
+    if control.interaction_mode >= len(_MODES) or control.orientation_mode >= len(_ORIENTATIONS):
+        raise BadMarkerError(phrase("Control '{name}' has an unknown interaction or orientation mode", name=name))
+    mode = _MODES[control.interaction_mode]
+    facing = _ORIENTATIONS[control.orientation_mode]
+    independent = control.independent_marker_orientation
+    orientation = list(unit_quaternion(control.orientation))
+    if control.markers:
+        markers = [_marker(marker, message, index, frames) for marker in control.markers]
+    elif mode == "menu":
+        markers, facing, independent = [_button(control.description, scale)], "view_facing", False
+    else:
+        markers = list(_default_markers(mode, orientation, scale, 0.5 if transparent else 1.0))
+    for number, marker in enumerate(markers):
+        marker.id = f"{message.name}/{name}/{number}"
+        marker.namespace = message.name
+    return InteractiveControl(
+        name=name,
+        description=control.description,
+        mode=mode,
+        orientation_mode=facing,
+        orientation=orientation,
+        always_visible=control.always_visible,
+        independent_orientation=independent,
+        markers=markers,
+    )
+
+
+def _marker(marker: Any, message: Any, index: MeshIndex, frames: FramePlacer) -> MarkerShape:
+    shape = read_marker(marker, index).shape
+    shape.scale = [length or 1.0 for length in shape.scale]
+    frame = marker.header.frame_id.removeprefix("/")
+    reference = message.header.frame_id.removeprefix("/")
+    if frame:
+        # The marker has a pose of its own, but here it is attached to the control.
+        in_reference = compose(frames(reference, frame), _as_pose(shape.pose))
+        shape.pose = list(compose(invert(_as_pose(pose_of(message.pose))), in_reference))
+    return shape
+
+
+def _as_pose(pose: list[float]) -> Transform:
+    x, y, z, qx, qy, qz, qw = pose
+    return x, y, z, qx, qy, qz, qw
+
+
+def _default_markers(
+    mode: InteractionMode, orientation: list[float], scale: float, alpha: float
+) -> Iterator[MarkerShape]:
+    color = [*_color_of(orientation), alpha]
+    base = _shape("arrow", orientation, [scale] * 3, color)
+    if mode == "move_axis":
+        for way in (1.0, -1.0):
+            points = np.array([[way * scale * 0.5, 0, 0], [way * scale * 0.9, 0, 0]], dtype=np.float32)
+            yield replace(base, scale=[scale * 0.15, scale * 0.25, scale * 0.2], points=points)
+    elif mode in ("move_plane", "rotate_axis", "move_rotate"):
+        points, shades = _ring(mode)
+        colors = _NONE if shades is None else _shaded(color[:3], shades)
+        yield replace(base, shape="triangle_list", points=points, colors=colors)
+
+
+def _color_of(orientation: list[float]) -> list[float]:
+    """Return red for an axis along x, green along y, blue along z, mixed between."""
+    axis = np.abs(rotation_matrix(orientation)[:, 0])
+    color: list[float] = (axis / axis.max()).tolist()
+    return color
+
+
+def _ring(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray[np.float64] | None]:
+    """Return triangles of a ring about x with an inner radius of a half, and how dark each is, or None."""
+    angles = np.arange(_RING_STEPS) * (2 * np.pi / _RING_STEPS)
+    inner = 0.5 * np.stack([np.zeros(_RING_STEPS), np.cos(angles), np.sin(angles)], axis=1)
+    outer = (1 + _RING_WIDTH) * inner
+
+    def after(ring: NDArray[np.float64], steps: int) -> NDArray[np.float64]:
+        return np.roll(ring, -steps, axis=0)
+
+    inner_1, outer_1, outer_2 = after(inner, 1), after(outer, 1), after(outer, 2)
+    if mode == "rotate_axis":  # slanting teeth, alternately light and dark
+        corners = np.stack([inner, outer_1, inner_1, inner_1, outer_1, outer_2], axis=1)
+        shades = np.repeat(_DARK + (1 - _DARK) * (np.arange(_RING_STEPS) % 2), 2)
+    elif mode == "move_rotate":  # dark points inward, light ones outward
+        inner_2 = after(inner, 2)
+        dark = np.stack([inner, outer_1, inner_1, inner_1, outer_1, inner_2], axis=1)
+        light = np.stack([outer, outer_1, inner, outer_1, outer_2, inner_2], axis=1)
+        corners = np.stack([dark, light], axis=1)[::2].reshape(-1, 6, 3)
+        shades = np.tile(np.repeat([_DARK, 1.0], 2), _RING_STEPS // 2)
+    else:
+        corners = np.stack([inner, outer, inner_1, outer, outer_1, inner_1], axis=1)
+        return corners.reshape(-1, 3).astype(np.float32), None
+    return corners.reshape(-1, 3).astype(np.float32), shades
+
+
+def _shaded(color: list[float], shades: NDArray[np.float64]) -> NDArray[np.float32]:
+    rgb = shades[:, None] * np.array(color)
+    return np.hstack([rgb, np.ones((len(shades), 1))]).astype(np.float32)
+
+
+def _button(text: str, scale: float) -> MarkerShape:
+    size = 0.25 * scale
+    shape = _shape("text", [0.0, 0.0, 0.0, 1.0], [size] * 3, [1.0, 1.0, 1.0, 1.0])
+    shape.pose[0], shape.pose[2] = -0.1 * size, 1.2 * scale - 0.1 * size
+    shape.text = text
+    return shape
+
+
+def _shape(kind: MarkerKind, orientation: list[float], scale: list[float], color: list[float]) -> MarkerShape:
+    return MarkerShape(
+        id="",
+        namespace="",
+        shape=kind,
+        frame="",
+        pose=[0.0, 0.0, 0.0, *orientation],
+        scale=scale,
+        color=color,
+        points=_NONE,
+        colors=_NONE,
+        uvs=_NONE,
+        text="",
+        mesh=None,
+        texture=None,
+    )

@@ -1,0 +1,373 @@
+"""Conversion of visualization_msgs/msg/Marker to the page's shapes, and the markers that a display shows.
+
+The rules and their texts are RViz's.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.geometry.single import Quaternion, Transform, compose, normalized
+from linkwright.page.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
+from linkwright.page.protocol.binary import pack_data
+from linkwright.page.protocol.markers import MarkerKind, MarkerMesh, MarkersChanged, MarkerShape
+
+ADD, DELETE, DELETE_ALL = 0, 2, 3
+
+_KINDS: tuple[MarkerKind, ...] = get_args(MarkerKind)
+"""By visualization_msgs' numbers."""
+_NO_POINTS = np.empty((0, 3), dtype=np.float32)
+_NO_COLORS = np.empty((0, 4), dtype=np.float32)
+_NO_UVS = np.empty((0, 2), dtype=np.float32)
+
+
+class BadMarkerError(ValueError):
+    """A marker cannot be drawn; the text gives the reason."""
+
+
+@dataclass(slots=True)
+class MarkerReading:
+    """A marker as it is drawn, before it is placed.
+
+    Attributes:
+        shape: with the pose in the message's frame, until it is placed.
+        pose: in the message's frame.
+        warning: a probable mistake in the message, or None.
+    """
+
+    shape: MarkerShape
+    pose: Transform
+    warning: Phrase | None = None
+
+
+def made_marker(
+    namespace: str,
+    name: str,
+    kind: MarkerKind,
+    pose: Sequence[float],
+    scale: Sequence[float],
+    color: Sequence[float],
+    *,
+    frame: str = "",
+    points: NDArray[np.float32] = _NO_POINTS,
+    colors: NDArray[np.float32] = _NO_COLORS,
+    mesh: MarkerMesh | None = None,
+) -> MarkerShape:
+    """Return a marker from its parts, without a message.
+
+    Args:
+        namespace: its namespace.
+        name: within the namespace.
+        kind: the kind of its shape.
+        pose: x, y, z, qx, qy, qz, qw in `frame`.
+        scale: x, y, z, as visualization_msgs/msg/Marker has it for the kind.
+        color: red, green, blue, alpha, from 0 to 1.
+        frame: the frame that it follows; the Fixed Frame if empty.
+        points: shape (N, 3), metres.
+        colors: one for each point, shape (N, 4); or none.
+        mesh: the file of a ``mesh``.
+    """
+    return MarkerShape(
+        id=f"{namespace}/{name}",
+        namespace=namespace,
+        shape=kind,
+        frame=frame,
+        pose=list(pose),
+        scale=list(scale),
+        color=list(color),
+        points=points,
+        colors=colors,
+        uvs=_NO_UVS,
+        text="",
+        mesh=mesh,
+        texture=None,
+    )
+
+
+def marker_id(message: Any) -> str:
+    """Return the name in RViz's status rows: ``<namespace>/<number>``."""
+    return f"{message.ns}/{message.id}"
+
+
+def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
+    """Return the shape of a marker.
+
+    Args:
+        message: a visualization_msgs/msg/Marker whose action is ADD.
+        index: finds the files that it names.
+
+    Raises:
+        BadMarkerError: it cannot be drawn.
+    """
+    if not 0 <= message.type < len(_KINDS):
+        raise BadMarkerError(phrase("Unknown marker type: {type}", type=message.type))
+    kind = _KINDS[message.type]
+    pose = _pose(message.pose)
+    shape = MarkerShape(
+        id=marker_id(message),
+        namespace=message.ns,
+        shape=kind,
+        frame="",
+        pose=list(pose),
+        scale=[message.scale.x, message.scale.y, message.scale.z],
+        color=_rgba(message.color),
+        points=_points(message.points),
+        colors=_colors(message.colors),
+        uvs=_NO_UVS,
+        text=message.text if kind == "text" else "",
+        mesh=None,
+        texture=None,
+    )
+    _check_floats(shape)
+    check = _CHECKS.get(kind)
+    warning = check(shape) if check else None
+    if kind == "mesh":
+        shape.mesh = _mesh(message, shape, index)
+    elif kind == "triangle_list":
+        _add_texture(message, shape, index)
+    return MarkerReading(shape, pose, warning)
+
+
+def placed_in(frame: Transform, reading: MarkerReading) -> list[float]:
+    """Return the marker's pose in the frame in which the pose of its own frame is given."""
+    return list(compose(frame, reading.pose))
+
+
+def pose_of(pose: Any) -> list[float]:
+    """Return a geometry_msgs/msg/Pose as x, y, z, qx, qy, qz, qw, with a unit quaternion."""
+    return list(_pose(pose))
+
+
+def _pose(pose: Any) -> Transform:
+    position = pose.position
+    return (position.x, position.y, position.z, *unit_quaternion(pose.orientation))
+
+
+def unit_quaternion(q: Any) -> Quaternion:
+    """Return a geometry_msgs/msg/Quaternion with length one; one that was not set means no rotation, as in RViz."""
+    return normalized(q.x, q.y, q.z, q.w)
+
+
+def _rgba(color: Any) -> list[float]:
+    return [color.r, color.g, color.b, color.a]
+
+
+def _points(points: Any) -> NDArray[np.float32]:
+    if not points:
+        return _NO_POINTS
+    return np.array([(point.x, point.y, point.z) for point in points], dtype=np.float32).reshape(-1, 3)
+
+
+def _colors(colors: Any) -> NDArray[np.float32]:
+    if not colors:
+        return _NO_COLORS
+    return np.array([(color.r, color.g, color.b, color.a) for color in colors], dtype=np.float32).reshape(-1, 4)
+
+
+def _check_floats(shape: MarkerShape) -> None:
+    finite = all(map(math.isfinite, (*shape.pose, *shape.scale, *shape.color)))
+    if not finite or any(len(array) and not np.isfinite(array).all() for array in (shape.points, shape.colors)):
+        raise BadMarkerError(phrase("Contains invalid floating point values (nans or infs)"))
+
+
+def _check_arrow(shape: MarkerShape) -> Phrase | None:
+    if len(shape.points) == 1:
+        raise BadMarkerError(
+            phrase("Arrow marker [{id}] only specified one point of a point to point arrow.", id=shape.id)
+        )
+    if len(shape.points) == 2:
+        return phrase("Scale of 0 in both x and y") if shape.scale[0] + shape.scale[1] == 0.0 else None
+    return _check_scale(shape)
+
+
+def _check_arrow_strip(shape: MarkerShape) -> Phrase | None:
+    if len(shape.points) < 2:
+        raise BadMarkerError(phrase("Arrow strip marker [{id}] needs at least two points.", id=shape.id))
+    return phrase("Scale of 0 in both x and y") if shape.scale[0] + shape.scale[1] == 0.0 else None
+
+
+def _check_scale(shape: MarkerShape) -> Phrase | None:
+    return phrase("Scale of 0 in one of x/y/z") if math.prod(shape.scale) == 0.0 else None
+
+
+def _check_line_list(shape: MarkerShape) -> Phrase | None:
+    if len(shape.points) % 2:
+        raise BadMarkerError(phrase("Line list marker [{id}] has an odd number of points.", id=shape.id))
+    return None
+
+
+def _check_dots(shape: MarkerShape) -> Phrase | None:
+    has_colors = len(shape.colors) > 0 and len(shape.colors) == len(shape.points)
+    if has_colors and not shape.colors[:, 3].any():
+        return phrase("All points have a zero alpha value.")
+    return None
+
+
+def _check_triangles(shape: MarkerShape) -> Phrase | None:
+    count = len(shape.points)
+    if count == 0:
+        raise BadMarkerError(phrase("TriMesh marker [{id}] has no points.", id=shape.id))
+    if count % 3:
+        raise BadMarkerError(
+            phrase(
+                "TriMesh marker [{id}] has a point count which is not divisible by 3 [{count}]",
+                id=shape.id,
+                count=count,
+            )
+        )
+    return _check_scale(shape)
+
+
+_CHECKS: dict[MarkerKind, Callable[[MarkerShape], Phrase | None]] = {
+    "arrow": _check_arrow,
+    "arrow_strip": _check_arrow_strip,
+    "cube": _check_scale,
+    "sphere": _check_scale,
+    "cylinder": _check_scale,
+    "line_list": _check_line_list,
+    "cube_list": _check_dots,
+    "sphere_list": _check_dots,
+    "points": _check_dots,
+    "triangle_list": _check_triangles,
+}
+
+
+def _mesh(message: Any, shape: MarkerShape, index: MeshIndex) -> MarkerMesh:
+    """Return the mesh: the bytes in the message, which Iron and later may carry, or the file that it names."""
+    name = message.mesh_resource
+    carried = message.mesh_file
+    if carried.filename and len(carried.data):
+        data = np.frombuffer(bytes(carried.data), dtype=np.uint8)
+        return MarkerMesh(_ending(carried.filename), None, data, message.mesh_use_embedded_materials)
+    located = index.locate(name, None, MESH_TYPES)
+    if located.url is None:
+        raise BadMarkerError(
+            phrase(
+                "Mesh resource marker [{id}] could not load [{name}]: {reason}",
+                id=shape.id,
+                name=name,
+                reason=located.problem,
+            )
+        )
+    return MarkerMesh(_ending(name), located.url, None, message.mesh_use_embedded_materials)
+
+
+def _add_texture(message: Any, shape: MarkerShape, index: MeshIndex) -> None:
+    if not message.texture_resource or not message.uv_coordinates:
+        return
+    count = len(message.uv_coordinates)
+    if count != len(shape.points):
+        raise BadMarkerError(
+            phrase(
+                "TriMesh marker [{id}] has {count} uv coordinates for {points} points",
+                id=shape.id,
+                count=count,
+                points=len(shape.points),
+            )
+        )
+    located = index.locate(message.texture_resource, None, IMAGE_TYPES)
+    if located.url is None:
+        raise BadMarkerError(
+            phrase(
+                "Could not load texture '{name}': {reason}",
+                name=message.texture_resource,
+                reason=located.problem,
+            )
+        )
+    shape.texture = located.url
+    shape.uvs = np.array(
+        [(uv_coordinate.u, uv_coordinate.v) for uv_coordinate in message.uv_coordinates], dtype=np.float32
+    )
+
+
+def _ending(name: str) -> str:
+    return name.rpartition(".")[2].lower()
+
+
+_MOST_GONE = 5000
+"""The number of removed markers that are remembered; a page that missed more receives all markers again."""
+
+
+class MarkerStore:
+    """Markers by id, with a revision for each change, so that a page can receive the changes since its last one.
+
+    It is the `outbox.Changes` of its display.
+
+    Args:
+        display: the id of the display.
+    """
+
+    def __init__(self, display: str) -> None:
+        self.key = f"data {display}"
+        self._display = display
+        self._shown: dict[str, tuple[int, MarkerShape]] = {}
+        self._gone: dict[str, int] = {}
+        self._change = 0
+        self._oldest = 0
+        self._packed: tuple[int, int, bytes] | None = None
+
+    def __len__(self) -> int:
+        return len(self._shown)
+
+    def __contains__(self, identity: str) -> bool:
+        return identity in self._shown
+
+    @property
+    def shapes(self) -> list[MarkerShape]:
+        """The markers shown."""
+        return [shape for _, shape in self._shown.values()]
+
+    def put(self, shape: MarkerShape) -> None:
+        """Show a marker, replacing one with its id."""
+        self._change += 1
+        self._gone.pop(shape.id, None)
+        self._shown.pop(shape.id, None)  # so that the last change is last in the order
+        self._shown[shape.id] = (self._change, shape)
+
+    def remove(self, identity: str) -> bool:
+        """Remove a marker; False if it was not shown."""
+        if self._shown.pop(identity, None) is None:
+            return False
+        self._change += 1
+        self._gone.pop(identity, None)
+        self._gone[identity] = self._change
+        if len(self._gone) > _MOST_GONE:
+            self._oldest = self._gone.pop(next(iter(self._gone)))
+        return True
+
+    def clear(self) -> None:
+        """Remove all markers."""
+        self._change += 1
+        self._oldest = self._change
+        self._shown.clear()
+        self._gone.clear()
+
+    def since(self, seen: int) -> tuple[bytes | None, int]:
+        """Return the changes since a revision, for a page that has all up to it."""
+        if seen == self._change:
+            return None, seen
+        if self._packed is None or self._packed[:2] != (seen, self._change):
+            self._packed = (seen, self._change, self._pack(seen))
+        return self._packed[2], self._change
+
+    def _pack(self, seen: int) -> bytes:
+        everything = seen < self._oldest or seen == 0
+        return pack_data(
+            self._display,
+            MarkersChanged(
+                everything=everything,
+                gone=[] if everything else _newer(self._gone, seen),
+                markers=[shape for change, shape in self._shown.values() if everything or change > seen],
+            ),
+        )
+
+
+def _newer(changes: dict[str, int], seen: int) -> list[str]:
+    return [identity for identity, change in changes.items() if change > seen]

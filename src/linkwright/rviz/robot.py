@@ -1,0 +1,345 @@
+"""A robot for the page: the source of its description, and its shapes.
+
+A description comes from a topic of the graph, or a file. Pages draw links with their shapes, colours, files and poses.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from linkwright.descriptions import examine
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
+from linkwright.geometry.arrays import quaternion_from_matrix
+from linkwright.geometry.single import quaternion_of
+from linkwright.graph import DurabilityPolicy, MessageInfo
+from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.introspection.answers import UNKNOWN_NODE
+from linkwright.messages import String
+from linkwright.packages import PackageFinder
+from linkwright.page.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
+from linkwright.page.protocol.description import LinkInertia
+from linkwright.page.protocol.displays import Place
+from linkwright.page.protocol.robot import JointScene, LinkScene, Shape
+from linkwright.rviz.config.property_store import PropertyStore, qos_of
+from linkwright.rviz.config.schema import PropertySpec, topic_spec
+from linkwright.rviz.context import ViewerContext
+from linkwright.urdf import Box, Capsule, Collision, Cylinder, Inertial, Link, Material, Mesh, Robot, Sphere, Visual
+from linkwright.xacro.origin import origin_of
+from linkwright.xmltree import Element
+
+SOURCE = "Description Source"
+FILE = "Description File"
+TOPIC = "Description Topic"
+
+DESCRIPTION_SPECS = (
+    PropertySpec(SOURCE, "enum", "Topic", "The source of the description.", options=("Topic", "File")),
+    PropertySpec(
+        FILE,
+        "string",
+        "",
+        "A URDF or xacro file: a path or a package:// address.",
+        when=((SOURCE,), "File"),
+    ),
+    topic_spec(
+        TOPIC,
+        "/robot_description",
+        "The topic of the description, std_msgs/msg/String.",
+        depth=1,
+        durability="Transient Local",
+        durability_help="Whether to receive a description that was published before. This display always "
+        "does: most files set Volatile, with which the robot would appear only by chance.",
+        when=((SOURCE,), "Topic"),
+    ),
+)
+
+
+class DescriptionSource:
+    """Follows the source that a display's properties name.
+
+    Args:
+        context: of the viewer; its library receives the files that were read, which gives the robot source positions.
+        properties: the display's properties, with `DESCRIPTION_SPECS`.
+        on_text: called with each description.
+        on_refusal: called with the findings if there is no description.
+    """
+
+    def __init__(
+        self,
+        context: ViewerContext,
+        properties: PropertyStore,
+        on_text: Callable[[str], None],
+        on_refusal: Callable[[Sequence[Diagnostic]], None],
+    ) -> None:
+        self._context = context
+        self._properties = properties
+        self._on_text = on_text
+        self._on_refusal = on_refusal
+        self._subscriptions: list[Any] = []
+        self._reading: asyncio.Task[None] | None = None
+        self._heard: dict[bytes, EndpointInfo | None] = {}
+        self.publisher: bytes | None = None
+        """The GID of the publisher of the last description; None before, and for files."""
+
+    def follow(self) -> Phrase | None:
+        """Follow the source named now instead of the one before; returns RViz's text for the failure, or None."""
+        self.close()
+        if self._properties.text(SOURCE) == "File":
+            return self._read_file(self._properties.text(FILE).strip())
+        return self._subscribe(self._properties.text(TOPIC).strip())
+
+    def close(self) -> None:
+        """Unsubscribe."""
+        for subscription in self._subscriptions:
+            with suppress(ValueError):  # the node may have been destroyed before
+                self._context.node.destroy_subscription(subscription)
+        self._subscriptions.clear()
+        self._heard.clear()
+        self.publisher = None
+        if self._reading is not None:
+            self._reading.cancel()
+            self._reading = None
+
+    def _subscribe(self, topic: str) -> Phrase | None:
+        if not topic:
+            return phrase("Error subscribing: Empty topic name")
+        asked = qos_of(self._properties, TOPIC)
+        # Transient local first, then the file's setting, for publishers that do not offer it.
+        profiles = [qos_of(self._properties, TOPIC, lasting=True)]
+        if asked.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
+            profiles.append(asked)
+        try:
+            for profile in profiles:
+                self._subscriptions.append(
+                    self._context.node.create_subscription(String, topic, self._received, profile)
+                )
+        except LinkwrightError as error:
+            return phrase("Error subscribing: {message}", message=error.diagnostics[0].message)
+        return None
+
+    def publishers(self) -> dict[bytes, str]:
+        """Return the present publishers of received descriptions, by GID: node, and machine if known."""
+        if not self._heard:
+            return {}
+        gids = set(map(self.current, self._heard))
+        return {
+            endpoint.gid: _node_text(endpoint)
+            for endpoint in self._context.node.graph.endpoints()
+            if endpoint.gid in gids
+        }
+
+    def current(self, gid: bytes) -> bytes:
+        """Return the present GID of a publisher of descriptions, which changes when this process joins a network."""
+        known = self._heard.get(gid)
+        if known is None or not known.local:
+            return gid
+        now = (
+            endpoint
+            for endpoint in self._context.node.graph.endpoints()
+            if endpoint.local and endpoint.kind is known.kind
+        )
+        return next(
+            (endpoint.gid for endpoint in now if (endpoint.node, endpoint.name) == (known.node, known.name)), gid
+        )
+
+    def _received(self, message: String, info: MessageInfo) -> None:
+        self.publisher = info.publisher_gid
+        if self.publisher not in self._heard:
+            endpoints = self._context.node.graph.endpoints()
+            self._heard[self.publisher] = next(
+                (endpoint for endpoint in endpoints if endpoint.gid == self.publisher), None
+            )
+        self._on_text(message.data)
+
+    def _read_file(self, address: str) -> Phrase | None:
+        if not address:
+            return phrase("No description file is named")
+        self._reading = asyncio.get_running_loop().create_task(self._read(address))
+        return None
+
+    async def _read(self, address: str) -> None:
+        try:
+            path: Path = self._context.finder.resolve(address)
+            description = await asyncio.to_thread(examine, path, packages=self._context.finder, xacro=True)
+        except LinkwrightError as error:
+            self._on_refusal(error.diagnostics)
+            return
+        self._on_text(self._context.library.remember(description))
+
+
+def _node_text(publisher: EndpointInfo) -> str:
+    name = (publisher.node or UNKNOWN_NODE).full_name
+    return f"{name} on {publisher.host}" if publisher.host else name
+
+
+def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
+    """Return mass, centre of mass and equivalent box of a link, or None if these cannot be computed."""
+    if inertial is None:
+        return None
+    from linkwright.inertia.inertial import from_inertial  # here, because few pages ask for inertias
+    from linkwright.inertia.magnitudes import is_computable
+
+    if not is_computable(inertial):
+        return None
+    properties = from_inertial(inertial)
+    box = properties.equivalent_box()
+    edges = [] if box is None or not np.isfinite(box).all() else [float(edge) for edge in box]
+    axes = properties.principal().axes if edges else np.eye(3)
+    return LinkInertia(
+        mass=float(properties.mass),
+        center=[float(part) for part in properties.center],
+        box=edges,
+        quaternion=[float(part) for part in quaternion_from_matrix(axes)],
+    )
+
+
+def place_of(element: Element | None) -> Place | None:
+    """Return the place where an element was written, with its macro calls and includes; None if a program made it."""
+    if element is None:
+        return None
+    origin = origin_of(element)
+    if origin.span is None:
+        return None
+    return Place(
+        file=origin.span.file,
+        line=origin.span.line,
+        column=origin.span.column,
+        trail=[f"{note.message}: {note.span}" if note.span else note.message for note in origin.trail],
+    )
+
+
+def folder_of(element: Element | None) -> Path | None:
+    """Return the folder of an element's file, from which relative paths start, or None if it has none."""
+    if element is None or element.source is None or element.source.name.startswith("<"):
+        return None
+    return Path(element.source.name).parent
+
+
+def frame_of(link: str, prefix: str) -> str:
+    """Return the tf frame of a link for a display's TF Prefix; RViz joins them with a slash."""
+    return f"{prefix}/{link}" if prefix else link
+
+
+def has_visuals(robot: Robot, finder: PackageFinder) -> bool:
+    """Return whether a visual of a robot can be drawn, so that the robot is visible without its frames.
+
+    Args:
+        robot: its description.
+        finder: finds the files of its meshes.
+    """
+    return any(link.visuals for link in SceneBuilder(MeshIndex(finder)).links(robot, ""))
+
+
+class SceneBuilder:
+    """Converts a robot to the page's form.
+
+    A visual has the colour of its material; each of several visuals its own, which RViz gets wrong. A collision has
+    that of the link's first visual, as in RViz.
+
+    Attributes:
+        index: the files found on the way, for `MeshFolders`.
+        problems: link -> problems with its files, in RViz's words.
+    """
+
+    def __init__(self, index: MeshIndex) -> None:
+        self.index = index
+        self.problems: dict[str, list[Phrase]] = {}
+
+    def links(self, robot: Robot, prefix: str) -> list[LinkScene]:
+        """Return the links in file order, with frames named by the display's TF Prefix."""
+        parents = {joint.child: joint.name for joint in robot.joints.values()}
+        return [self._link(link, prefix, parents.get(link.name)) for link in robot.links.values()]
+
+    def joints(self, robot: Robot) -> list[JointScene]:
+        """Return the joints in file order."""
+        return [
+            JointScene(
+                name=joint.name,
+                kind=joint.type,
+                parent=joint.parent,
+                child=joint.child,
+                position=list(joint.origin.xyz),
+                quaternion=list(quaternion_of(joint.origin)),
+                axis=list(joint.axis),
+                lower=_finite(joint.limit.lower) if joint.limit else None,
+                upper=_finite(joint.limit.upper) if joint.limit else None,
+            )
+            for joint in robot.joints.values()
+        ]
+
+    def _link(self, link: Link, prefix: str, parent_joint: str | None) -> LinkScene:
+        first = link.visuals[0].material if link.visuals else None
+        return LinkScene(
+            name=link.name,
+            frame=frame_of(link.name, prefix),
+            parent_joint=parent_joint,
+            visuals=self._shapes(link, link.visuals),
+            collisions=self._shapes(link, link.collisions, first),
+            place=place_of(link.element),
+            inertia=link_inertia(link.inertial),
+        )
+
+    def _shapes(self, link: Link, parts: Sequence[Visual | Collision], material: Material | None = None) -> list[Shape]:
+        shapes = (self._shape(link, part, part.material if isinstance(part, Visual) else material) for part in parts)
+        return [shape for shape in shapes if shape is not None]
+
+    def _shape(self, link: Link, part: Visual | Collision, material: Material | None) -> Shape | None:
+        geometry = part.geometry
+        shape = Shape(
+            kind="mesh",
+            size=[],
+            position=list(part.origin.xyz),
+            quaternion=list(quaternion_of(part.origin)),
+            color=list(material.rgba) if material and material.rgba else None,
+            texture=self._texture(link, material),
+            name=part.name,
+        )
+        if isinstance(geometry, Box):
+            shape.kind, shape.size = "box", list(geometry.size)
+        elif isinstance(geometry, Cylinder):
+            shape.kind, shape.size = "cylinder", [geometry.radius, geometry.length]
+        elif isinstance(geometry, Capsule):
+            shape.kind, shape.size = "capsule", [geometry.radius, geometry.length]
+        elif isinstance(geometry, Sphere):
+            shape.kind, shape.size = "sphere", [geometry.radius]
+        else:
+            return self._mesh(link, part, geometry, shape)
+        return shape
+
+    def _mesh(self, link: Link, part: Visual | Collision, mesh: Mesh, shape: Shape) -> Shape | None:
+        located = self.index.locate(mesh.filename, folder_of(part.element), MESH_TYPES)
+        if located.url is None:
+            self._problem(
+                link,
+                phrase("Could not load mesh resource '{name}': {reason}", name=mesh.filename, reason=located.problem),
+            )
+            return None
+        shape.size = list(mesh.scale)
+        shape.url = located.url
+        shape.format = mesh.filename.rpartition(".")[2].lower()
+        return shape
+
+    def _texture(self, link: Link, material: Material | None) -> str | None:
+        if material is None or not material.texture:
+            return None
+        located = self.index.locate(material.texture, folder_of(material.element), IMAGE_TYPES)
+        if located.url is None:
+            self._problem(
+                link, phrase("Could not load texture '{name}': {reason}", name=material.texture, reason=located.problem)
+            )
+        return located.url
+
+    def _problem(self, link: Link, text: Phrase) -> None:
+        problems = self.problems.setdefault(link.name, [])
+        if text not in problems:
+            problems.append(text)
+
+
+def _finite(number: float) -> float | None:
+    return number if math.isfinite(number) else None

@@ -1,0 +1,292 @@
+"""The displays of a configuration: adding, removing, moving, grouping and enabling them, all of it undoable."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from linkwright.page.protocol.configuration import EditKind, EditName
+from linkwright.rviz.config.rviz_config import Arrangement, DisplayConfig, RvizConfig
+from linkwright.rviz.config.yaml_tree import Memory
+from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay
+from linkwright.rviz.displays.catalogue import make_display
+from linkwright.rviz.visualization.history import Edit, History
+
+MAXIMUM_DISPLAYS = 1000
+"""Most displays; pages may not add more."""
+
+MAXIMUM_NESTING = 20
+"""Most groups around a display; pages may not nest deeper, so that the file can be read again."""
+
+
+class DisplayTree:
+    """The displays, which follow the entries of the configuration.
+
+    Changes here can be undone. A display that is removed is stopped; undo creates another one with its id and its part
+    of the file.
+
+    Args:
+        config: the configuration with the entries.
+        host: the visualization that they are part of.
+        history: the history of edits.
+        rearranged: called when displays were added, removed, moved or renamed, before new ones start.
+
+    Attributes:
+        displays: every display, each group before what is in it.
+    """
+
+    def __init__(
+        self,
+        config: RvizConfig,
+        host: DisplayHost,
+        history: History,
+        *,
+        rearranged: Callable[[], None],
+    ) -> None:
+        self._host = host
+        self._history = history
+        self._rearranged = rearranged
+        self._running = False
+        self.displays: list[ViewerDisplay] = []
+        self.fill(config)
+
+    def fill(self, config: RvizConfig) -> None:
+        """Create the displays of a configuration, without starting them."""
+        self._config = config
+        self.displays = [self._make(entry) for entry in config.walk()]
+        self._notify_arrangement()
+
+    def start(self) -> None:
+        """Start all displays."""
+        self._running = True
+        for display in self.displays:
+            display.start()
+
+    def stop(self) -> None:
+        """Stop all displays."""
+        self._running = False
+        for display in self.displays:
+            display.stop()
+
+    def find(self, identity: str) -> ViewerDisplay | None:
+        """Return the display with an id."""
+        return next((display for display in self.displays if display.id == identity), None)
+
+    # --- edits -------------------------------------------------------------------------------------------------
+
+    def check(self, display: ViewerDisplay, value: bool) -> None:
+        """Enable or disable a display with its content."""
+        if value == display.config.checked:
+            return
+        before, enabled = display.config.box, self._enabled()
+        display.config.checked = value
+        self._box_set(display, enabled)
+        name = EditName("enable" if value else "disable", display.config.name)
+        self._history.add(Edit(name, partial(self._swap_box, display.id), before))
+
+    def add(
+        self,
+        entry: DisplayConfig,
+        group: DisplayConfig | None = None,
+        prepare: Callable[[ViewerDisplay], None] | None = None,
+    ) -> ViewerDisplay:
+        """Add a display at the end of a group or of the list.
+
+        Args:
+            entry: its part of the file.
+            group: the group for it.
+            prepare: sets properties before it starts.
+
+        Raises:
+            ValueError: it is not a group, or nested too deeply, or there are too many displays.
+        """
+        self._check_room([entry])
+        _check_nesting(group, [entry])
+        display = self._make(entry)
+        if prepare is not None:
+            prepare(display)
+        self._rearrange(EditName("add", entry.name), lambda: self._config.insert(entry, group), [display])
+        return display
+
+    def duplicate(self, displays: Sequence[ViewerDisplay]) -> None:
+        """Insert a copy after each of these displays.
+
+        Raises:
+            ValueError: there are too many displays.
+        """
+        entries = _outermost(displays)
+        self._check_room(entries)
+
+        def copy() -> None:
+            for entry in entries:
+                siblings = self._config.siblings(entry.group)
+                self._config.insert(self._config.duplicate(entry), entry.group, siblings.index(entry) + 1)
+
+        self._rearrange(_named("duplicate", displays), copy)
+
+    def remove(self, displays: Sequence[ViewerDisplay]) -> None:
+        """Remove displays with their content."""
+
+        def take_away() -> None:
+            for entry in _outermost(displays):
+                self._config.remove(entry)
+
+        self._rearrange(_named("remove", displays), take_away)
+
+    def move(
+        self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None, before: DisplayConfig | None
+    ) -> None:
+        """Move displays into a group, before one of its displays or to the end.
+
+        Raises:
+            ValueError: it is not a group, or is inside of one of the displays, or nested too deeply.
+        """
+        moved = _outermost(displays)
+        if group is not None and (not group.is_group or any(group in entry.walk() for entry in moved)):
+            raise ValueError(f"displays cannot be put into '{group.name}'")
+        _check_nesting(group, moved)
+
+        def shift() -> None:
+            siblings = self._config.siblings(group)
+            after = siblings[siblings.index(before) :] if before in siblings else []
+            target = next((entry for entry in after if entry not in moved), None)
+            for entry in moved:
+                self._config.remove(entry)
+                self._config.insert(entry, group, siblings.index(target) if target else None)
+
+        self._rearrange(_named("move", displays), shift)
+
+    def gather(self, displays: Sequence[ViewerDisplay], name: str) -> None:
+        """Put displays into a new group, in the place of the first of them.
+
+        Raises:
+            ValueError: there are too many displays, or the group is nested too deeply.
+        """
+        moved = _outermost(displays)
+        around, at = moved[0].group, self._config.siblings(moved[0].group).index(moved[0])
+        group = self._config.make_group(name)
+        self._check_room([group])
+        _check_nesting(around, moved, more=1)
+
+        def put_together() -> None:
+            self._config.insert(group, around, at)
+            for entry in moved:
+                self._config.remove(entry)
+                self._config.insert(entry, group)
+
+        self._rearrange(EditName("group", name), put_together)
+
+    def rename(self, display: ViewerDisplay, name: str) -> None:
+        """Rename a display."""
+        if name == display.config.name:
+            return
+        section = display.config.section
+        before = section.memory("Name")
+
+        def swap(memory: Memory) -> Memory:
+            now = section.memory("Name")
+            section.recall(memory)
+            self._notify_arrangement()
+            self._rearranged()
+            return now
+
+        display.config.name = name
+        self._notify_arrangement()
+        self._rearranged()
+        self._history.add(Edit(EditName("rename", name), swap, before))
+
+    # --- what edits do -----------------------------------------------------------------------------------------
+
+    def _swap_box(self, identity: str, box: list[Memory]) -> list[Memory]:
+        """Restore the file's entry of a display's check box; returns the present one."""
+        display = self.find(identity)
+        if display is None:
+            return box
+        now, enabled = display.config.box, self._enabled()
+        display.config.box = box
+        self._box_set(display, enabled)
+        return now
+
+    def _box_set(self, display: ViewerDisplay, enabled: dict[DisplayConfig, bool]) -> None:
+        """Send pages a display's check box, and notify displays that it switched; `enabled` is the state before."""
+        display.set_checked(display.config.checked)
+        for other in self.displays:
+            if other.enabled != enabled[other.config]:
+                other.enabled_changed()
+
+    def arrange(self, arrangement: Arrangement) -> Arrangement:
+        """Restore an arrangement; returns the present one."""
+        before, enabled = self._config.arrangement(), self._enabled()
+        self._config.arrange(arrangement)
+        self._follow(enabled)
+        return before
+
+    def _rearrange(self, name: EditName, change: Callable[[], None], made: Sequence[ViewerDisplay] = ()) -> None:
+        before, enabled = self._config.arrangement(), self._enabled()
+        change()
+        self._follow(enabled, made)
+        self._history.add(Edit(name, self.arrange, before))
+
+    def _enabled(self) -> dict[DisplayConfig, bool]:
+        return {display.config: display.enabled for display in self.displays}
+
+    def _follow(self, enabled: dict[DisplayConfig, bool], made: Sequence[ViewerDisplay] = ()) -> None:
+        """Make the displays match the entries: start new ones, stop removed ones."""
+        there = {display.config: display for display in self.displays}
+        new = {display.config: display for display in made}
+        entries = list(self._config.walk())
+        for entry in there.keys() - set(entries):
+            there[entry].stop()
+        self.displays = [there.get(entry) or new.get(entry) or self._make(entry) for entry in entries]
+        self._notify_arrangement()
+        self._rearranged()
+        for display in self.displays:
+            if display.config not in there:
+                self._begin(display)
+            elif display.enabled != enabled[display.config]:
+                display.enabled_changed()
+
+    def _notify_arrangement(self) -> None:
+        for display in self.displays:
+            display.arranged(self.displays)
+
+    def _begin(self, display: ViewerDisplay) -> None:
+        if self._running:
+            display.start()
+            display.frames_changed()
+        for message in display.messages():
+            self._host.pages.publish(message)
+
+    def _check_room(self, entries: Sequence[DisplayConfig]) -> None:
+        if len(self.displays) + sum(1 for entry in entries for _ in entry.walk()) > MAXIMUM_DISPLAYS:
+            raise ValueError(f"there can be no more than {MAXIMUM_DISPLAYS} displays")
+
+    def _make(self, entry: DisplayConfig) -> ViewerDisplay:
+        entry.identity = entry.identity or next(self._host.context.display_ids)
+        return make_display(self._host, entry.identity, entry)
+
+
+def _check_nesting(group: DisplayConfig | None, entries: Sequence[DisplayConfig], more: int = 0) -> None:
+    """Raise ValueError if entries in a group would be nested too deeply."""
+    if _depth(group) + more + max(map(_height, entries)) > MAXIMUM_NESTING:
+        raise ValueError(f"groups cannot be nested deeper than {MAXIMUM_NESTING}")
+
+
+def _depth(group: DisplayConfig | None) -> int:
+    """Return the number of groups around the content of a group."""
+    return 0 if group is None else 1 + _depth(group.group)
+
+
+def _height(entry: DisplayConfig) -> int:
+    """Return the number of groups around the innermost display of an entry, including itself."""
+    return 1 + max(map(_height, entry.displays), default=0) if entry.is_group else 0
+
+
+def _outermost(displays: Sequence[ViewerDisplay]) -> list[DisplayConfig]:
+    """Return the entries that are not inside another one of them."""
+    entries = [display.config for display in displays]
+    return [entry for entry in entries if not any(entry in other.walk() for other in entries if other is not entry)]
+
+
+def _named(kind: EditKind, displays: Sequence[ViewerDisplay]) -> EditName:
+    return EditName(kind, ", ".join(display.config.name for display in displays))

@@ -1,0 +1,426 @@
+"""A visualization: a configuration, its displays, and its undo history.
+
+Pages share one, and a page may request its own.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Protocol
+
+from linkwright.diagnostics import phrase
+from linkwright.page.audience import Page, PageGroup
+from linkwright.page.protocol.binary import FrameTable
+from linkwright.page.protocol.configuration import EditName
+from linkwright.page.protocol.displays import DisplayStatus, PropertyChanged, StatusRow, Tree
+from linkwright.page.protocol.message import ServerMessage
+from linkwright.page.protocol.time import SyncMode, TimeState
+from linkwright.rviz.config.panels import Synchronization, read_synchronization, write_synchronization
+from linkwright.rviz.config.property_store import PropertyStore
+from linkwright.rviz.config.rviz_config import RvizConfig
+from linkwright.rviz.config.schema import Path
+from linkwright.rviz.context import ViewerContext
+from linkwright.rviz.displays.base.display import ViewerDisplay, worst
+from linkwright.rviz.displays.robot_model import RobotModelDisplay
+from linkwright.rviz.displays.tf import TfDisplay
+from linkwright.rviz.frames.stream import FrameStream, FrameView, TimeControl
+from linkwright.rviz.visualization.display_tree import DisplayTree
+from linkwright.rviz.visualization.history import Edit, History
+
+if TYPE_CHECKING:
+    from linkwright.page.outbox import Payload
+    from linkwright.rviz.config.yaml_tree import Memory
+
+
+GLOBAL = "global"
+"""The owner of the Global Options, in place of a display's id."""
+
+_FIXED_FRAME = "Fixed Frame"
+_FRAME_RATE = "Frame Rate"
+
+
+class ManagerOwner(Protocol):
+    """The owner of managers, which receives their events."""
+
+    def edited(self, manager: VisualizationManager) -> None:
+        """Handle a change of undo, redo or the unsaved state."""
+
+    def robot_changed(self) -> None:
+        """Handle another robot of a display."""
+
+    def fixed_frame_changed(self, manager: VisualizationManager) -> None:
+        """Handle another Fixed Frame."""
+
+    def manager_closed(self, manager: VisualizationManager) -> None:
+        """Handle the end of a manager."""
+
+
+class VisualizationManager:
+    """A configuration, its displays and their frames, for the pages that see them.
+
+    Args:
+        context: the viewer's node, files and pages.
+        config: displays, options and view.
+        owner: the owner, which receives events.
+
+    Attributes:
+        context: the viewer's node, files and pages.
+        pages: the pages that see it.
+        view: the first view of a page that opens, whichever others have now.
+        shows_whole_robot: whether no user chose the view: pages then fit the camera to the robot.
+        config: the configuration now.
+        opened: counts the configurations that it has had.
+        frames: the frames now.
+        time: whether time is paused, and what it is synchronized with.
+        tree: the displays, and the operations on them.
+        history: the edits.
+    """
+
+    def __init__(self, context: ViewerContext, config: RvizConfig, owner: ManagerOwner) -> None:
+        self.context = context
+        self.pages = PageGroup()
+        self.config = config
+        self.view, self.shows_whole_robot = config.views.current, config.shows_whole_robot
+        self.opened = 1
+        self.history = History(lambda: owner.edited(self))
+        self._owner = owner
+        self._global_status: list[StatusRow] = []
+        self.time = TimeControl(context.node.get_clock(), self._time_changed, self._time_signalled)
+        self._stream = FrameStream(
+            context.node,
+            self.pages,
+            self.time,
+            context.transforms,
+            on_frames=self._frames_changed,
+            fade_time=self._fade_time,
+            own_frames=self._own_frames,
+        )
+        self._read_options()
+        self.frames = FrameView(fixed_frame=self.fixed_frame)
+        self.tree = DisplayTree(config, self, self.history, rearranged=self._rearranged)
+
+    # --- life --------------------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Subscribe, and start."""
+        self._warn()
+        self._stream.start()
+        self.tree.start()
+        self._stream.refresh()
+        self._synchronize()
+
+    def close(self) -> None:
+        """Stop for good."""
+        self._stream.close()
+        self.tree.stop()
+
+    def open(self, config: RvizConfig) -> None:
+        """Show another configuration; the edits of the one before are forgotten."""
+        self.tree.stop()
+        self.config = config
+        self.view, self.shows_whole_robot = config.views.current, config.shows_whole_robot
+        self.opened += 1
+        self._read_options()
+        self._warn()
+        self.tree.fill(config)
+        self.publish(self.tree_message())
+        self.tree.start()
+        self._stream.refresh()
+        self._synchronize()
+        self._owner.fixed_frame_changed(self)
+        self.history.clear()
+
+    def _warn(self) -> None:
+        for warning in self.config.warnings:
+            self.context.report(warning)
+
+    def _read_options(self) -> None:
+        """Read the Fixed Frame and the Frame Rate."""
+        options = self.config.options
+        options.offer_frames(lambda: sorted(self.frames.names))
+        self._stream.fixed_frame, self._stream.rate = options.text(_FIXED_FRAME), options.number(_FRAME_RATE)
+
+    # --- pages -------------------------------------------------------------------------------------------------
+
+    def publish(self, message: ServerMessage) -> None:
+        """Send a message to the pages that see this configuration."""
+        self.pages.publish(message)
+
+    def opening(self) -> tuple[list[ServerMessage], FrameTable, list[Payload]]:
+        """Return the first messages for a new page: messages, then the frame table, then binary frames."""
+        self._stream.refresh()
+        table, transforms = self._stream.opening
+        messages: list[ServerMessage] = [self.tree_message()]
+        for display in self.displays:
+            messages += display.messages()
+        data: list[Payload] = [frame for display in self.displays for frame in display.data()]
+        return messages, table, [*([transforms] if transforms else []), *data]
+
+    def tree_message(self) -> Tree:
+        """Return the Displays panel, for pages."""
+        return Tree(
+            global_options=self.config.options.rows(),
+            global_status=self._global_status,
+            global_level=worst(self._global_status),
+            displays=[display.row() for display in self.displays],
+        )
+
+    # --- displays and their properties -------------------------------------------------------------------------
+
+    @property
+    def displays(self) -> list[ViewerDisplay]:
+        """Every display, each group before what is in it."""
+        return self.tree.displays
+
+    def display(self, identity: str) -> ViewerDisplay | None:
+        """Return the display with an id."""
+        return self.tree.find(identity)
+
+    def robot_models(self) -> list[RobotModelDisplay]:
+        """Return the displays that show robots."""
+        return [display for display in self.displays if isinstance(display, RobotModelDisplay)]
+
+    def store(self, owner: str) -> PropertyStore:
+        """Return the properties of a display, or the Global Options.
+
+        Raises:
+            KeyError: there is no such display.
+        """
+        if owner == GLOBAL:
+            return self.config.options
+        display = self.display(owner)
+        if display is None:
+            raise KeyError(owner)
+        return display.properties
+
+    def set_property(self, page: Page, identity: str, value: object) -> None:
+        """Set a property for a page; the answer to a refused value is the present one."""
+        owner, _, rest = identity.partition("/")
+        display = self.display(owner)
+        if display is None and owner != GLOBAL:
+            return  # it was removed meanwhile
+        if display is not None and rest == "Enabled":
+            if not isinstance(value, bool):
+                page.send(PropertyChanged(identity, display.config.checked))
+            else:
+                self.tree.check(display, value)
+            return
+        store = self.store(owner)
+        path = store.find(identity)
+        if path is None:
+            return  # rows of a robot or frame that is gone
+        before = store.get(*path)
+        try:
+            self._edit(identity, path, lambda: self._set(display, path, value))
+        except ValueError as error:
+            self.context.node.get_logger().warning(phrase("'{identity}': {error}", identity=identity, error=error))
+            page.send(PropertyChanged(identity, before))
+
+    def _set(self, display: ViewerDisplay | None, path: Path, value: object) -> None:
+        if display is not None:
+            display.set_property(path, value)
+        else:
+            self._set_option(path[0], value)
+
+    def _edit(self, identity: str, path: Path, change: Callable[[], None]) -> None:
+        """Change a property with undo; a drag is a single edit."""
+        if self.history.is_at(identity):
+            change()
+            self.history.prolong()
+            return
+        owner = identity.partition("/")[0]
+        with self.store(owner).recording() as before:
+            change()
+        if before:
+            self.history.add(Edit(EditName("set", path[-1]), partial(self._swap_values, owner), before, identity))
+
+    def set_fixed_frame(self, frame: str) -> None:
+        """Change the Fixed Frame with undo, as a page would."""
+        path = (_FIXED_FRAME,)
+        self._edit(self.config.options.identity(path), path, lambda: self._set_option(_FIXED_FRAME, frame))
+
+    def _swap_values(self, owner: str, memories: list[Memory]) -> list[Memory]:
+        """Restore the file's entries of some properties, including missing keys; returns the present ones."""
+        now = self.store(owner).memories(memories)
+        self._recall(owner, memories)
+        return now
+
+    def _recall(self, owner: str, memories: list[Memory]) -> None:
+        display = self.display(owner)
+        if display is not None:
+            display.recall(memories)
+        elif owner == GLOBAL:
+            for path in self.config.options.recall(memories):
+                self._option_changed(path[0])
+
+    def measured(self, diagonal: float, ground: float) -> None:
+        """Fit grid and axes to the size and ground, m, of a robot that a page has drawn, unless the user set them."""
+        for config, path, value in self.config.sizes_for(diagonal, ground):
+            for display in self.displays:
+                if display.config is config:
+                    display.set_property(path, value)
+
+    def edited(self) -> None:
+        """Record an edit of the file that undo does not cover."""
+        self.history.touch()
+
+    # --- time --------------------------------------------------------------------------------------------------
+
+    def set_time(self, *, paused: bool, mode: SyncMode, source: str) -> None:
+        """Pause or resume, and follow the messages of a display, or none."""
+        self.time.set(paused=paused, mode=mode, source=source)
+        if write_synchronization(self.config.document, Synchronization(mode, source)):
+            self.edited()
+        self._stream.time_changed()
+        for display in self.displays:
+            display.time_changed()
+
+    def reset_time(self) -> None:
+        """Reset time: displays forget messages, and moving frames until they are published again."""
+        self.time.reset()
+        self.context.transforms.forget()
+        self._stream.forget()
+        for display in self.displays:
+            display.time_reset()
+
+    def _synchronize(self) -> None:
+        """Set time to the file's synchronization, not paused."""
+        synchronization = read_synchronization(self.config.document)
+        self.set_time(paused=False, mode=synchronization.mode, source=synchronization.source)
+
+    def _time_changed(self) -> None:
+        time = self.time
+        self.publish(TimeState(time.paused, time.mode, time.source, list(time.sources)))
+
+    def _time_signalled(self) -> None:
+        self._stream.look_soon()
+
+    # --- options and frames ------------------------------------------------------------------------------------
+
+    @property
+    def fixed_frame(self) -> str:
+        """The reference frame of the scene."""
+        return self._stream.fixed_frame
+
+    def _set_option(self, name: str, value: object) -> None:
+        self.config.options.set((name,), value)
+        self._option_changed(name)
+
+    def _option_changed(self, name: str) -> None:
+        options = self.config.options
+        other_rows = options.is_condition((name,))
+        self.publish(
+            self.tree_message() if other_rows else PropertyChanged(options.identity((name,)), options.get(name))
+        )
+        if name == _FRAME_RATE:
+            self._stream.rate = options.number(_FRAME_RATE)
+        elif name == _FIXED_FRAME:
+            self._stream.fixed_frame = options.text(_FIXED_FRAME)
+            self._stream.refresh()
+            self._owner.fixed_frame_changed(self)
+
+    def _rearranged(self) -> None:
+        self.publish(self.tree_message())
+
+    def _frames_changed(self, frames: FrameView) -> None:
+        others = frames.names != self.frames.names
+        self.frames = frames
+        for display in self.displays:
+            display.frames_changed()
+        if others:
+            stores = [self.config.options, *(display.properties for display in self.displays)]
+            for change in (change for store in stores for change in store.frame_changes()):
+                self.publish(change)
+        self._show_global_status()
+
+    def _show_global_status(self) -> None:
+        frame, names = self.frames.fixed_frame, self.frames.names
+        missing = phrase("Frame [{frame}] does not exist", frame=frame)
+        if frame in names or self.context.transforms.own(frame) is not None:
+            row = StatusRow("Fixed Frame", "ok", phrase("OK"))
+        elif names:
+            row = StatusRow("Fixed Frame", "error", missing)
+        else:
+            row = StatusRow("Fixed Frame", "warn", phrase("No tf data.  Actual error: {missing}", missing=missing))
+        if [row] != self._global_status:
+            self._global_status = [row]
+            self.publish(DisplayStatus(GLOBAL, row.level, [row]))
+
+    def robot_changed(self, gone: set[str]) -> None:
+        """Handle a display's new robot; `gone` are the frames that only the former one had."""
+        self._stream.robot_changed(gone - self._own_frames())
+        self._owner.robot_changed()
+
+    def _own_frames(self) -> frozenset[str]:
+        return frozenset(link.frame for robot in self.robot_models() for link in robot.scene.links)
+
+    def _fade_time(self) -> float | None:
+        shown = (display for display in self.displays if isinstance(display, TfDisplay) and display.enabled)
+        return min((display.properties.number("Frame Timeout") for display in shown), default=None)
+
+
+LINGERING = 60.0
+"""Seconds that a page's own displays outlive it: it may be reloading, or have lost its connection."""
+
+MOST_LINGERING = 8
+"""The largest number of managers without pages; beyond it the one that has waited longest is closed."""
+
+
+class Managers:
+    """The manager that all share, and those of single pages, which begin with a copy of the shared configuration.
+
+    Args:
+        context: the viewer's node, files and pages.
+        config: the configuration of every page that does not ask for its own.
+        owner: the owner, which receives their events.
+    """
+
+    def __init__(self, context: ViewerContext, config: RvizConfig, owner: ManagerOwner) -> None:
+        self.shared = VisualizationManager(context, config, owner)
+        self._owner = owner
+        self._own: dict[str, VisualizationManager] = {}
+        self._ends: dict[str, asyncio.TimerHandle] = {}
+
+    def all(self) -> list[VisualizationManager]:
+        """Every manager, the shared one first."""
+        return [self.shared, *self._own.values()]
+
+    def of(self, page: Page) -> VisualizationManager:
+        """Return the manager for a page."""
+        return self._own.get(page.own, self.shared)
+
+    def enter(self, page: Page) -> VisualizationManager:
+        """Return the manager for a page that opens; created if the page is the first to ask for it."""
+        if page.own:
+            end = self._ends.pop(page.own, None)
+            if end is not None:
+                end.cancel()
+            if page.own not in self._own:
+                self._own[page.own] = VisualizationManager(self.shared.context, self.shared.config.copy(), self._owner)
+                self._own[page.own].start()
+        return self.of(page)
+
+    def leave(self, page: Page) -> None:
+        """Handle the end of a page; a manager without pages is closed after a while."""
+        manager = self.of(page)
+        manager.pages.discard(page)
+        if manager is not self.shared and not len(manager.pages):
+            self._ends[page.own] = asyncio.get_running_loop().call_later(LINGERING, self._drop, page.own)
+            if len(self._ends) > MOST_LINGERING:
+                self._drop(next(iter(self._ends)))
+
+    def close(self) -> None:
+        """End all of them."""
+        for key in list(self._own):
+            self._drop(key)
+        self.shared.close()
+
+    def _drop(self, key: str) -> None:
+        end = self._ends.pop(key, None)
+        if end is not None:
+            end.cancel()
+        manager = self._own.pop(key)
+        manager.close()
+        self._owner.manager_closed(manager)

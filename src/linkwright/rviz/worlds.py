@@ -1,0 +1,237 @@
+"""A world for the page: the shapes of the links of all its models, and their first poses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.geometry.single import Transform, compose, rotation_from_z
+from linkwright.images.heights import read_heights
+from linkwright.page.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
+from linkwright.page.protocol.robot import LinkScene, Shape, Submesh, Surface
+from linkwright.sdf.frames import Frames, PlacedLink, links_of
+from linkwright.sdf.links import Collision, Visual
+from linkwright.sdf.materials import Material, Workflow
+from linkwright.sdf.poses import RawPose
+from linkwright.sdf.scripts import gazebo_look, painted
+from linkwright.sdf.shapes import (
+    Cone,
+    Ellipsoid,
+    Empty,
+    Heightmap,
+    Image,
+    Mesh,
+    Plane,
+    Polyline,
+)
+from linkwright.sdf.shapes import Shape as SdfShape
+from linkwright.sdf.worlds import World
+
+_UNCOLOURED = [0.7, 0.7, 0.7, 1.0]
+"""The colour of shapes without a material, which are grey in Gazebo."""
+_MOST_HEIGHTS = 257
+"""The largest number of heights along a side of a heightmap."""
+_COLLISION = [1.0, 0.55, 0.1, 0.6]
+
+_PoseInLink = Callable[[RawPose], Transform]
+"""Returns the pose of a link's part in the link's frame."""
+
+
+@dataclass(slots=True)
+class WorldContent:
+    """The content drawn for a world.
+
+    Attributes:
+        links: all links that draw something or move, named as in the poses of the simulation: ``robot::arm::tip``.
+        poses: the first pose of each in the world.
+        problems: link -> problems with its files.
+    """
+
+    links: list[LinkScene] = field(default_factory=list)
+    poses: list[Transform] = field(default_factory=list)
+    problems: dict[str, list[str]] = field(default_factory=dict)
+
+
+def content_of(world: World, index: MeshIndex) -> WorldContent:
+    """Return the content drawn for a world.
+
+    Args:
+        world: with its includes resolved.
+        index: finds the files that it names, and collects them.
+
+    Raises:
+        FrameError: an element in it cannot be placed.
+    """
+    return _Builder(index).build(world)
+
+
+class _Builder:
+    def __init__(self, index: MeshIndex) -> None:
+        self._index = index
+        self._made = WorldContent()
+
+    def build(self, world: World) -> WorldContent:
+        frames = Frames(world)
+        for model in world.models:
+            inside = frames.inside(model.name)
+            for placed in links_of(model, inside, frames.pose(model.name), model.name):
+                self._link(placed)
+        return self._made
+
+    def _link(self, placed: PlacedLink) -> None:
+        link, frames, made = placed.link, placed.frames, self._made
+
+        def pose(raw: RawPose) -> Transform:
+            return frames.in_link(raw, link.name)
+
+        made.poses.append(placed.pose)
+        made.links.append(
+            LinkScene(
+                name=placed.name,
+                frame=placed.name,
+                parent_joint=None,
+                visuals=list(self._shapes(placed.name, link.visuals, pose)),
+                collisions=list(self._shapes(placed.name, link.collisions, pose)),
+            )
+        )
+
+    def _shapes(self, link: str, parts: Sequence[Visual | Collision], place: _PoseInLink) -> Iterator[Shape]:
+        for part in parts:
+            shape = self._shape(link, part, place(part.pose))
+            if shape is not None:
+                yield shape
+
+    def _shape(self, link: str, part: Visual | Collision, pose: Transform) -> Shape | None:
+        shape = Shape(kind="mesh", size=[], position=[], quaternion=[], name=part.name)
+        if isinstance(part, Visual):
+            self._paint(link, shape, part)
+        else:
+            shape.color, shape.repaints = list(_COLLISION), True
+        pose = compose(pose, self._form(link, shape, part.geometry) or (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+        shape.position, shape.quaternion = list(pose[:3]), list(pose[3:])
+        return shape if shape.size else None
+
+    def _form(self, link: str, shape: Shape, geometry: SdfShape) -> Transform | None:
+        """Set kind and size of a shape; returns its pose in the geometry's frame, None for the identity."""
+        match geometry:
+            case Box():
+                shape.kind, shape.size = "box", list(geometry.size)
+            case Cylinder():
+                shape.kind, shape.size = "cylinder", [geometry.radius, geometry.length]
+            case Capsule():
+                shape.kind, shape.size = "capsule", [geometry.radius, geometry.length]
+            case Sphere():
+                shape.kind, shape.size = "sphere", [geometry.radius]
+            case Ellipsoid():
+                shape.kind, shape.size = "ellipsoid", list(geometry.radii)
+            case Cone():
+                shape.kind, shape.size = "cone", [geometry.radius, geometry.length]
+            case Plane():
+                shape.kind, shape.size = "plane", list(geometry.size)
+                return (0.0, 0.0, 0.0, *rotation_from_z(geometry.normal))
+            case Polyline():
+                self._polygons(shape, (geometry,))
+            case tuple():
+                self._polygons(shape, geometry)
+            case Heightmap():
+                self._terrain(link, shape, geometry)
+            case Mesh():
+                self._mesh(link, shape, geometry)
+            case Image() | Empty():
+                pass
+        return None
+
+    def _polygons(self, shape: Shape, polygons: Sequence[Polyline]) -> None:
+        shape.kind, shape.size = "polyline", [polygons[0].height]
+        shape.outlines = [[number for point in polygon.points for number in point] for polygon in polygons]
+
+    def _mesh(self, link: str, shape: Shape, mesh: Mesh) -> None:
+        shape.url = self._located(link, mesh.uri, MESH_TYPES)
+        if shape.url is None:
+            return
+        shape.size = list(mesh.scale)
+        shape.format = mesh.uri.rpartition(".")[2].lower()
+        if mesh.submesh is not None:
+            shape.submesh = Submesh(mesh.submesh.name, mesh.submesh.center)
+
+    def _terrain(self, link: str, shape: Shape, terrain: Heightmap) -> None:
+        heights = self._heights(link, terrain.uri)
+        if heights is None:
+            return
+        shape.heights, shape.columns = heights.ravel(), heights.shape[1]
+        texture = terrain.textures[0] if terrain.textures else None
+        shape.kind = "heightmap"
+        shape.size = [*terrain.size, *terrain.position, texture.size if texture else 1.0]
+        if texture is not None and texture.diffuse:
+            shape.texture = self._located(link, texture.diffuse, IMAGE_TYPES)
+
+    def _heights(self, link: str, uri: str) -> NDArray[np.float32] | None:
+        """Return the heights of a heightmap, with the simulation's reader; browsers read no TIFF or 16-bit grey."""
+        if self._located(link, uri, IMAGE_TYPES) is None:
+            return None
+        try:
+            values = read_heights(self._index.finder.resolve(uri)).values
+        except LinkwrightError as error:
+            self._problem(link, error.diagnostics[0].message)
+            return None
+        rows, columns = (
+            np.linspace(0, size - 1, min(size, _MOST_HEIGHTS)).round().astype(int) for size in values.shape
+        )
+        drawn: NDArray[np.float32] = values[np.ix_(rows, columns)].astype(np.float32)
+        return drawn
+
+    def _paint(self, link: str, shape: Shape, visual: Visual) -> None:
+        material = visual.material
+        color, image = _look(material) if material else (None, "")
+        shape.repaints = color is not None or image != ""
+        if color is None:
+            color = _UNCOLOURED
+        red, green, blue, alpha = color
+        shape.color = [red, green, blue, alpha * (1.0 - visual.transparency)]
+        if image:
+            shape.texture = self._located(link, image, IMAGE_TYPES)
+        workflow = material.pbr.metal if material and material.pbr else None
+        if workflow and _reflects(workflow):
+            urls = [self._located(link, file, IMAGE_TYPES) if file else None for file in _maps(workflow)]
+            shape.surface = Surface(workflow.roughness, workflow.metalness, *urls)
+
+    def _located(self, link: str, uri: str, types: dict[str, str]) -> str | None:
+        located = self._index.locate(uri, None, types)
+        if located.url is None:
+            self._problem(link, f"Could not load '{uri}': {located.problem}")
+        return located.url
+
+    def _problem(self, link: str, text: str) -> None:
+        problems = self._made.problems.setdefault(link, [])
+        if text not in problems:
+            problems.append(text)
+
+
+def _maps(workflow: Workflow) -> tuple[str, ...]:
+    """Return the images of a surface except that of its colour, in the order of `Surface`."""
+    reflecting = (workflow.normal_map, workflow.roughness_map, workflow.metalness_map)
+    return (*reflecting, workflow.emissive_map, workflow.ambient_occlusion_map)
+
+
+def _reflects(workflow: Workflow) -> bool:
+    """Whether a material specifies how it reflects light, and not only an image."""
+    usual = Workflow()
+    return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (usual.roughness, usual.metalness)
+
+
+def _look(material: Material) -> tuple[Sequence[float] | None, str]:
+    """Return colour and image of a material: None and nothing if it sets none.
+
+    Scripts were read with the world; for a model from a text only Gazebo's own names are known here.
+    """
+    named = gazebo_look(material.script.name) if material.script else None
+    if named is not None:
+        material = painted(material, named)
+    workflow = material.pbr and (material.pbr.metal or material.pbr.specular)
+    image = workflow.albedo_map if workflow else ""
+    return material.diffuse or material.ambient, image

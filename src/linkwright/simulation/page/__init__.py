@@ -1,0 +1,1 @@
+"""Page features of simulated worlds: controlling time, moving models, editing the world."""

@@ -1,0 +1,290 @@
+"""The simulation bar, and moving models of a simulated world: only through topics and services.
+
+Source of their names: gazebo_ros and simulation_interfaces.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from itertools import count
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from msgspec.structs import replace
+
+from linkwright.descriptions import examine, examine_world, is_world
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.graph import DurabilityPolicy, EndpointKind, QoSProfile
+from linkwright.messages import get_message
+from linkwright.page.audience import Page
+from linkwright.page.protocol.message import ServerMessage
+from linkwright.page.protocol.simulation import (
+    NO_SIMULATION,
+    ControlSimulation,
+    DeleteModel,
+    DragModel,
+    ModelAdded,
+    PushLink,
+    SimulationNotice,
+    SimulationStatus,
+    SpawnModel,
+)
+from linkwright.panels.page_feature import FeatureHost, PageFeature
+from linkwright.simulation.page.services import SimulationServices, refuse
+
+_STATE = "/simulation_state"
+_LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_PAUSED = 2
+"""The value of simulation_interfaces/msg/SimulationState for a paused simulation."""
+_VELOCITIES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+_PUSH_NS = 50_000_000
+"""The duration of a push; pages repeat it while the user pulls."""
+
+_EMPTY = "std_srvs/srv/Empty"
+_ACTIONS = {
+    "play": (_EMPTY, "/unpause_physics"),
+    "pause": (_EMPTY, "/pause_physics"),
+    "reset": (_EMPTY, "/reset_simulation"),
+    "step": ("simulation_interfaces/srv/StepSimulation", "/step_simulation"),
+}
+
+
+@dataclass(slots=True)
+class _Drag:
+    """A model that a page moves: its original pose, once that is known, and the newest one not sent yet."""
+
+    model: str
+    start: Any = None
+    target: Sequence[float] | None = None
+    calling: bool = False
+
+
+class SimulationFeature(PageFeature):
+    """Sends pages the state of a simulation, and forwards their requests; subscribes while there are pages."""
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._listening = False
+        self._recorded = False
+        self._subscriptions: list[Any] = []
+        self._services = SimulationServices(self.context)
+        self._status = NO_SIMULATION
+        self._drags: dict[Page, _Drag] = {}
+        self._spawning: set[asyncio.Task[None]] = set()
+
+    def opening(self) -> list[ServerMessage]:
+        """Return the state of the simulation."""
+        if not self._listening and not self._recorded:
+            self._listening = True
+            self.context.graph_changes.listen(self._review)
+            self._review()
+        return [self._status]
+
+    def recording_shown(self) -> None:
+        """Hide the bar: the recorded simulation cannot be controlled."""
+        self._recorded = True
+        self._stop()
+
+    def page_gone(self, page: Page) -> None:
+        """Release the models that the page moves, and unsubscribe after the last page."""
+        self._drags.pop(page, None)
+        if self._listening and len(self.context.pages) == 0:
+            self._stop()
+
+    def close(self) -> None:
+        """End for good."""
+        self._stop()
+        for task in self._spawning:
+            task.cancel()
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Carry out a request."""
+        match message:
+            case ControlSimulation(action):
+                kind, name = _ACTIONS[action]
+                fields = {"steps": 1} if action == "step" else {}
+                self._services.ask(page, kind, name, fields)
+            case SpawnModel(address, position):
+                task = asyncio.get_running_loop().create_task(self._spawn(page, address, position))
+                self._spawning.add(task)
+                task.add_done_callback(self._spawning.discard)
+            case DeleteModel(model):
+                self._services.ask(page, "gazebo_msgs/srv/DeleteEntity", "/delete_entity", {"name": model})
+            case DragModel():
+                self._drag(page, message)
+            case PushLink():
+                self._push(page, message)
+
+    # --- how it goes -------------------------------------------------------------------------------------------
+
+    def _review(self) -> None:
+        present = bool(self.context.node.get_publishers_info_by_topic(_STATE))
+        if present and not self._subscriptions:
+            node = self.context.node
+            self._subscriptions = [
+                node.create_subscription("simulation_interfaces/msg/SimulationState", _STATE, self._state, _LATCHED),
+                node.create_subscription(
+                    "gazebo_msgs/msg/PerformanceMetrics", "/performance_metrics", self._metrics, 10
+                ),
+            ]
+        elif not present:
+            self._leave()
+        now = self._status if present == self._status.present else replace(NO_SIMULATION, present=present)
+        self._publish(replace(now, drivable=present and self._is_drivable()))
+
+    def _is_drivable(self) -> bool:
+        endpoints = self.context.node.graph.endpoints()
+        return any(
+            endpoint.kind is EndpointKind.SUBSCRIPTION and endpoint.type_name in _VELOCITIES for endpoint in endpoints
+        )
+
+    def _state(self, message: Any) -> None:
+        self._publish(replace(self._status, present=True, paused=message.state == _PAUSED))
+
+    def _metrics(self, message: Any) -> None:
+        stamp = message.header.stamp
+        time = stamp.sec + stamp.nanosec / 1e9
+        factor = message.real_time_factor if isfinite(message.real_time_factor) else None
+        self._publish(replace(self._status, present=True, time=time, real_time_factor=factor))
+
+    def _publish(self, status: SimulationStatus) -> None:
+        if status != self._status:
+            self._status = status
+            self.context.pages.publish(status)
+
+    def _stop(self) -> None:
+        self._listening = False
+        self.context.graph_changes.ignore(self._review)
+        self._leave()
+        self._status = NO_SIMULATION
+
+    def _leave(self) -> None:
+        with suppress(ValueError):  # the node may have been destroyed before
+            for subscription in self._subscriptions:
+                self.context.node.destroy_subscription(subscription)
+        self._services.close()
+        self._subscriptions.clear()
+        self._drags.clear()
+
+    # --- what it is asked for ----------------------------------------------------------------------------------
+
+    async def _spawn(self, page: Page, address: str, position: list[float]) -> None:
+        try:
+            found = await asyncio.to_thread(self._model_at, address.strip())
+        except LinkwrightError as error:
+            refuse(page, error.diagnostics[0].placed_message)
+            return
+        if found is None:
+            refuse(page, phrase("there is no model in '{address}'", address=address))
+            return
+        name, text = found
+        fields: dict[str, Any] = {"xml": text}
+        if _is_vector(position):
+            fields["initial_pose"] = _pose(position)
+
+        def listed(response: Any) -> None:
+            taken = () if response is None else response.model_names
+            if name in taken:
+                free = next(candidate for number in count(2) if (candidate := f"{name}_{number}") not in taken)
+                fields.update(name=free, robot_namespace=f"/{free}")
+                spawn(partial(_report_added, page, name, free))
+            else:
+                spawn(partial(_report_added, page, name, name))
+
+        spawn = partial(self._services.ask, page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields)
+        self._services.ask(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, listed)
+
+    def _model_at(self, address: str) -> tuple[str, str] | None:
+        """Return name and description of the model at an address; None for a world without one.
+
+        Raises:
+            LinkwrightError: it cannot be found or read.
+        """
+        from linkwright.sdf.resources import ResourceFinder  # here, because few viewers show a world
+        from linkwright.sdf.writer import save
+
+        finder = self.context.finder
+        found = ResourceFinder(finder).model(address, Path.cwd())
+        path = found if isinstance(found, Path) else finder.resolve(address)
+        if not is_world(path.name):
+            description = examine(path, packages=finder, xacro=True)
+            name = "" if description.robot is None else description.robot.name
+            return name, self.context.library.remember(description)
+        sdf = examine_world(path, packages=finder).sdf
+        return (sdf.models[0].name, save(sdf.models[0])) if sdf is not None and sdf.models else None
+
+    def _drag(self, page: Page, message: DragModel) -> None:
+        if message.begins:
+            drag = self._drags[page] = _Drag(message.model)
+            fields = {"name": message.model, "reference_frame": "world"}
+            self._services.ask(
+                page, "gazebo_msgs/srv/GetEntityState", "/get_entity_state", fields, partial(self._held, page, drag)
+            )
+        known = self._drags.get(page)
+        if known is not None and known.model == message.model and _is_vector(message.offset):
+            known.target = message.offset
+            self._put(page, known)
+
+    def _held(self, page: Page, drag: _Drag, response: Any) -> None:
+        if response is not None and response.success:
+            drag.start = response.state
+            self._put(page, drag)
+
+    def _put(self, page: Page, drag: _Drag) -> None:
+        """Send the newest pose, after the simulation has answered the request before."""
+        if drag.start is None or drag.target is None or drag.calling:
+            return
+        start = drag.start.pose.position
+        drag.calling = True
+        offset, drag.target = drag.target, None
+        state = type(drag.start)(name=drag.model, reference_frame="world")
+        state.pose = _pose([start.x + offset[0], start.y + offset[1], start.z + offset[2]])
+        state.pose.orientation = drag.start.pose.orientation
+
+        def put(_: Any) -> None:
+            drag.calling = False
+            self._put(page, drag)
+
+        fixed = phrase("'{model}' cannot be moved: it is fixed to the world, or gone", model=drag.model)
+        self._services.ask(page, "gazebo_msgs/srv/SetEntityState", "/set_entity_state", {"state": state}, put, fixed)
+
+    def _push(self, page: Page, message: PushLink) -> None:
+        if not (_is_vector(message.point) and _is_vector(message.force)):
+            return
+        wrench = get_message("geometry_msgs/msg/Wrench")()
+        point = get_message("geometry_msgs/msg/Point")(*message.point)
+        wrench.force.x, wrench.force.y, wrench.force.z = message.force
+        fields = {"link_name": message.link, "reference_frame": "world", "reference_point": point, "wrench": wrench}
+        fields["duration"] = get_message("builtin_interfaces/msg/Duration")(0, _PUSH_NS)
+        self._services.ask(page, "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", fields)
+
+
+def _report_added(page: Page, name: str, free: str, response: Any) -> None:
+    """Tell a page that a model was added, and that it was renamed if its name was taken."""
+    if response is None or not response.success:
+        return
+    page.send(ModelAdded(free))
+    if free != name:
+        notice = phrase(
+            "There is a '{name}' already: this one is '{free}', and the topics of its plugins begin with /{free}. "
+            "Frames of both have the same names.",
+            name=name,
+            free=free,
+        )
+        page.send(SimulationNotice(notice))
+
+
+def _is_vector(numbers: Sequence[float]) -> bool:
+    return len(numbers) == 3 and all(map(isfinite, numbers))
+
+
+def _pose(position: Sequence[float]) -> Any:
+    pose = get_message("geometry_msgs/msg/Pose")()
+    pose.position.x, pose.position.y, pose.position.z = position
+    pose.orientation.w = 1.0
+    return pose

@@ -1,0 +1,104 @@
+"""The messages between pages that edit a world and the server."""
+
+from __future__ import annotations
+
+from linkwright.packages import PackageFinder
+from linkwright.page.protocol.message import PageMessage
+from linkwright.page.protocol.modelling import (
+    AddThing,
+    ChangeThings,
+    CopyThings,
+    DeleteThings,
+    GroupThings,
+    ModelChoice,
+    ModelChoices,
+    ThingChange,
+    UngroupThing,
+    WorldThing,
+)
+from linkwright.sdf.editing import (
+    Change,
+    Entity,
+    WorldText,
+    add_include,
+    add_light,
+    add_shape,
+    change,
+    copy,
+    delete,
+    group,
+    pose_of_entity,
+    ungroup,
+)
+from linkwright.sdf.models import Include
+from linkwright.sdf.resources import Missing, ResourceFinder, model_file
+
+
+def things_of(world: WorldText) -> list[WorldThing]:
+    """Return the models and lights of a world."""
+    return [_thing(thing) for thing in world.entities.values()]
+
+
+def _thing(thing: Entity) -> WorldThing:
+    pose, shape = pose_of_entity(thing), thing.shape
+    colour = shape.colour if shape is not None else thing.light.diffuse if thing.light is not None else None
+    return WorldThing(
+        name=thing.name,
+        kind=thing.kind,
+        pose=[*pose.xyz, *pose.rpy],
+        static=thing.static,
+        shape=shape.kind if shape is not None else None,
+        size=list(shape.size) if shape is not None else [],
+        colour=list(colour) if colour is not None else None,
+        address=thing.written.uri.strip() if isinstance(thing.written, Include) else None,
+        parts=list(thing.parts),
+    )
+
+
+def choices(packages: PackageFinder) -> ModelChoices:
+    """Return the models on the search path."""
+    found = ResourceFinder(packages).models()
+    names = sorted(name for name, folder in found.items() if not isinstance(model_file(folder), Missing))
+    return ModelChoices([ModelChoice(name, f"model://{name}") for name in names])
+
+
+def changed(world: WorldText, message: PageMessage) -> WorldText:
+    """Return a world after the edit of a page.
+
+    Raises:
+        EditError: the edit is not possible.
+    """
+    match message:
+        case AddThing("model", address, pose, _):
+            return add_include(world, address, pose)[0]
+        case AddThing("box" | "cylinder" | "sphere" | "wall" | "ramp" as kind, _, pose, size):
+            return add_shape(world, kind, pose, size)[0]
+        case AddThing("point_light", _, pose, _):
+            return add_light(world, "point", pose)[0]
+        case AddThing("directional_light", _, pose, _):
+            return add_light(world, "directional", pose)[0]
+        case AddThing(_, _, pose, _):
+            return add_light(world, "spot", pose)[0]
+        case ChangeThings(changes):
+            return change(world, map(_change, changes))
+        case CopyThings(names, offset):
+            return copy(world, names, offset)[0]
+        case DeleteThings(names):
+            return delete(world, names)
+        case GroupThings(names, name):
+            return group(world, names, name)
+        case UngroupThing(name):
+            return ungroup(world, name)[0]
+        case _:
+            raise TypeError(f"{type(message).__name__} changes no world")
+
+
+def _change(change: ThingChange) -> Change:
+    return Change(
+        change.name,
+        pose=None if change.pose is None else tuple(change.pose),
+        size=None if change.size is None else tuple(change.size),
+        new_name=change.new_name,
+        static=change.static,
+        colour=None if change.colour is None else tuple(change.colour),
+    )

@@ -1,0 +1,78 @@
+"""Calls services of a simulation for pages, and reports failures to them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.graph import Client
+from linkwright.messages import get_service
+from linkwright.page.audience import Page
+from linkwright.page.protocol.simulation import SimulationNotice
+from linkwright.rviz.context import ViewerContext
+
+
+class SimulationServices:
+    """Clients of services, each created on first use.
+
+    Args:
+        context: the context of the viewer, whose node calls services.
+    """
+
+    def __init__(self, context: ViewerContext) -> None:
+        self._node = context.node
+        self._clients: dict[str, Client[Any, Any]] = {}
+
+    def ask(
+        self,
+        page: Page,
+        kind: str,
+        name: str,
+        fields: dict[str, Any],
+        answered: Callable[[Any], None] = lambda _: None,
+        refused: Phrase | None = None,
+    ) -> None:
+        """Call a service; the page receives an error if there is none, or if it refuses.
+
+        Args:
+            page: the page that requests it.
+            kind: the service's type.
+            name: its name.
+            fields: the fields of the request.
+            answered: called with the response; None if there is no such service.
+            refused: the text for the page if the response gives no reason.
+        """
+        client = self._clients.get(name)
+        if client is None:
+            client = self._clients[name] = self._node.create_client(get_service(kind), name)
+        if not client.service_is_ready():
+            answered(None)
+            refuse(page, phrase("there is no service '{name}'", name=name))
+            return
+        future = client.call_async(client.srv_type.Request(**fields))
+
+        def done(_: Any) -> None:
+            response = future.result()
+            result = getattr(response, "result", None)
+            if getattr(response, "success", True) is False:
+                without_reason = refused or phrase("'{name}' failed", name=name)
+                refuse(page, getattr(response, "status_message", "") or without_reason)
+            elif result is not None and result.error_message:
+                refuse(page, result.error_message)
+            answered(response)
+
+        future.add_done_callback(done)
+
+    def close(self) -> None:
+        """Destroy the clients; they are created again when they are needed."""
+        with suppress(ValueError):  # the node may have been destroyed before
+            for client in self._clients.values():
+                self._node.destroy_client(client)
+        self._clients.clear()
+
+
+def refuse(page: Page, text: str | Phrase) -> None:
+    """Report to a page why a request was refused."""
+    page.send(SimulationNotice(text))

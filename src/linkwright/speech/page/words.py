@@ -1,0 +1,194 @@
+"""Enrolling words: a page's recording becomes an example of a word in the user's file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase, translated
+from linkwright.page.audience import Page
+from linkwright.page.protocol.voice_words import (
+    AskWordsFile,
+    BeginTake,
+    EndTake,
+    EnrolledWord,
+    ImportWords,
+    RemoveWord,
+    RenameWord,
+    TakeJudged,
+    VoiceWords,
+    VoiceWordsFile,
+    WatchWords,
+)
+from linkwright.scratch_folders import ScratchFolder
+from linkwright.speech.enrolled.enrolment import enrol
+from linkwright.speech.enrolled.words import TAKES, Words, name_problem, words_path
+from linkwright.speech.sound.samples import RATE, Samples
+
+_LONGEST = 8 * RATE
+"""Samples of a recording that are stored."""
+
+
+class Recording:
+    """A word that is being recorded.
+
+    Args:
+        name: the word.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self._blocks: list[Samples] = []
+        self._length = 0
+
+    def add(self, samples: Samples) -> None:
+        """Append the next block; a recording that is too long is cut off at the end."""
+        if self._length < _LONGEST:
+            self._blocks.append(samples)
+            self._length += samples.size
+
+    @property
+    def samples(self) -> Samples:
+        """All samples."""
+        return np.concatenate([np.zeros(0, np.int16), *self._blocks])
+
+
+class WordBook:
+    """The user's file of words, and its pages. It is read again before each change, because other programs write it."""
+
+    def __init__(self) -> None:
+        self._watchers: set[Page] = set()
+        self._recordings: dict[Page, Recording] = {}
+        self._judged = 0
+
+    def receive(self, page: Page, message: object) -> None:
+        """Carry out a request."""
+        match message:
+            case WatchWords(watched=True):
+                self._watchers.add(page)
+                self._send(page)
+            case WatchWords():
+                self._watchers.discard(page)
+            case BeginTake(name=name):
+                self._recordings[page] = Recording(name.strip())
+            case EndTake(has_gaps=has_gaps):
+                self._judge(page, has_gaps=has_gaps)
+            case RemoveWord(name=name):
+                self._change(page, lambda words: words.remove(name))
+            case RenameWord(name=name, new_name=new_name):
+                self._change(page, lambda words: _rename(words, name, new_name.strip()))
+            case ImportWords(text=text):
+                self._change(page, lambda words: _merge(words, text))
+            case AskWordsFile():
+                self._send_file(page)
+
+    def hear(self, page: Page, samples: Samples) -> bool:
+        """Add sound of a page that records a word; returns whether it does."""
+        recording = self._recordings.get(page)
+        if recording is not None:
+            recording.add(samples)
+        return recording is not None
+
+    def page_gone(self, page: Page) -> None:
+        """Forget a page, and its recording."""
+        self._watchers.discard(page)
+        self._recordings.pop(page, None)
+
+    def _judge(self, page: Page, *, has_gaps: bool) -> None:
+        recording = self._recordings.pop(page, None)
+        if recording is None:
+            return
+        samples = recording.samples
+        findings: list[Diagnostic] = []
+        if self._change(page, lambda words: findings.extend(enrol(words, recording.name, samples, has_gaps))):
+            found = next(iter(translated(findings)), None)
+            peak = float(np.max(np.abs(samples.astype(np.int32)), initial=0)) / 32768
+            self._judged += 1
+            page.send(
+                TakeJudged(
+                    self._judged,
+                    recording.name,
+                    found.code if found else None,
+                    str(found.message) if found else "",
+                    peak,
+                    samples.size / RATE,
+                )
+            )
+
+    def _change(self, page: Page, change: Callable[[Words], object]) -> bool:
+        """Change the file, and send it to all pages; or send the page the reason why that failed."""
+        try:
+            words = _read()
+            change(words)
+            words.write(words_path())
+        except LinkwrightError as error:
+            self._send(page, _text(error))
+            return False
+        except OSError as error:
+            reason = foreign(error.strerror or error)
+            self._send(page, phrase("cannot write '{path}': {reason}", path=display_path(words_path()), reason=reason))
+            return False
+        for watcher in {*self._watchers, page}:
+            self._send(watcher)
+        return True
+
+    def _send(self, page: Page, problem: str | None = None) -> None:
+        try:
+            words = _read()
+        except LinkwrightError as error:
+            words, problem = Words(), problem or _text(error)
+        enrolled = [EnrolledWord(name, len(words.takes(name))) for name in words.names]
+        page.send(VoiceWords(enrolled, TAKES, display_path(words_path()), problem))
+
+    def _send_file(self, page: Page) -> None:
+        try:
+            page.send(VoiceWordsFile(words_path().read_text(encoding="utf-8")))
+        except (OSError, UnicodeDecodeError):
+            self._send(page)  # which reports the error, or that there are no words
+
+
+def _read() -> Words:
+    """Return the words of the user's file, which may not exist.
+
+    Raises:
+        LinkwrightError: VOICE202 or VOICE203.
+    """
+    path = words_path()
+    return Words.read(path) if path.exists() else Words()
+
+
+def _rename(words: Words, name: str, new_name: str) -> None:
+    """Rename a word, which keeps its takes."""
+    reason = name_problem(new_name)
+    if reason is None and new_name in words.names and new_name != name:
+        reason = phrase("there is a word of that name")
+    if reason is not None:
+        message = phrase("a word cannot be called '{name}': {reason}", name=new_name, reason=reason)
+        raise LinkwrightError(Diagnostic("VOICE204", message))
+    takes_of = {
+        new_name if name_of_word == name else name_of_word: words.takes(name_of_word) for name_of_word in words.names
+    }
+    for name_of_word, takes in takes_of.items():
+        words.remove(name_of_word)
+        for take in takes:
+            words.add(name_of_word, take)
+    if new_name != name:
+        words.remove(name)
+
+
+def _merge(words: Words, text: str) -> None:
+    with ScratchFolder("words") as folder:
+        path = Path(folder) / "words.json"
+        path.write_text(text, encoding="utf-8", errors="replace")
+        others = Words.read(path)
+    for name in others.names:
+        words.remove(name)
+        for take in others.takes(name):
+            words.add(name, take)
+
+
+def _text(error: LinkwrightError) -> str:
+    """Return the error as text, in the language of the terminal."""
+    return str(next(iter(translated(error.diagnostics))).message)

@@ -1,1 +1,0 @@
-"""The features of pages besides displays, each a module or a package."""

@@ -1,5 +1,0 @@
-"""Markers: visualization_msgs in the form that pages draw."""
-
-from linkwright.viewer.markers.shapes import BadMarkerError, MarkerReading, MarkerStore, read_marker
-
-__all__ = ["BadMarkerError", "MarkerReading", "MarkerStore", "read_marker"]

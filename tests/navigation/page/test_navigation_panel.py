@@ -1,0 +1,207 @@
+"""The panel of nav2."""
+
+from __future__ import annotations
+
+from contextlib import asynccontextmanager
+from typing import Any
+
+from linkwright.graph import DurabilityPolicy, Graph, QoSProfile
+from linkwright.messages import get_message, get_service
+from linkwright.rviz import RvizConfig
+from tests.viewer.scene import page, world
+
+FILE = """\
+Panels:
+  - Class: rviz_common/Displays
+    Name: Displays
+  - Class: nav2_rviz_plugins/Navigation 2
+    Name: Navigation 2
+Visualization Manager:
+  Displays: []
+"""
+Feedback = get_message("nav2_msgs/action/NavigateToPose_FeedbackMessage")
+GoalStatus = get_message("action_msgs/msg/GoalStatus")
+GoalStatusArray = get_message("action_msgs/msg/GoalStatusArray")
+PAUSE, RESUME, RESET = 1, 2, 3
+
+
+class Nav2:
+    """The services and topics of nav2 that the panel uses."""
+
+    def __init__(self, graph: Graph) -> None:
+        node = graph.create_node("nav2")
+        self.active = True
+        self.refuses = False
+        self.log = node.get_logger()
+        self.commands: list[tuple[str, int]] = []
+        self.cancelled = 0
+        for name in ("navigation", "localization"):
+            manager = f"/lifecycle_manager_{name}"
+            node.create_service(get_service("std_srvs/srv/Trigger"), f"{manager}/is_active", self._is_active)
+            manage = get_service("nav2_msgs/srv/ManageLifecycleNodes")
+            node.create_service(manage, f"{manager}/manage_nodes", lambda *both, name=name: self._manage(name, *both))
+        node.create_service(
+            get_service("action_msgs/srv/CancelGoal"), "/navigate_to_pose/_action/cancel_goal", self._cancel
+        )
+        lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.status = node.create_publisher(GoalStatusArray, "/navigate_to_pose/_action/status", lasting)
+        self.feedback = node.create_publisher(Feedback, "/navigate_to_pose/_action/feedback", 10)
+
+    def _is_active(self, _: Any, response: Any) -> Any:
+        response.success = self.active
+        return response
+
+    def _manage(self, name: str, request: Any, response: Any) -> Any:
+        self.commands.append((name, request.command))
+        self.active = request.command in (0, RESUME)
+        response.success = not self.refuses
+        return response
+
+    def _cancel(self, _: Any, response: Any) -> Any:
+        self.cancelled += 1
+        return response
+
+    def goal(self, *statuses: int) -> None:
+        """Publish the states of goals, each accepted a second after the one before."""
+        message = GoalStatusArray()
+        for number, status in enumerate(statuses):
+            each = GoalStatus(status=status)
+            each.goal_info.stamp.sec = number
+            each.goal_info.goal_id.uuid = [number] * 16
+            message.status_list.append(each)
+        self.status.publish(message)
+
+    def progress(self, distance: float) -> None:
+        message = Feedback()
+        message.feedback.distance_remaining = distance
+        message.feedback.navigation_time.sec, message.feedback.navigation_time.nanosec = 12, 500_000_000
+        message.feedback.estimated_time_remaining.sec = 75
+        message.feedback.number_of_recoveries = 2
+        self.feedback.publish(message)
+
+
+@asynccontextmanager
+async def watched():
+    """nav2, and a page that shows the panel."""
+    async with world() as w:
+        nav2 = Nav2(w.graph)
+        async with page(w.viewer) as client:
+            await client.opened()
+            await client.send("watch_navigation", open=True)
+            yield w, nav2, client
+
+
+async def test_states_of_managers_are_told():
+    async with watched() as (_, nav2, client):
+        await client.until("navigation_state", navigation="active", localization="active")
+        nav2.active = False
+        await client.until("navigation_state", navigation="inactive", localization="inactive")
+
+
+async def test_without_nav2_nothing_is_known_and_commands_say_so():
+    async with world() as w, page(w.viewer) as client:
+        await client.opened()
+        await client.send("watch_navigation", open=True)
+        first = await client.until("navigation_state")
+        assert (first["navigation"], first["localization"], first["goal"]) == ("unknown", "unknown", "none")
+        await client.send("command_navigation", command="pause")
+        await client.until("navigation_state", problem="there is no lifecycle manager of nav2", busy=False)
+
+
+async def test_progress_of_the_goal_is_told_and_forgotten_with_the_next_goal():
+    async with watched() as (_, nav2, client):
+        await client.until("navigation_state", navigation="active")
+        nav2.goal(2)
+        nav2.progress(3.456)
+        told = await client.until("navigation_state", distance=3.46)
+        assert (told["goal"], told["eta"], told["taken"], told["recoveries"]) == ("active", 75.0, 12.5, 2)
+        nav2.progress(float("nan"))
+        await client.until("navigation_state", distance=None, eta=75.0)
+        nav2.goal(4, 2)
+        await client.until("navigation_state", goal="active", eta=None, recoveries=None)
+        nav2.goal(4, 4)
+        await client.until("navigation_state", goal="succeeded")
+
+
+async def test_a_failed_goal_is_told_with_the_error_of_its_node_until_the_next_goal():
+    async with world() as w:
+        nav2 = Nav2(w.graph)
+        async with page(w.viewer) as client:
+            await client.opened()
+            nav2.goal(2)
+            w.graph.create_node("camera").get_logger().error("no light")
+            nav2.log.error("Goal failed: the goal is in an obstacle")
+            nav2.goal(6)
+            told = await client.until("goal_outcome", failed=True)
+            assert told["reason"] == "Goal failed: the goal is in an obstacle"
+            nav2.goal(6, 2)
+            await client.until("goal_outcome", failed=False, reason="")
+
+
+async def test_a_goal_that_failed_before_the_page_came_is_no_news():
+    async with world() as w:
+        nav2 = Nav2(w.graph)
+        nav2.goal(6)
+        async with page(w.viewer) as client:
+            await client.opened()
+            nav2.goal(6, 5)
+            told = [each for each in await client.drain(0.6) if isinstance(each, dict)]
+            assert not any(each["failed"] for each in told if each["type"] == "goal_outcome")
+
+
+async def test_buttons_command_both_managers_in_the_order_of_nav2():
+    async with watched() as (_, nav2, client):
+        await client.until("navigation_state", navigation="active")
+        await client.send("command_navigation", command="pause")
+        await client.until("navigation_state", navigation="inactive", busy=False)
+        await client.send("command_navigation", command="resume")
+        await client.until("navigation_state", navigation="active", busy=False)
+        assert nav2.commands == [
+            ("navigation", PAUSE),
+            ("localization", PAUSE),
+            ("localization", RESUME),
+            ("navigation", RESUME),
+        ]
+        nav2.refuses = True
+        await client.send("command_navigation", command="pause")
+        told = await client.until("navigation_state", busy=False, navigation="active")
+        assert told["problem"] == "lifecycle_manager_navigation could not do that; its log has the reason"
+
+
+async def test_a_goal_is_cancelled_alone_and_by_a_reset():
+    async with watched() as (_, nav2, client):
+        nav2.goal(2)
+        await client.until("navigation_state", goal="active", navigation="active")
+        await client.send("command_navigation", command="cancel")
+        await client.until("navigation_state", busy=True)
+        await client.until("navigation_state", busy=False, problem="")
+        assert (nav2.cancelled, nav2.commands) == (1, [])
+        await client.send("command_navigation", command="reset")
+        await client.until("navigation_state", busy=True)
+        await client.until("navigation_state", busy=False, problem="")
+        assert (nav2.cancelled, nav2.commands) == (2, [("navigation", RESET), ("localization", RESET)])
+
+
+async def test_nobody_is_asked_once_no_page_shows_the_panel():
+    async with watched() as (w, _, client):
+        await client.until("navigation_state", navigation="active")
+        await client.send("watch_navigation", open=False)
+        await client.drain()
+        assert w.viewer.context.node.count_subscribers("/navigate_to_pose/_action/feedback") == 0
+
+
+def test_the_panel_of_a_file_is_known_and_kept():
+    config = RvizConfig.parse(FILE)
+    assert config.warnings == []
+    assert config.panels.shown == ["displays", "navigation"]
+    assert config.text() == FILE
+    config.panels.show(["displays"])
+    assert "Navigation 2" not in config.text()
+    config.panels.show(["displays", "navigation"])
+    assert config.text() == FILE
+
+
+def test_a_file_that_gets_the_panel_names_the_class_of_nav2():
+    config = RvizConfig.parse(FILE.replace("  - Class: nav2_rviz_plugins/Navigation 2\n    Name: Navigation 2\n", ""))
+    config.panels.show(["displays", "navigation"])
+    assert "Class: nav2_rviz_plugins/Navigation 2" in config.text()

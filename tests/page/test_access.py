@@ -1,0 +1,109 @@
+from __future__ import annotations
+
+import hmac
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.page.access import Gate, security_headers
+from linkwright.page.kept_tokens import new_token
+
+
+@pytest.fixture
+def gate():
+    return Gate("127.0.0.1", new_token())
+
+
+def is_let_in(gate, *, host="127.0.0.1:7447", origin=None):
+    return gate.refusal({"Host": host} | ({"Origin": origin} if origin is not None else {})) is None
+
+
+def test_the_token_opens_in_the_address(gate):
+    assert gate.is_shown_token({"token": gate.token})
+
+
+@pytest.mark.parametrize("wrong", ["", "x", "\udcff", "é" * 32])
+def test_nothing_else_does(gate, wrong):
+    assert not gate.is_shown_token({"token": wrong})
+    assert not gate.is_shown_token({"token": gate.token[:-1]})
+    assert not gate.is_shown_token({})
+    assert not gate.is_shown_token({"other": gate.token})
+
+
+def test_two_servers_have_two_tokens(gate):
+    other = Gate("127.0.0.1", new_token())
+    assert gate.token != other.token
+
+
+@pytest.mark.parametrize(
+    "host", ["127.0.0.1", "127.0.0.1:80", "localhost:9000", "LOCALHOST", "[::1]:7447", "192.168.1.5:7447", "localhost."]
+)
+def test_names_of_this_machine_are_known(gate, host):
+    assert is_let_in(gate, host=host)
+
+
+@pytest.mark.parametrize(
+    "host",
+    [
+        "",
+        "evil.example",
+        "evil.example:7447",
+        "127.0.0.1.evil.example",
+        "localhost.evil.example",
+        "user@127.0.0.1",
+        "127.0.0.1/..",
+        "127.0.0.1;x",
+        "127.0.0.1 ",
+        "127.0.0.1:80;script-src *",
+        "[::1",
+    ],
+)
+def test_other_names_are_refused(gate, host):
+    assert not is_let_in(gate, host=host)
+
+
+def test_the_host_it_is_bound_to_is_known():
+    assert is_let_in(Gate("robot.lan", new_token()), host="robot.lan")
+
+
+@pytest.mark.parametrize(
+    ("origin", "may"),
+    [
+        (None, True),
+        ("http://127.0.0.1:7447", True),
+        ("https://127.0.0.1:7447", True),
+        ("http://127.0.0.1:7448", False),
+        ("http://localhost:7447", False),
+        ("http://evil.example", False),
+        ("null", False),
+        ("", False),
+        ("file://", False),
+        ("http://[", False),
+    ],
+)
+def test_only_pages_of_this_origin_may_ask(gate, origin, may):
+    assert is_let_in(gate, origin=origin) == may
+
+
+@given(st.text(), st.text())
+def test_no_header_is_too_strange(host, origin):
+    assert Gate("127.0.0.1", new_token()).refusal({"Host": host, "Origin": origin})
+
+
+def test_scripts_come_from_files_of_the_server_only():
+    policy = dict(part.split(" ", 1) for part in security_headers("127.0.0.1:1")["Content-Security-Policy"].split("; "))
+    assert policy["script-src"] == "'self' 'unsafe-eval'"
+    assert policy["default-src"] == "'none'"
+    assert "ws://127.0.0.1:1" in policy["connect-src"]
+
+
+def test_the_proof_for_a_page_is_made_of_its_number_and_the_token(gate):
+    nonce = "0123456789abcdef" * 2
+    assert gate.proof(nonce) == hmac.new(gate.token.encode(), nonce.encode(), "sha256").hexdigest()
+    assert gate.proof(nonce) != Gate("127.0.0.1", new_token()).proof(nonce)
+
+
+@pytest.mark.parametrize("nonce", ["", "0" * 31, "0" * 33, "x" * 32, "0" * 31 + "\n", "é" * 32])
+def test_nothing_but_such_a_number_is_answered(gate, nonce):
+    assert gate.proof(nonce) is None

@@ -1,0 +1,62 @@
+"""Files that pages ask for: each is fetched once, from an address that nobody can guess."""
+
+from __future__ import annotations
+
+import base64
+
+import pytest
+
+from tests.page.test_files import package, write
+from tests.page.test_security import MESHED, raw
+from tests.viewer.scene import page, world
+
+
+@pytest.fixture
+async def served(tmp_path):
+    share = package(tmp_path / "robot", "robot")
+    write(share / "meshes" / "arm.stl", "solid arm")
+    async with world(packages={"robot": share}) as made:
+        yield made
+
+
+async def exported(client, kind: str = "glb") -> dict:
+    await client.send("ask_export", format=kind, view={"cls": "rviz_default_plugins/Orbit", "name": "", "values": {}})
+    while True:
+        message = await client.receive()
+        if isinstance(message, dict) and message["type"] in ("export_ready", "export_failed"):
+            return message
+
+
+async def test_an_export_is_fetched_once_from_an_address_that_nobody_guesses(served):
+    served.describe('<robot name="../../evil name"><link name="base"/></robot>')
+    await served.settle()
+    async with page(served.viewer) as client:
+        ready = await exported(client)
+        assert ready["name"] == "evil_name.glb"
+        key = ready["url"].split("/")[2]
+        assert len(base64.urlsafe_b64decode(f"{key}==")) >= 16
+        assert (await raw(served.viewer, ready["url"].replace(key, key[:-1])))[0] == 404
+        assert (await raw(served.viewer, ready["url"], host="evil.example"))[0] == 403
+        status, body, head = await raw(served.viewer, ready["url"], token=False)
+        assert (status, body[:4]) == (200, "glTF")
+        assert "content-disposition: attachment" in head
+        assert (await raw(served.viewer, ready["url"]))[0] == 404
+        for guess in ("/export/x/evil_name.glb", "/export/../server.py", "/export/%2e%2e/server.py", "/export/"):
+            assert (await raw(served.viewer, guess))[0] in (403, 404)
+
+
+async def test_exports_that_nobody_fetches_are_forgotten(served):
+    served.describe('<robot name="arm"><link name="base"/></robot>')
+    await served.settle()
+    async with page(served.viewer) as client:
+        ready = [await exported(client) for _ in range(6)]
+        assert [(await raw(served.viewer, each["url"]))[0] for each in ready] == [404, 404, 200, 200, 200, 200]
+
+
+async def test_an_export_that_fails_says_why(served):
+    served.describe(MESHED)
+    await served.settle()
+    async with page(served.viewer) as client:
+        failed = await exported(client)
+        assert failed["type"] == "export_failed"
+        assert "arm.stl" in failed["message"]

@@ -1,0 +1,47 @@
+"""How late the program is, told apart from a slow line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from linkwright.page.lateness import Lateness
+
+
+class Loop:
+    """An event loop that runs its one timer when it is told to."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+        self.at = 0.0
+        self.timer: Callable[[], None] | None = None
+
+    def time(self) -> float:
+        return self.now
+
+    def call_at(self, at: float, timer: Callable[[], None]) -> Loop:
+        self.at, self.timer = at, timer
+        return self
+
+    def cancel(self) -> None:
+        self.timer = None
+
+    def run(self, late: float) -> None:
+        self.now = self.at + late
+        assert self.timer is not None
+        self.timer()
+
+
+def test_a_program_is_as_late_as_its_timers_of_the_last_second():
+    loop = Loop()
+    lateness = Lateness(loop)  # type: ignore[arg-type]
+    assert lateness.mean == 0.0
+    for _ in range(20):
+        loop.run(0.08)
+    assert lateness.mean == pytest.approx(0.08)
+    for _ in range(20):
+        loop.run(0.001)
+    assert lateness.mean == pytest.approx(0.001)
+    lateness.close()
+    assert loop.timer is None

@@ -1,0 +1,77 @@
+"""Whatever a page sends, as long as it is of the protocol, the viewer goes on and the configuration can be saved."""
+
+from __future__ import annotations
+
+import random
+import types
+import typing
+from typing import Any
+
+import msgspec
+import pytest
+
+from linkwright.page.protocol.displays import SetProperty
+from linkwright.page.protocol.message import PageMessage
+from linkwright.page.protocol.session import Received
+from linkwright.rviz import RvizConfig
+from tests.viewer.configured import TEXT
+from tests.viewer.scene import page, world
+
+DISPLAYS = "".join(
+    f"    - {{Class: rviz_default_plugins/{name}, Enabled: true, Name: {name}}}\n"
+    for name in ("RobotModel", "TF", "PointCloud2", "MarkerArray", "Map", "Camera", "DepthCloud", "Effort", "Odometry")
+)
+CONFIGURATION = TEXT.replace("  Global Options:", DISPLAYS + "  Global Options:")
+WORDS = ["", "/", "a/b", "no name", "..", "~nobody", "../x.rviz", "\0", "x" * 3000, "\u2603", "(a+", "-1", "/tf"]
+WORDS += ["tip", "rviz_default_plugins/Grid", "rviz_default_plugins/Orbit", "rviz_common/Group", "view-1", "/cmd_vel"]
+ROWS = ("Enabled", "Topic", "Topic/Depth", "Alpha", "Decay Time")
+IDS = ["global/Fixed Frame", "tool-6", "tool-6/Topic", *(f"display-{number}" for number in range(1, 14))]
+IDS += [f"{display}/{row}" for display in IDS[3:] for row in ROWS]
+MESSAGES = [
+    subclass for subclass in PageMessage.__subclasses__() if subclass is not Received
+]  # which pages must not lie about
+MESSAGES += [SetProperty] * 30
+
+
+def anything(kind: Any, name: str, chance: random.Random) -> Any:
+    """A value as JSON has it that a field of the protocol may hold."""
+    origin, arguments = typing.get_origin(kind), typing.get_args(kind)
+    if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
+        hints = typing.get_type_hints(kind)
+        made = {field: anything(hints[field], field, chance) for field in kind.__struct_fields__}
+        return made | ({"type": kind.__struct_config__.tag} if issubclass(kind, PageMessage) else {})
+    if origin is typing.Literal:
+        return chance.choice(arguments)
+    if origin is list:
+        return [anything(arguments[0], name, chance) for _ in range(chance.choice([0, 1, 3, 7]))]
+    if origin is dict:
+        return {chance.choice(WORDS): anything(arguments[1], name, chance) for _ in range(chance.choice([0, 1, 3]))}
+    if origin in (typing.Union, types.UnionType):
+        return anything(chance.choice(arguments), name, chance)
+    values: dict[Any, list[Any]] = {
+        bool: [False, True],
+        int: [0, 1, -1, 2**31, -(2**63), 10**30],
+        float: [0.0, 1.0, -1.5, 1e308, -1e308, 5e-324],
+        str: IDS if name in ("id", "display", "displays", "group", "before") and chance.random() < 0.8 else WORDS,
+        type(None): [None],
+    }
+    return chance.choice(values[kind])
+
+
+@pytest.mark.parametrize("seed", range(3))
+async def test_nothing_that_a_page_may_say_is_too_much(seed, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    chance = random.Random(seed)
+    async with world(RvizConfig.parse(CONFIGURATION)) as made, page(made.viewer) as client:
+        await client.opened()
+        made.move_arm()
+        for _ in range(30):
+            sent = [anything(chance.choice(MESSAGES), "", chance) for _ in range(20)]
+            for message in sent:
+                await client.socket.send_json(message)
+            await client.drain(0.01)
+            failures = [line for line in made.logged().splitlines() if "failed" in line or "Traceback" in line]
+            assert failures == [], sent
+        await client.send("ask_configuration_text")
+        text = (await client.until("configuration_text"))["text"]
+        assert RvizConfig.parse(text).text() == text

@@ -1,0 +1,77 @@
+"""The server gives out the page before there is a viewer, and lets pages in when there is one."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import aiohttp
+
+from linkwright.page.page_server import PageServer
+from tests.viewer.scene import World
+
+
+@asynccontextmanager
+async def opened() -> AsyncIterator[tuple[PageServer, aiohttp.ClientSession]]:
+    """A server that gives out the page, and a browser."""
+    server = PageServer("127.0.0.1", 0)
+    await server.open()
+    try:
+        async with aiohttp.ClientSession() as browser:
+            yield server, browser
+    finally:
+        await server.close()
+
+
+def address_of(server: PageServer, path: str) -> str:
+    return server.url.replace("/?", f"/{path}?")
+
+
+async def test_the_page_comes_before_there_is_a_viewer_and_its_socket_when_there_is_one():
+    async with opened() as (server, browser):
+        async with browser.get(server.url) as answer:
+            assert answer.status == 200
+        waiting = asyncio.ensure_future(browser.ws_connect(address_of(server, "ws")))
+        async with browser.get(address_of(server, "nothing")) as answer:
+            assert answer.status == 404
+        assert not waiting.done()
+        made = World(server=server)
+        await made.viewer.start()
+        assert made.viewer.url == server.url
+        socket = await waiting
+        assert (await socket.receive_json())["type"] == "hello"
+        await socket.close()
+        await made.viewer.close()
+        await made.graph.close()
+
+
+async def test_whoever_has_no_token_waits_for_nothing():
+    async with opened() as (server, browser):
+        plain = server.url.partition("?")[0]
+        async with browser.get(f"{plain}ws") as answer:
+            assert answer.status == 401
+        async with browser.post(f"{plain}recordings") as answer:
+            assert answer.status == 401
+
+
+async def test_a_page_that_waits_is_sent_away_when_the_program_ends_before():
+    async with opened() as (server, browser):
+        waiting = asyncio.ensure_future(browser.get(address_of(server, "ws")))
+        async with browser.get(server.url) as answer:
+            assert answer.status == 200
+        await server.close()
+        answer = await waiting
+        assert answer.status == 503
+
+
+async def test_a_server_without_guests_takes_no_recordings():
+    made = World()
+    await made.viewer.start()
+    address = made.viewer.url.replace("/?", "/recordings?")
+    try:
+        async with aiohttp.ClientSession() as browser, browser.post(address, json={}) as answer:
+            assert answer.status == 404
+    finally:
+        await made.viewer.close()
+        await made.graph.close()

@@ -1,0 +1,566 @@
+"""The server against requests that no page of ours would send."""
+
+from __future__ import annotations
+
+import asyncio
+import random
+import re
+from contextlib import suppress
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import aiohttp
+import psutil
+import pytest
+
+from linkwright.page import files
+from linkwright.page.access import MAXIMUM_CONNECTIONS
+from linkwright.page.audience import MAXIMUM_PAGES
+from linkwright.page.protocol.displays import DisplayStatus, StatusRow
+from linkwright.page.server import MAXIMUM_MESSAGE
+from tests.leaving import UPGRADE, ask_and_leave
+from tests.page.test_files import package, write
+from tests.viewer.scene import page, world
+from tests.waiting import SECONDS, eventually
+
+MESHED = """\
+<robot name="meshed"><link name="base"><visual><geometry>
+  <mesh filename="package://robot/meshes/arm.stl"/>
+</geometry></visual></link></robot>
+"""
+
+
+@pytest.fixture
+def robot(tmp_path) -> Path:
+    share = package(tmp_path / "robot", "robot")
+    write(share / "meshes" / "arm.stl", "solid arm")
+    write(share / "meshes" / "arm.stl.gz", "never sent")
+    write(share / "secret.py", "secret")
+    write(tmp_path / "secret.png", "secret")
+    return share
+
+
+@pytest.fixture
+async def served(robot):
+    async with world(packages={"robot": robot}) as made:
+        made.describe(MESHED)
+        await made.settle()
+        yield made
+
+
+async def raw(viewer, target: str, *, host: str | None = None, method: str = "GET", token: bool = True, **headers):
+    """Status and body of a request whose target is sent exactly as it is."""
+    address = urlsplit(viewer.url)
+    if token:
+        target += ("&" if "?" in target else "?") + address.query
+    lines = [f"{method} {target} HTTP/1.1", f"Host: {host or address.netloc}", "Connection: close"]
+    lines += [f"{name.replace('_', '-')}: {value}" for name, value in headers.items()]
+    reader, writer = await asyncio.open_connection(address.hostname, address.port)
+    writer.write(("\r\n".join(lines) + "\r\n\r\n").encode())
+    answer = await asyncio.wait_for(reader.read(), SECONDS)
+    writer.close()
+    await writer.wait_closed()
+    head, _, body = answer.partition(b"\r\n\r\n")
+    return int(head.split(b" ")[1]), body.decode(errors="replace"), head.decode().lower()
+
+
+def mesh_url(viewer) -> str:
+    display = next(display for display in viewer.displays if display.CLASS.endswith("RobotModel"))
+    return display.scene.links[0].visuals[0].url
+
+
+async def test_a_mesh_goes_compressed_to_a_browser_that_takes_it(served, robot):
+    url, mesh = mesh_url(served.viewer), robot / "meshes" / "arm.stl"
+    text = "facet normal 0 0 1\n" * 1000
+    write(mesh, text)
+    _, plain, head = await raw(served.viewer, url)
+    assert plain == text
+    assert "content-encoding" not in head
+    status, packed, head = await raw(served.viewer, url, Accept_Encoding="gzip, br")
+    assert (status, len(packed) < len(text) / 10) == (200, True)
+    for line in ("content-encoding: gzip", "vary: accept-encoding", f"x-unpacked-length: {len(text)}"):
+        assert line in head
+    tag = next(line for line in head.split("\r\n") if line.startswith("etag")).partition(": ")[2]
+    assert (await raw(served.viewer, url, Accept_Encoding="gzip", If_None_Match=tag))[:2] == (304, "")
+    mesh.write_bytes(random.Random(1).randbytes(20_000))
+    assert "content-encoding" not in (await raw(served.viewer, url, Accept_Encoding="gzip"))[2], (
+        "it would not be smaller"
+    )
+
+
+async def test_the_mesh_is_served_and_comes_again_only_when_it_changed(served, robot):
+    status, body, head = await raw(served.viewer, mesh_url(served.viewer))
+    assert (status, body) == (200, "solid arm")
+    assert "content-type: model/stl" in head
+    assert "cache-control: private, no-cache" in head
+    tag = next(line for line in head.split("\r\n") if line.startswith("etag")).partition(": ")[2]
+    assert (await raw(served.viewer, mesh_url(served.viewer), If_None_Match=tag))[:2] == (304, "")
+    write(robot / "meshes" / "arm.stl", "solid arms")
+    assert (await raw(served.viewer, mesh_url(served.viewer), If_None_Match=tag))[1] == "solid arms"
+
+
+async def test_compressed_neighbours_are_never_sent_instead(served):
+    status, body, head = await raw(served.viewer, mesh_url(served.viewer), Accept_Encoding="gzip, br")
+    assert (status, body) == (200, "solid arm")
+    assert "content-encoding" not in head
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "../secret.png",
+        "..%2fsecret.png",
+        "..%2Fsecret.png",
+        "%2e%2e/secret.png",
+        "%2e%2e%2fsecret.png",
+        "%252e%252e%252fsecret.png",
+        "meshes/../../secret.png",
+        "meshes/..%5c..%5csecret.png",
+        "/etc/passwd",
+        "%2fetc%2fpasswd",
+        "//etc/hosts.png",
+        "meshes/arm.stl%00.png",
+        "secret.py",
+        "package.xml",
+        "meshes/",
+        "meshes",
+        "",
+    ],
+)
+async def test_no_path_leads_out_of_the_package(served, path):
+    base = mesh_url(served.viewer).split("meshes/")[0]
+    status, body, _ = await raw(served.viewer, base + path)
+    assert status in (400, 403, 404)
+    assert "secret" not in body
+    assert "root:" not in body
+
+
+async def test_a_link_out_of_the_package_is_refused(served, robot):
+    for name in ("link.stl", "folder"):
+        target = robot.parent / "secret.png" if name == "link.stl" else robot.parent
+        (robot / "meshes" / name).symlink_to(target)
+    base = mesh_url(served.viewer).split("meshes/")[0] + "meshes/"
+    for path in ("link.stl", "folder/secret.png"):
+        status, body, _ = await raw(served.viewer, base + path)
+        assert status == 403
+        assert "secret" not in body
+
+
+@pytest.mark.parametrize(
+    "target", ["/mesh/", "/mesh/robot/meshes/arm.stl", "/mesh/../page/index.html", "/assets/", "/assets"]
+)
+async def test_there_are_no_listings_and_no_unnamed_folders(served, target):
+    assert (await raw(served.viewer, target))[0] == 404
+
+
+@pytest.mark.parametrize("target", ["/../server.py", "/assets/../../server.py", "/..%2fserver.py", "/%2e%2e/server.py"])
+async def test_no_path_leads_out_of_the_page(served, target):
+    status, body, _ = await raw(served.viewer, target)
+    assert status in (400, 404)
+    assert "import" not in body
+
+
+async def test_without_the_token_there_is_nothing_but_the_program_of_the_page(served):
+    """What every wheel has in it; not one byte of what is shown."""
+    for query in ("", "?token=", "?token=wrong"):
+        status, body, _ = await raw(served.viewer, f"/ws{query}", token=False)
+        assert status == 401
+        assert "open the address that linkwright printed" in body
+    assert (await raw(served.viewer, "/", token=False))[0] in (200, 503)  # where the page is not built it says so
+    assert (await raw(served.viewer, "/assets/gone.js", token=False))[0] == 404
+
+
+async def test_no_socket_opens_without_the_token(served):
+    base = served.viewer.url.partition("?")[0]
+    async with aiohttp.ClientSession() as session:
+        for query in ("", "?token=", "?token=wrong"):
+            for told in ({}, {"Cookie": f"linkwright={urlsplit(served.viewer.url).query}"}):
+                with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
+                    await session.ws_connect(f"{base}ws{query}", headers=told)
+                assert caught.value.status == 401
+
+
+async def test_no_answer_sets_a_cookie(served):
+    """Browsers would send it to every port of this host."""
+    for target in ("/", "/ws", "/nothing", mesh_url(served.viewer)):
+        for proto in ("http", "https"):
+            assert "set-cookie" not in (await raw(served.viewer, target, X_Forwarded_Proto=proto))[2]
+
+
+async def test_the_address_of_a_mesh_cannot_be_guessed(served, robot, monkeypatch):
+    """Textures are fetched by image elements, which can show no token: their addresses are told to pages only."""
+    address = mesh_url(served.viewer)
+    assert (await raw(served.viewer, address, token=False))[:2] == (200, "solid arm")
+    label, _, secret = address.split("/")[2].partition("~")
+    assert re.fullmatch("[0-9a-f]{32}", secret)
+    for key in (label, f"{label}~", f"{label}~{'0' * 32}", f"{label}~{secret[:-1]}", "robot", ""):
+        assert (await raw(served.viewer, f"/mesh/{key}/meshes/arm.stl"))[0] == 404
+    # Nor does another run of the program tell it.
+    monkeypatch.setattr(files, "_SECRET", bytes(32))
+    other = files.ServedFolder(robot, "robot").key
+    assert other.startswith(f"{label}~")
+    assert other != f"{label}~{secret}"
+
+
+async def test_a_name_bent_to_this_machine_is_refused(served):
+    status, body, _ = await raw(served.viewer, "/", host="evil.example:7447")
+    assert status == 403
+    assert "'evil.example:7447'" in body
+
+
+async def test_every_answer_carries_the_security_headers(served):
+    for target, token in (("/", True), ("/", False), ("/nothing", True), (mesh_url(served.viewer), True)):
+        _, _, head = await raw(served.viewer, target, token=token)
+        for header in ("content-security-policy: default-src 'none'", "x-content-type-options: nosniff",
+                       "referrer-policy: no-referrer", "cross-origin-resource-policy: same-origin"):  # fmt: skip
+            assert header in head
+        assert "aiohttp" not in head
+
+
+@pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "OPTIONS"])
+async def test_only_reading_is_allowed(served, method):
+    assert (await raw(served.viewer, "/", method=method, Content_Length="0"))[0] == 405
+
+
+async def test_a_page_of_another_site_gets_no_socket(served):
+    async with aiohttp.ClientSession() as session:
+        for origin, status in (("http://evil.example", 403), ("null", 403)):
+            with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
+                await session.ws_connect(served.viewer.url.replace("/?", "/ws?"), origin=origin)
+            assert caught.value.status == status
+        own = "http://" + urlsplit(served.viewer.url).netloc
+        async with session.ws_connect(served.viewer.url.replace("/?", "/ws?"), origin=own) as socket:
+            assert (await socket.receive_json())["type"] == "hello"
+
+
+async def test_a_plain_request_to_the_socket_is_told_so(served):
+    status, body, _ = await raw(served.viewer, "/ws")
+    assert status == 400
+    assert "WebSocket" in body
+
+
+async def closed_with(client) -> int:
+    with pytest.raises(ConnectionError):
+        await client.until("nothing of this kind")
+    return client.socket.close_code
+
+
+async def test_a_message_too_long_ends_the_connection(served):
+    async with page(served.viewer) as client:
+        await client.socket.send_str("x" * (MAXIMUM_MESSAGE + 1))
+        assert await closed_with(client) == 1009
+
+
+async def test_a_binary_message_ends_the_connection(served):
+    async with page(served.viewer) as client:
+        await client.socket.send_bytes(b"\0")
+        assert await closed_with(client) == 1003
+
+
+async def test_nonsense_is_passed_over_and_logged_but_not_forever(served):
+    async with page(served.viewer) as client:
+        await client.socket.send_str('{"type": "set_joint", "name": 1}')
+        await client.set("global/Fixed Frame", "tip")
+        assert (await client.until("property_changed", id="global/Fixed Frame"))["value"] == "tip"
+        assert "A page sent an invalid message" in served.logged()
+        for _ in range(30):
+            await client.socket.send_str("nonsense")
+        assert await closed_with(client) == 1008
+
+
+async def test_more_pages_than_allowed_are_refused(served):
+    address = served.viewer.url.replace("/?", "/ws?")
+    async with aiohttp.ClientSession() as session:
+        pages = [await session.ws_connect(address) for _ in range(MAXIMUM_PAGES)]
+        with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
+            await session.ws_connect(address)
+        assert caught.value.status == 503
+        await pages[0].close()
+        await eventually(lambda: len(served.viewer._audience) < MAXIMUM_PAGES)
+        pages[0] = await session.ws_connect(address)
+        for page in pages:
+            await page.close()
+
+
+# --- many, slow and half connections -------------------------------------------------------------------------------
+
+
+def memory() -> int:
+    """Resident bytes of this process."""
+    return psutil.Process().memory_info().rss
+
+
+async def knock(viewer, said: bytes = b"") -> asyncio.StreamWriter:
+    address = urlsplit(viewer.url)
+    _, writer = await asyncio.open_connection(address.hostname, address.port)
+    writer.write(said)
+    return writer
+
+
+async def is_served(client) -> None:
+    """The page that is there gets its answers."""
+    wanted = "tip" if client.messages and "base" in str(client.messages[-1]) else "base"
+    await client.set("global/Fixed Frame", wanted)
+    await client.until("property_changed", id="global/Fixed Frame", value=wanted)
+
+
+async def test_a_thousand_connections_trouble_nobody(served):
+    async with page(served.viewer) as client:
+        await client.opened()
+        before = memory()
+        knocking = [await knock(served.viewer) for _ in range(1000)]
+        await is_served(client)
+        # Those that say nothing make room for one who shows the token.
+        assert (await raw(served.viewer, mesh_url(served.viewer)))[:2] == (200, "solid arm")
+        await eventually(lambda: served.viewer._server.web._admission._count <= MAXIMUM_CONNECTIONS)
+        assert memory() - before < 64 << 20
+        for each in knocking:
+            each.close()
+        await is_served(client)
+
+
+async def test_a_thousand_sockets_are_refused_but_for_some(served):
+    address = served.viewer.url.replace("/?", "/ws?")
+    statuses: list[int] = []
+    kept: list[aiohttp.ClientWebSocketResponse | None] = []
+    async with page(served.viewer) as client, aiohttp.ClientSession(connector=aiohttp.TCPConnector(limit=0)) as session:
+
+        async def connect() -> aiohttp.ClientWebSocketResponse | None:
+            try:
+                return await session.ws_connect(address)
+            except aiohttp.WSServerHandshakeError as error:
+                statuses.append(error.status)
+            except aiohttp.ClientConnectionError:
+                statuses.append(0)
+            return None
+
+        await client.opened()
+        for _ in range(10):
+            kept += await asyncio.gather(*(connect() for _ in range(100)))
+            await is_served(client)
+        assert set(statuses) <= {0, 503}
+        assert len(statuses) >= 1000 - MAXIMUM_PAGES
+        assert len(served.viewer._audience) <= MAXIMUM_PAGES
+
+
+async def test_half_a_request_is_not_waited_for_long(served, monkeypatch):
+    monkeypatch.setattr("linkwright.page.access.PATIENCE", 0.2)
+    address = urlsplit(served.viewer.url)
+    for said in (b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: "):
+        reader, writer = await asyncio.open_connection(address.hostname, address.port)
+        writer.write(said)
+        ended = asyncio.ensure_future(reader.read())
+        while not ended.done():
+            writer.write(b"a")  # a byte now and then changes nothing
+            await asyncio.wait([ended], timeout=0.02)
+        assert isinstance(ended.exception(), (ConnectionError, type(None)))
+        writer.close()
+
+
+async def test_a_page_that_is_let_in_may_take_its_time(served, monkeypatch):
+    monkeypatch.setattr("linkwright.page.access.PATIENCE", 0.1)
+    async with page(served.viewer) as client:
+        await client.opened()
+        address = urlsplit(served.viewer.url)
+        silent, writer = await asyncio.open_connection(address.hostname, address.port)
+        with suppress(ConnectionError):
+            await silent.read()  # one that came later has waited too long
+        writer.close()
+        await is_served(client)
+
+
+async def test_who_asks_for_the_page_and_reads_nothing_costs_little(served, tmp_path, monkeypatch):
+    """The page is for everybody: its files are in memory once, and its readers make room for who has the token."""
+    (tmp_path / "assets").mkdir()
+    (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (4 << 20))
+    server = served.viewer._server.web
+    monkeypatch.setattr(server, "_page_folder", tmp_path)
+    monkeypatch.setattr("linkwright.page.server._HEARTBEAT", 600.0)  # the page answers only while it is read
+    address = urlsplit(served.viewer.url)
+    asking = f"GET /assets/index-abc.js HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode()
+    async with page(served.viewer) as client:
+        await client.opened()
+        readers = [await asyncio.open_connection(address.hostname, address.port) for _ in range(MAXIMUM_CONNECTIONS)]
+        for _, writer in readers:
+            writer.write(asking)
+        for reader, _ in readers[1:]:
+            await reader.readexactly(100)
+        await is_served(client)
+        assert len(server._page_contents) == 1
+        waiting = [stranger._transport.get_write_buffer_size() for stranger in server._admission._strangers.values()]
+        assert len(waiting) > MAXIMUM_CONNECTIONS - 5
+        assert max(waiting) < 256 << 10
+        status, body, _ = await raw(served.viewer, "/assets/index-abc.js", token=False)
+        assert (status, len(body)) == (200, 4 << 20)
+        for _, writer in readers:
+            writer.close()
+        await is_served(client)
+
+
+async def test_who_reads_the_page_slowly_is_waited_for(served, tmp_path, monkeypatch):
+    """Its files are fetched without the token: a slow line takes longer for them than a stranger has."""
+    monkeypatch.setattr("linkwright.page.access.PATIENCE", 0.1)
+    (tmp_path / "assets").mkdir()
+    (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (16 << 20))
+    monkeypatch.setattr(served.viewer._server.web, "_page_folder", tmp_path)
+    address = urlsplit(served.viewer.url)
+    reader, writer = await asyncio.open_connection(address.hostname, address.port)
+    writer.write(f"GET /assets/index-abc.js HTTP/1.1\r\nHost: {address.netloc}\r\nConnection: close\r\n\r\n".encode())
+    await reader.readuntil(b"\r\n\r\n")
+    silent, other = await asyncio.open_connection(address.hostname, address.port)
+    with suppress(ConnectionError):
+        await silent.read()  # one that came later has waited too long
+    assert len(await reader.read()) == 16 << 20
+    writer.close()
+    other.close()
+
+
+async def test_a_refused_request_ends_its_connection(served):
+    address = urlsplit(served.viewer.url)
+    reader, writer = await asyncio.open_connection(address.hostname, address.port)
+    writer.write(f"GET /ws HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode())
+    answer = await reader.read()
+    assert answer.startswith(b"HTTP/1.1 401")
+    writer.close()
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        b"GET /" + b"a" * 100_000 + b" HTTP/1.1\r\n\r\n",
+        b"GET / HTTP/1.1\r\nHost: localhost\r\nX: " + b"a" * 100_000 + b"\r\n\r\n",
+        b"GET / HTTP/1.1\r\n" + b"".join(b"X-%d: 1\r\n" % i for i in range(20_000)) + b"\r\n",
+        b"\x16\x03\x01\x02\x00\x01\x00" * 100,
+        b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999999999\r\n\r\n",
+        b"POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\nFFFFFFFFFFFFFFFF\r\n",
+    ],
+    ids=["path", "header", "headers", "tls", "length", "chunk"],
+)
+async def test_requests_beyond_all_bounds_are_refused(served, said):
+    before = memory()
+    address = urlsplit(served.viewer.url)
+    reader, writer = await asyncio.open_connection(address.hostname, address.port)
+    with suppress(ConnectionError):
+        writer.write(said)
+        answer = await reader.read(4096)
+        assert answer == b"" or answer.split(b" ")[1][:1] == b"4"
+    writer.close()
+    assert memory() - before < 16 << 20
+    assert (await raw(served.viewer, mesh_url(served.viewer)))[0] == 200
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        b"\x00\xff\xfe nonsense\r\n\r\n",
+        bytes.fromhex("16030100c8010000c40303") + bytes(range(200)) + b"\r\n\r\n",
+        b"GET / HTTP/1.1\r\nHost: localhost\r\nX: " + b"a" * 1_000_000 + b"\r\n\r\n",
+        b"GET / HTTP/9.9\r\n\r\n",
+        b"GET / HTTP/1.1\r\n\r\n",
+        b"G@T / HTTP/1.1\r\nHost: localhost\r\n\r\n",
+        b"GET http://[::1 HTTP/1.1\r\nHost: localhost\r\n\r\n",
+        b"GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: -5\r\n\r\n",
+        b"GET / HTTP/1.1\r\nHost: localhost\r\nCookie: \x01\r\n\r\n",
+        b"POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\nZZZ\r\nnonsense\r\n",
+        b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
+        b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Encoding: gzip\r\nContent-Length: 4\r\n\r\nabcd",
+        b"GET /ws HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n",
+        b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
+    ],
+    ids=[
+        "bytes",
+        "tls",
+        "header",
+        "version",
+        "no-host",
+        "method",
+        "url",
+        "length",
+        "cookie",
+        "chunk",
+        "both",
+        "gzip",
+        "ws",
+        "h2",
+    ],
+)
+async def test_what_is_no_request_writes_nothing_on_the_terminal(served, said, caplog):
+    address = urlsplit(served.viewer.url)
+    reader, writer = await asyncio.open_connection(address.hostname, address.port)
+    with suppress(ConnectionError):
+        writer.write(said)
+        answer = await reader.read(4096)
+        assert answer == b"" or answer.split(b" ")[1][:1] == b"4"
+    writer.close()
+    assert (await raw(served.viewer, mesh_url(served.viewer)))[0] == 200
+    assert [record.getMessage() for record in caplog.records] == []
+
+
+@pytest.mark.parametrize("target", ["/", "/ws", "/mesh/none/none.stl"])
+async def test_a_client_that_leaves_writes_nothing_on_the_terminal(served, target, caplog):
+    address = urlsplit(served.viewer.url)
+    for headers in ("", UPGRADE):
+        await ask_and_leave(address.port, f"{target}?{address.query}", headers)
+    assert (await raw(served.viewer, mesh_url(served.viewer)))[0] == 200
+    assert [record.getMessage() for record in caplog.records] == []
+
+
+async def test_a_flood_of_messages_slows_its_sender_alone(served):
+    async with page(served.viewer) as flooding, page(served.viewer) as client:
+        await client.opened()
+
+        sent = 0
+
+        async def flood() -> None:
+            nonlocal sent
+            for number in range(100_000):
+                sent = number
+                await flooding.socket.send_str(f'{{"type":"received","count":{number}}}' + 500 * " ")
+
+        task = asyncio.ensure_future(flood())
+        await eventually(lambda: sent > 100)
+        for _ in range(5):
+            await is_served(client)
+        assert not task.done()
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
+
+
+async def test_a_page_that_reads_nothing_costs_little(served):
+    """Its outbox keeps the newest of each kind only."""
+    address = urlsplit(served.viewer.url)
+    reader, writer = await asyncio.open_connection(address.hostname, address.port)
+    key = "dGhlIHNhbXBsZSBub25jZQ=="
+    lines = [f"GET /ws?{address.query} HTTP/1.1", f"Host: {address.netloc}", "Connection: Upgrade"]
+    lines += ["Upgrade: websocket", "Sec-WebSocket-Version: 13", f"Sec-WebSocket-Key: {key}"]
+    writer.write(("\r\n".join(lines) + "\r\n\r\n").encode())
+    await reader.readuntil(b"\r\n\r\n")
+    before = memory()
+    for number in range(3000):
+        served.move_arm(x=number / 1000)
+        served.viewer.manager.publish(
+            DisplayStatus("display-1", "ok", [StatusRow("Topic", "ok", "x" * 2000 + str(number))])
+        )
+        if number % 100 == 0:
+            await asyncio.sleep(0)
+    assert memory() - before < 16 << 20
+    writer.close()
+
+
+# --- what pages save -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name", ["notes.txt", ".bashrc", "x.rviz/../notes.txt", "a.rviz\0.txt", "link.rviz", "dir.rviz"]
+)
+async def test_pages_write_nothing_but_configurations(served, tmp_path, name):
+    (tmp_path / "notes.txt").write_text("mine")
+    (tmp_path / ".bashrc").write_text("mine")
+    (tmp_path / "link.rviz").symlink_to(tmp_path / "notes.txt")
+    (tmp_path / "dir.rviz").mkdir()
+    async with page(served.viewer) as client:
+        await client.send("save_configuration", path=f"{tmp_path}/{name}", replace=True)
+        assert (await client.until("configuration_refused"))["question"] is None
+    assert (tmp_path / "notes.txt").read_text() == (tmp_path / ".bashrc").read_text() == "mine"
+    assert sorted(path.name for path in tmp_path.iterdir() if path.is_file()) == [
+        ".bashrc", "link.rviz", "notes.txt", "secret.png"]  # fmt: skip

@@ -1,0 +1,297 @@
+"""Recordings that pages give to the server: how they come, what is refused, and that nothing of them stays."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from urllib.parse import parse_qs, urlsplit
+
+import aiohttp
+import pytest
+
+from linkwright.page import uploads
+from linkwright.viewer import guests
+from linkwright.viewer.guests import GuestRecordings
+from tests.panels.test_timeline import recorded
+from tests.skipping import skipping
+from tests.viewer.scene import Client, World
+
+SECONDS = 5.0
+"""In place of the minute after which what nobody goes on with is given up."""
+
+REFUSED = -1
+"""In place of a status: the user is told a problem."""
+
+
+@pytest.fixture(autouse=True)
+def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Where what comes is put."""
+    folder = tmp_path / "scratch"
+    folder.mkdir()
+    monkeypatch.setenv("TMPDIR", str(folder))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def little_patience(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Even minutes that are skipped take seconds."""
+    monkeypatch.setattr(uploads, "PATIENCE", SECONDS)
+    monkeypatch.setattr(guests, "PATIENCE", SECONDS)
+
+
+class Sender:
+    """A page as far as it sends recordings."""
+
+    def __init__(self, session: aiohttp.ClientSession, url: str) -> None:
+        parts = urlsplit(url)
+        self.session = session
+        self.base = f"{parts.scheme}://{parts.netloc}"
+        self.token = parse_qs(parts.query)["token"][0]
+
+    async def ask(self, method: str, path: str, language: str = "en", **options: object) -> tuple[int, dict[str, str]]:
+        params = {"token": self.token, "language": language}
+        async with self.session.request(method, f"{self.base}/{path}", params=params, **options) as answer:
+            if answer.content_type != "application/json":
+                return answer.status, {"text": await answer.text()}
+            said = await answer.json()
+            return REFUSED if "problem" in said else answer.status, said
+
+    async def announce(self, name: str, files: dict[str, int]) -> tuple[int, dict[str, str]]:
+        listed = [{"name": each, "size": size} for each, size in files.items()]
+        return await self.ask("POST", "recordings", json={"name": name, "files": listed})
+
+    async def send(self, name: str, files: dict[str, bytes]) -> tuple[int, dict[str, str]]:
+        """All of a recording; the last answer."""
+        status, answer = await self.announce(name, {each: len(data) for each, data in files.items()})
+        if status != 200:
+            return status, answer
+        key = answer["key"]
+        for number, data in enumerate(files.values()):
+            status, _ = await self.ask("PUT", f"recordings/{key}/{number}", data=data)
+            assert status == 204
+        return await self.ask("POST", f"recordings/{key}")
+
+
+@asynccontextmanager
+async def host() -> AsyncIterator[tuple[World, Sender]]:
+    made = World()
+    made.viewer.guests = GuestRecordings(made.viewer)
+    await made.viewer.start()
+    try:
+        async with aiohttp.ClientSession() as session:
+            yield made, Sender(session, made.viewer.url)
+    finally:
+        await made.viewer.close()
+        await made.graph.close()
+
+
+@asynccontextmanager
+async def seen(sender: Sender, recording: str) -> AsyncIterator[Client]:
+    """A page that shows a recording."""
+    address = f"{sender.base}/ws?token={sender.token}&recording={recording}"
+    async with sender.session.ws_connect(address) as socket:
+        yield Client(socket)
+
+
+async def answer_pings(client: Client) -> None:
+    """Read what comes, as an open page does."""
+    while True:
+        await client.socket.receive()
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def left(scratch: Path) -> list[str]:
+    return [path.name for path in scratch.iterdir()]
+
+
+@skipping
+async def test_a_folder_is_shown_with_its_own_timeline_and_the_viewer_shows_what_it_did(tmp_path: Path):
+    files = contents(recorded(tmp_path))
+    async with host() as (made, sender):
+        status, answer = await sender.send("drive", files)
+        assert status == 200, answer
+        async with seen(sender, answer["recording"]) as client:
+            assert (await client.until("hello"))["title"] == "drive"
+            timeline = await client.until("timeline")
+            assert (timeline["name"], timeline["live"], timeline["end"] - timeline["start"]) == ("drive", False, 10)
+            await client.until("playhead", playing=True)
+        assert "/p" not in dict(made.viewer.context.node.get_topic_names_and_types()), "it is in a graph of its own"
+        async with seen(sender, "no-such-recording") as client:
+            assert (await client.until("hello"))["title"] == ""
+
+
+@skipping
+async def test_a_single_file_is_shown_under_its_name(tmp_path: Path):
+    files = contents(recorded(tmp_path))
+    name = next(file for file in files if file.endswith(".mcap"))
+    async with host() as (_, sender):
+        _, answer = await sender.send("anything", {name: files[name]})
+        async with seen(sender, answer["recording"]) as client:
+            assert (await client.until("timeline"))["name"] == name
+
+
+@skipping
+async def test_without_the_token_or_from_other_pages_nothing_is_taken(scratch: Path):
+    async with host() as (_, sender):
+        for method, path in (
+            ("POST", "recordings"),
+            ("PUT", "recordings/k/0"),
+            ("POST", "recordings/k"),
+            ("DELETE", "recordings/k"),
+        ):
+            async with sender.session.request(method, f"{sender.base}/{path}") as answer:
+                assert answer.status == 401
+            headers = {"Origin": "http://elsewhere.example"}
+            status, _ = await sender.ask(method, path, headers=headers)
+            assert status == 403
+        assert not left(scratch)
+
+
+@skipping
+@pytest.mark.parametrize(
+    ("name", "files", "status"),
+    [
+        ("drive", {"../drive.mcap": 1}, REFUSED),
+        ("drive", {"a/b.mcap": 1}, REFUSED),
+        ("drive", {"notes.txt": 1}, REFUSED),
+        ("drive", {}, REFUSED),
+        ("..", {"a.mcap": 1, "b.mcap": 1}, 400),
+        ("a/b", {"a.mcap": 1, "b.mcap": 1}, 400),
+        ("drive", {"a.mcap": -1}, 400),
+        ("drive", {"a.mcap": 10**18}, REFUSED),
+    ],
+)
+async def test_what_is_no_recording_or_has_no_room_is_refused_before_it_comes(
+    scratch: Path, name: str, files: dict[str, int], status: int
+):
+    async with host() as (_, sender):
+        given, answer = await sender.announce(name, files)
+        assert given == status, answer
+        assert status == 400 or answer["problem"]
+        assert not left(scratch)
+
+
+@skipping
+@pytest.mark.parametrize(
+    "data", [b"", b"not a recording", b"\x89MCAP0\r\n"], ids=["empty", "other", "only its beginning"]
+)
+async def test_what_cannot_be_read_is_said_without_where_it_lay(scratch: Path, data: bytes):
+    async with host() as (_, sender):
+        status, answer = await sender.send("x", {"x.mcap": data})
+        assert status == REFUSED
+        assert "'x.mcap'" in answer["problem"]
+        assert str(scratch) not in answer["problem"]
+        assert not left(scratch)
+
+
+@skipping
+async def test_why_not_is_said_in_the_language_of_the_page():
+    async with host() as (_, sender):
+        announced = {"name": "x", "files": [{"name": "x.txt", "size": 1}]}
+        for language, words in (("en", "is not a file of a recording"), ("zh", "不是录制")):
+            _, answer = await sender.ask("POST", "recordings", language, json=announced)
+            assert words in answer["problem"], answer
+
+
+@skipping
+async def test_what_the_program_recorded_is_shown_and_stays(tmp_path: Path):
+    (path,) = recorded(tmp_path).glob("*.mcap")
+    async with host() as (made, sender):
+        url = made.viewer.context.downloads.keep(path).lstrip("/")
+        status, answer = await sender.ask("POST", url)
+        assert status == 200, answer
+        async with seen(sender, answer["recording"]) as client:
+            assert not (await client.until("timeline"))["live"]
+        await asyncio.sleep(4 * SECONDS)
+        assert made.viewer.guests.audience(answer["recording"]) is None
+        assert path.exists()
+        path.write_bytes(b"not a recording")
+        assert (await sender.ask("POST", url))[0] == REFUSED
+        assert (await sender.ask("POST", "export/other/x.mcap"))[0] == 404
+        sender.token = "another"
+        assert (await sender.ask("POST", url))[0] == 401
+
+
+@skipping
+async def test_a_recording_that_is_cut_off_is_shown_and_the_page_says_so(tmp_path: Path):
+    files = contents(recorded(tmp_path))
+    name = next(file for file in files if file.endswith(".mcap"))
+    async with host() as (_, sender):
+        status, answer = await sender.send("x", {name: files[name][:-100]})
+        assert status == 200, answer
+        async with seen(sender, answer["recording"]) as client:
+            assert "has no end" in (await client.until("playhead"))["problem"]
+
+
+@skipping
+async def test_a_file_that_is_shorter_than_was_said_can_be_sent_again(tmp_path: Path):
+    async with host() as (_, sender):
+        _, answer = await sender.announce("x", {"x.mcap": 100})
+        assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 50))[0] == 400
+        assert (await sender.ask("POST", f"recordings/{answer['key']}"))[0] == 404, "it is not there"
+        assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 200))[0] == 400
+        assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 100))[0] == 204
+        assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 100))[0] == 404, "it is there"
+
+
+@skipping
+async def test_what_is_given_up_or_comes_to_a_standstill_is_removed(scratch: Path):
+    async with host() as (_, sender):
+        _, given_up = await sender.announce("x", {"x.mcap": 100})
+        _, forgotten = await sender.announce("x", {"x.mcap": 100})
+        assert len(left(scratch)) == 2
+        assert (await sender.ask("DELETE", f"recordings/{given_up['key']}"))[0] == 204
+        assert len(left(scratch)) == 1
+        await asyncio.sleep(2 * SECONDS)
+        assert not left(scratch)
+        assert (await sender.ask("PUT", f"recordings/{forgotten['key']}/0", data=b"x" * 100))[0] == 404
+
+
+@skipping
+async def test_only_some_are_sent_at_once(scratch: Path):
+    async with host() as (_, sender):
+        for _ in range(4):
+            assert (await sender.announce("x", {"x.mcap": 1}))[0] == 200
+        status, answer = await sender.announce("x", {"x.mcap": 1})
+        assert status == REFUSED
+        assert "wait" in answer["problem"]
+    assert not left(scratch), "the end of the program removes them"
+
+
+@skipping
+async def test_a_recording_is_closed_a_while_after_its_last_page(tmp_path: Path, scratch: Path):
+    files = contents(recorded(tmp_path))
+    async with host() as (_, sender):
+        _, answer = await sender.send("drive", files)
+        async with seen(sender, answer["recording"]) as client:
+            await client.until("timeline")
+            answering = asyncio.create_task(answer_pings(client))
+            await asyncio.sleep(3 * SECONDS)
+            assert len(left(scratch)) == 1, "a page looks at it"
+            answering.cancel()
+        await asyncio.sleep(2 * SECONDS)
+        assert not left(scratch)
+
+
+@skipping
+async def test_only_some_are_shown_at_once_and_all_end_with_the_program(tmp_path: Path, scratch: Path, monkeypatch):
+    monkeypatch.setattr(guests, "PATIENCE", 60.0)
+    files = contents(recorded(tmp_path))
+    async with host() as (_, sender):
+        for _ in range(4):
+            assert (await sender.send("drive", files))[0] == 200
+        status, answer = await sender.send("drive", files)
+        assert status == REFUSED
+        assert "open already" in answer["problem"]
+        assert len(left(scratch)) == 4
+        await asyncio.sleep(11)
+        status, answer = await sender.send("drive", files)
+        assert status == 200, "the one that was left first makes room"
+        assert len(left(scratch)) == 4
+    assert not left(scratch)

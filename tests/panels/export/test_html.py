@@ -1,0 +1,148 @@
+"""Robots as one HTML file; how it looks is tested in a browser."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import hashlib
+import json
+import re
+
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.panels.export import html
+from linkwright.panels.export.feature import export_snapshot, format_of
+from linkwright.panels.export.snapshot import snapshot_of
+from linkwright.rviz import RvizConfig
+from tests.browser.golden import link, mesh, robot_of
+from tests.browser.mesh_writers import dae, glb, obj, png, stl_binary
+from tests.panels.export.robots import GRIPPER, snapshot
+from tests.viewer.scene import ARM, world
+
+
+@pytest.fixture(autouse=True)
+def built(tmp_path, monkeypatch):
+    """A page that is built, whatever it does."""
+    folder = tmp_path / "page" / "export"
+    folder.mkdir(parents=True)
+    (folder / "export.js").write_text('console.log("</script><!--")')
+    (folder / "export.css").write_text("body { color: red }")
+    monkeypatch.setattr(html, "PAGE_FOLDER", tmp_path / "page")
+
+
+def recorded(text: str) -> dict:
+    (found,) = re.findall(r'<script type="application/json" id="recorded">(.*?)</script>', text, re.DOTALL)
+    return json.loads(found)
+
+
+def page(text: str) -> str:
+    return export_snapshot(snapshot(text), "html").decode()
+
+
+def test_the_page_has_everything_a_server_would_tell():
+    told = recorded(page(GRIPPER))
+    types = [message["type"] for message in told["messages"]]
+    for needed in ("hello", "tree", "robot_scene", "view_classes", "view_state", "joints", "joint_positions"):
+        assert needed in types
+    assert types[-1] == "frame_table"
+    controls = next(message for message in told["messages"] if message["type"] == "joints")["controls"]
+    assert [(control["name"], control["mimic"]) for control in controls] == [
+        ("turn", None),
+        ("open", None),
+        ("open_too", "open"),
+    ]
+    positions = next(message for message in told["messages"] if message["type"] == "joint_positions")["positions"]
+    assert positions == pytest.approx({"turn": 0.0, "open": 0.25, "open_too": -0.45}, abs=1e-6)
+    assert next(message for message in told["messages"] if message["type"] == "view_state")["whole_robot"] is True
+    assert told["awaits_size"] is True
+    assert told["spacing"] == pytest.approx(1.0, abs=0.1)  # from the arm to a finger
+
+
+def test_only_the_one_script_may_run_and_nothing_may_be_fetched():
+    text = page(GRIPPER)
+    (policy,) = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', text)
+    script = text.rpartition("<script>")[2].partition("</script>")[0]
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert f"script-src 'sha256-{digest}'" in policy
+    assert "default-src 'none'" in policy
+    assert "http" not in policy
+    assert text.count("</script>") == 2
+    assert not re.search(r'(?:src|href)="', text)
+
+
+def test_the_script_may_be_packed_as_the_build_leaves_it(tmp_path):
+    script = tmp_path / "page" / "export" / "export.js"
+    script.with_name("export.js.gz").write_bytes(gzip.compress(b'console.log("packed")'))
+    script.unlink()
+    assert '<script>console.log("packed")</script>' in page(GRIPPER)
+
+
+def test_names_cannot_break_out_of_the_page():
+    name = "</script><script>alert(1)</script>"
+    text = page(f'<robot name="{name.replace("<", "&lt;")}"><link name="&lt;!--"/></robot>')
+    assert "<script>alert" not in text
+    scene = next(message for message in recorded(text)["messages"] if message["type"] == "robot_scene")
+    assert (scene["name"], scene["links"][0]["name"]) == (name, "<!--")
+
+
+def test_meshes_and_what_they_name_are_inside(tmp_path):
+    (tmp_path / "a.dae").write_bytes(dae())
+    (tmp_path / "b.obj").write_bytes(obj("b.mtl", "paint"))
+    (tmp_path / "b.mtl").write_text("newmtl paint\nKd 1 0 0\nmap_Kd -s 1 1 wood.png\n")
+    (tmp_path / "wood.png").write_bytes(png(1, 2, 3))
+    (tmp_path / "c.glb").write_bytes(glb())
+    (tmp_path / "d.stl").write_bytes(stl_binary())
+    (tmp_path / "secret.png").write_bytes(png(9, 9, 9))
+    names = ("a.dae", "b.obj", "c.glb", "d.stl")
+    told = recorded(page(robot_of("".join(link(name[0], mesh(tmp_path / name, "")) for name in names))))
+    files = {path.rpartition("/")[2]: base64.b64decode(data) for path, data in told["files"].items()}
+    assert set(files) == {*names, "b.mtl", "wood.png"}
+    assert files["d.stl"] == stl_binary()
+
+
+def test_a_mesh_cannot_take_in_files_from_elsewhere(tmp_path):
+    (tmp_path / "secret.png").write_bytes(png(9, 9, 9))
+    folder = tmp_path / "meshes"
+    folder.mkdir()
+    (folder / "b.obj").write_bytes(obj("b.mtl", "paint"))
+    (folder / "b.mtl").write_text("newmtl paint\nmap_Kd ../secret.png\nmap_Ks /etc/passwd\n")
+    (folder / "link.mtl").symlink_to(tmp_path / "secret.png")
+    told = recorded(page(robot_of(link("b", mesh(folder / "b.obj", "")))))
+    assert {path.rpartition("/")[2] for path in told["files"]} == {"b.obj", "b.mtl"}
+
+
+def test_nothing_tells_of_the_machine_it_was_made_on(tmp_path):
+    (tmp_path / "d.stl").write_bytes(stl_binary())
+    text = page(robot_of(link("d", mesh(tmp_path / "d.stl", ""))))
+    assert str(tmp_path) not in text
+    # Nor how its files are fetched from the program that made it.
+    assert re.search(r"/mesh/[^/~]+/d\.stl", text)
+    assert not re.search(r"~[0-9a-f]{32}", text)
+    assert '"place":{' not in text
+
+
+@pytest.mark.parametrize(("name", "known"), [("a.html", True), ("b.GLB", True), ("c.gltf", False), ("html", False)])
+def test_the_format_is_known_by_the_ending(name, known):
+    assert (format_of(name) is not None) is known
+
+
+async def test_what_else_is_shown_goes_along():
+    """Markers and the like, as they are now."""
+    config = RvizConfig.for_model("base")
+    config.insert(config.make("rviz_default_plugins/Marker", "Marker"))
+    async with world(config) as w:
+        w.describe(ARM)
+        w.move_arm()
+        marker = get_message("visualization_msgs/msg/Marker")()
+        marker.header.frame_id, marker.type, marker.scale.x, marker.color.a = "base", 1, 1.0, 1.0
+        topic = w.display("Marker").properties.text("Topic")
+        w.graph.create_node("marks").create_publisher(type(marker), topic, 10).publish(marker)
+        await w.settle()
+        w.viewer.manager.measured(2.0, 0.0)
+        taken = snapshot_of(w.viewer, w.viewer.manager)
+    told = recorded(export_snapshot(taken, "html").decode())
+    assert told["awaits_size"] is False  # a page had measured the robot
+    assert told["spacing"] is None
+    frames = [base64.b64decode(frame) for frame in told["frames"]]
+    assert any(b"markers_changed" in frame for frame in frames)

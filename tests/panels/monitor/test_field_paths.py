@@ -1,0 +1,126 @@
+from __future__ import annotations
+
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.panels.monitor.field_paths import FieldPath, FieldPathError, plot_fields
+
+JOINT_STATE = get_message("sensor_msgs/msg/JointState")
+ODOMETRY = get_message("nav_msgs/msg/Odometry")
+TF = get_message("tf2_msgs/msg/TFMessage")
+DIAGNOSTICS = get_message("diagnostic_msgs/msg/DiagnosticArray")
+
+
+def joint_state():
+    message = JOINT_STATE(name=["elbow", "wrist"], position=[0.5, -1.5], velocity=[2.0])
+    message.header.stamp.sec, message.header.stamp.nanosec = 12, 500_000_000
+    return message
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("position[1]", -1.5),
+        ("position[elbow]", 0.5),
+        ("header.stamp", 12.5),
+        ("header.stamp.sec", 12.0),
+        ("position[7]", None),
+        ("position[shoulder]", None),
+        ("velocity[wrist]", None),
+    ],
+)
+def test_a_path_leads_to_a_number_or_to_nothing(path, value):
+    found = FieldPath(path)
+    found.check(JOINT_STATE)
+    assert found.value(joint_state()) == value
+
+
+def test_a_path_leads_through_nested_messages():
+    message = ODOMETRY()
+    message.twist.twist.linear.x = 0.25
+    message.pose.covariance[35] = 3.0
+    for path, value in (("twist.twist.linear.x", 0.25), ("pose.covariance[35]", 3.0)):
+        found = FieldPath(path)
+        found.check(ODOMETRY)
+        assert found.value(message) == value
+
+
+def test_messages_in_arrays_are_named_by_themselves():
+    message = TF(transforms=[get_message("geometry_msgs/msg/TransformStamped")() for _ in range(2)])
+    message.transforms[1].child_frame_id = "base_link"
+    message.transforms[1].transform.translation.x = 4.0
+    found = FieldPath("transforms[base_link].transform.translation.x")
+    found.check(TF)
+    assert found.value(message) == 4.0
+
+
+def test_names_of_a_trajectory_count_for_its_points():
+    point = get_message("trajectory_msgs/msg/JointTrajectoryPoint")(positions=[1.0, 2.0])
+    message = get_message("trajectory_msgs/msg/JointTrajectory")(joint_names=["a", "b"], points=[point])
+    assert FieldPath("points[0].positions[b]").value(message) == 2.0
+
+
+def test_booleans_and_bytes_are_numbers():
+    assert FieldPath("data").value(get_message("std_msgs/msg/Bool")(data=True)) == 1.0
+    status = get_message("diagnostic_msgs/msg/DiagnosticStatus")(name="motor", level=b"\x02")
+    found = FieldPath("status[motor].level")
+    found.check(DIAGNOSTICS)
+    assert found.value(DIAGNOSTICS(status=[status])) == 2.0
+
+
+@pytest.mark.parametrize("text", ["", ".x", "x.", "x..y", "x[", "x[]", "x[1]y", "1x", "x y"])
+def test_what_is_no_path(text):
+    with pytest.raises(FieldPathError, match="is not a field"):
+        FieldPath(text)
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        ("positon[0]", "did you mean 'position'"),
+        ("position", "select an element"),
+        ("header[0]", "'header' is not an array"),
+        ("name[0]", "is not a number"),
+        ("header", "is not a number"),
+        ("position[0].x", "has no fields"),
+    ],
+)
+def test_what_leads_to_no_number(path, said):
+    with pytest.raises(FieldPathError, match=r".*" + said.replace("[", r"\[")):
+        FieldPath(path).check(JOINT_STATE)
+
+
+def test_fixed_arrays_have_an_end():
+    with pytest.raises(FieldPathError, match="has 36 elements"):
+        FieldPath("pose.covariance[36]").check(ODOMETRY)
+
+
+def test_without_a_message_arrays_are_offered_with_their_first_element():
+    assert [field.path for field in plot_fields(JOINT_STATE)] == [
+        "header.stamp",
+        "position[0]",
+        "velocity[0]",
+        "effort[0]",
+    ]
+
+
+def test_a_message_tells_the_elements_and_their_names():
+    fields = plot_fields(JOINT_STATE, joint_state())
+    assert [field.path for field in fields] == ["header.stamp", "position[elbow]", "position[wrist]", "velocity[0]"]
+    assert [field.kind for field in fields] == ["seconds", "double", "double", "double"]
+    for field in fields:
+        FieldPath(field.path).check(JOINT_STATE)
+        assert FieldPath(field.path).value(joint_state()) is not None
+
+
+def test_names_that_do_not_tell_elements_apart_are_not_used():
+    message = JOINT_STATE(name=["a", "a", "5"], position=[1.0, 2.0, 3.0])
+    paths = [field.path for field in plot_fields(JOINT_STATE, message)]
+    assert "position[2]" in paths
+
+
+def test_large_messages_offer_a_limited_choice():
+    image = get_message("sensor_msgs/msg/Image")(data=bytes(10_000))
+    paths = [field.path for field in plot_fields(type(image), image)]
+    assert paths[:3] == ["header.stamp", "height", "width"]
+    assert sum(path.startswith("data[") for path in paths) == 64

@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+from linkwright.messages import get_message
+from linkwright.page.protocol.monitor import MessageField
+from linkwright.panels.monitor.topics import message_tree
+
+
+def row(rows: list[MessageField], *path: str) -> MessageField:
+    found = next(row for row in rows if row.name == path[0])
+    return row(found.children, *path[1:]) if path[1:] else found
+
+
+def test_fields_are_told_with_type_and_value():
+    message = get_message("sensor_msgs/msg/JointState")(name=["a"], position=[0.5])
+    message.header.frame_id = "base"
+    tree = message_tree(message)
+    assert [each.name for each in tree] == ["header", "name", "position", "velocity", "effort"]
+    assert row(tree, "header").kind == "std_msgs/Header"
+    assert row(tree, "header", "frame_id").value == "base"
+    assert (row(tree, "position").kind, row(tree, "position").value) == ("sequence<double>", "[0.5]")
+    assert row(tree, "position", "[0]") == MessageField("[0]", "double", "0.5")
+
+
+def test_long_arrays_are_cut():
+    image = get_message("sensor_msgs/msg/Image")(data=bytes(range(200)))
+    data = row(message_tree(image), "data")
+    assert data.value == "[0, 1, 2, 3, 4, 5, 6, 7, ...]"
+    assert (len(data.children), data.omitted) == (64, 136)
+
+
+def test_long_texts_are_cut():
+    (data,) = message_tree(get_message("std_msgs/msg/String")(data="x" * 5000))
+    assert len(data.value) < 500
+    assert data.value.endswith("...")
+
+
+def test_a_huge_message_stays_small():
+    marker = get_message("visualization_msgs/msg/Marker")
+    point = get_message("geometry_msgs/msg/Point")
+    message = get_message("visualization_msgs/msg/MarkerArray")(
+        markers=[marker(points=[point()] * 60) for _ in range(60)]
+    )
+
+    def count(rows: list[MessageField]) -> int:
+        return sum(1 + count(row.children) for row in rows)
+
+    assert count(message_tree(message)) <= 1600
+
+
+def test_values_of_all_kinds_are_texts():
+    status = get_message("diagnostic_msgs/msg/DiagnosticStatus")(level=b"\x02")
+    assert row(message_tree(status), "level").value == "0x02"
+    assert message_tree(get_message("std_msgs/msg/Bool")(data=True))[0].value == "true"
+    assert message_tree(get_message("std_msgs/msg/Float32")(data=0.1))[0].value == "0.1"

@@ -1,0 +1,75 @@
+"""Plots while another time than the present is shown: what was before it is plotted, and nothing else."""
+
+from __future__ import annotations
+
+import asyncio
+
+from linkwright.messages import get_message
+from tests.panels.monitor.test_live_panels import samples, subscriptions
+from tests.panels.test_live_history import KEPT
+from tests.panels.test_time import config
+from tests.panels.test_timeline import START, shown
+from tests.skipping import skipping
+from tests.viewer.scene import page, world
+from tests.waiting import eventually
+
+FLOAT = get_message("std_msgs/msg/Float64")
+SERIES = [{"id": 1, "topic": "/speed", "path": "data"}]
+
+
+async def plotted(client, values: list[float]) -> None:
+    """Wait until a page is sent these values of a series together."""
+    while (await samples(client))[1][2].tolist() != values:
+        pass
+
+
+@skipping
+async def test_plots_go_back_with_all_else_and_are_whole_in_the_present_again():
+    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
+        publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
+        await client.send("watch_series", series=SERIES, seconds=30)
+        await eventually(lambda: subscriptions(made, "/speed") == 1)
+        between = []
+        for number in range(5):
+            publisher.publish(FLOAT(data=float(number)))
+            await asyncio.sleep(0.5)
+            between.append(made.graph.timebase.now_ns() / 1e9)
+            await asyncio.sleep(0.5)
+        await client.send("seek_time", position=between[2])
+        await plotted(client, [0.0, 1.0, 2.0])
+        publisher.publish(FLOAT(data=9.0))
+        await client.send("watch_series", series=SERIES, seconds=1.0)
+        await client.send("seek_time", position=between[3])
+        await plotted(client, [3.0])
+        await client.send("watch_series", series=SERIES, seconds=60)
+        await plotted(client, [0.0, 1.0, 2.0, 3.0])
+        await client.send("go_live")
+        await plotted(client, [0.0, 1.0, 2.0, 3.0, 4.0, 9.0])
+
+
+@skipping
+async def test_a_series_that_is_added_begins_with_what_was_kept():
+    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
+        publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
+        await client.send("watch_series", series=SERIES, seconds=30)
+        await eventually(lambda: subscriptions(made, "/speed") == 1)
+        for number in range(3):
+            publisher.publish(FLOAT(data=float(number)))
+            await asyncio.sleep(0.5)
+        async with page(made.viewer) as late:
+            await late.send("watch_series", series=SERIES, seconds=30)
+            await plotted(late, [0.0, 1.0, 2.0])
+
+
+@skipping
+async def test_plots_of_a_recording_show_what_came_before_its_time(tmp_path):
+    async with shown(tmp_path) as made, page(made.viewer) as client:
+        await client.until("playhead", playing=True)
+        await client.send("play", playing=False)
+        await client.until("playhead", playing=False)
+        await client.send("watch_series", series=[{"id": 1, "topic": "/p", "path": "point.x"}], seconds=3.5)
+        for second in (9, 4):
+            await client.send("seek_time", position=START + second)
+            await plotted(client, [second - 3.0, second - 2.0, second - 1.0, float(second)])
+        await client.send("step_time", forward=True)
+        await plotted(client, [5.0])

@@ -1,0 +1,62 @@
+from __future__ import annotations
+
+import math
+import struct
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.page.protocol.monitor import SAMPLES_KIND, pack_samples
+from linkwright.panels.monitor.plots import MOST_SENT, SampleQueue, thinned
+
+
+def test_samples_are_taken_once_and_in_order():
+    queue = SampleQueue()
+    queue.add(1.0, math.nan, 5.0)
+    queue.add(2.0, 1.5, 6.0)
+    taken = queue.take()
+    assert taken[0].tolist() == [1.0, 2.0]
+    assert taken[2].tolist() == [5.0, 6.0]
+    assert math.isnan(taken[1, 0])
+    assert taken[1, 1] == 1.5
+    assert queue.take().shape == (3, 0)
+
+
+def test_a_queue_that_nobody_empties_stays_short_and_keeps_the_extremes():
+    queue = SampleQueue()
+    for number in range(100_000):
+        queue.add(number, number, 1e6 if number == 31_415 else float(number % 100))
+        assert len(queue) < 5000
+    taken = queue.take()
+    assert taken.shape[1] <= MOST_SENT
+    assert 1e6 in taken[2]
+    assert (np.diff(taken[0]) > 0).all()
+
+
+@given(st.lists(st.floats(allow_infinity=False, width=32), min_size=1, max_size=400), st.sampled_from([2, 4, 10, 64]))
+def test_thinning_keeps_least_and_greatest(values, most):
+    samples = np.array([np.arange(len(values)), np.arange(len(values)), values], dtype=np.float64)
+    kept = thinned(samples, most)
+    assert kept.shape[1] <= max(most, min(len(values), most))
+    assert (np.diff(kept[0]) > 0).all()
+    if not np.isnan(values).all():
+        assert np.nanmin(kept[2]) == np.nanmin(samples[2])
+        assert np.nanmax(kept[2]) == np.nanmax(samples[2])
+
+
+def test_a_frame_of_samples():
+    frame = pack_samples([(7, np.array([[1.0], [math.nan], [3.0]])), (9, np.zeros((3, 2)))])
+    assert struct.unpack_from("<IIII", frame) == (SAMPLES_KIND, 2, 0, 0)
+    assert struct.unpack_from("<II", frame, 16) == (7, 1)
+    assert struct.unpack_from("<d", frame, 24) == (1.0,)
+    assert struct.unpack_from("<d", frame, 40) == (3.0,)
+    assert struct.unpack_from("<II", frame, 48) == (9, 2)
+    assert len(frame) == 16 + 8 + 24 + 8 + 48
+
+
+@pytest.mark.parametrize("count", [MOST_SENT, MOST_SENT - 1])
+def test_what_fits_is_left_alone(count):
+    samples = np.random.default_rng(1).random((3, count))
+    assert thinned(samples, MOST_SENT) is samples

@@ -1,0 +1,207 @@
+"""Two descriptions in one scene: what pages are told, and where the old robot is."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from linkwright.descriptions import examine
+from linkwright.descriptions.pairs import pair_of, text_of_old
+from linkwright.graph import SENSOR_DATA_QOS
+from linkwright.messages import Header, JointState
+from linkwright.page.protocol.comparison import ComparedDescriptions
+from linkwright.panels.comparison.feature import show_old, without_paths
+from linkwright.rviz import RvizConfig
+from tests.viewer.scene import Client, World, page, world
+from tests.waiting import eventually
+
+OLD = """\
+<robot name="arm">
+  <link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link>
+  <link name="lower"><inertial><mass value="1"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="upper"/>
+  <link name="camera"/>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="lower"/><axis xyz="0 0 1"/></joint>
+  <joint name="bend" type="revolute"><origin xyz="1 0 0"/><parent link="lower"/><child link="upper"/>
+    <limit lower="0.5" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="mount" type="prismatic"><parent link="upper"/><child link="camera"/>
+    <limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+  <gazebo reference="lower"><mu1>1</mu1></gazebo>
+</robot>
+"""
+NEW = """\
+<robot name="arm">
+  <link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link>
+  <link name="lower"><inertial><mass value="2"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="upper"/>
+  <link name="lidar"/>
+  <joint name="spin" type="continuous"><parent link="base"/><child link="lower"/><axis xyz="0 0 1"/></joint>
+  <joint name="bend" type="prismatic"><origin xyz="1 0 0"/><parent link="lower"/><child link="upper"/>
+    <limit lower="0.5" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="fix" type="fixed"><parent link="upper"/><child link="lidar"/></joint>
+  <gazebo reference="lower"><mu1>2</mu1></gazebo>
+</robot>
+"""
+
+
+class Compared:
+    """A viewer that compares two files."""
+
+    def __init__(self, made: World, folder: Path, old: str, new: str) -> None:
+        self.made = made
+        self.pair = pair_of(self.write(folder, "old.urdf", old), self.write(folder, "new.urdf", new), {})
+        node = made.graph.create_node("old_robot_state_publisher")
+        self.publish_old = made.viewer.attach_comparison(self.pair, node)
+        self.joint_states = made.graph.create_node("joints").create_publisher(
+            JointState, "joint_states", SENSOR_DATA_QOS
+        )
+        self.show_old()
+        self.show_new()
+
+    @staticmethod
+    def write(folder: Path, name: str, text: str) -> Path:
+        path = folder / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def show_old(self) -> None:
+        found = examine(self.pair.old.path)
+        self.publish_old(self.made.library.remember(found, text_of_old(found), self.pair.old.finder))
+
+    def show_new(self) -> None:
+        self.made.describe(self.made.library.remember(examine(self.pair.new.path)))
+
+    def move(self, **positions: float) -> None:
+        stamp = self.made.graph.timebase.now_ns()
+        message = JointState(Header(), list(positions), list(positions.values()))
+        message.header.stamp = type(message.header.stamp).from_nanoseconds(stamp)
+        self.joint_states.publish(message)
+
+    def pose(self, frame: str) -> np.ndarray | None:
+        """Where a frame is in `base`: x y z qx qy qz qw."""
+        names, poses = self.made.viewer.manager.opening()[1].names, None
+        if frame in names:
+            from linkwright.page.protocol.binary import unpack_transforms
+
+            frames = self.made.viewer.manager.opening()[2]
+            poses = unpack_transforms(next(frame for frame in frames if isinstance(frame, bytes)))[1][
+                names.index(frame)
+            ]
+        return poses
+
+
+@asynccontextmanager
+async def compared(folder: Path, old: str = OLD, new: str = NEW) -> AsyncIterator[tuple[Compared, Client]]:
+    config = RvizConfig.for_model("base")
+    show_old(config, "old.urdf")
+    async with world(config) as made:
+        both = Compared(made, folder, old, new)
+        async with page(made.viewer) as client:
+            yield both, client
+
+
+def marks(message: dict, side: str) -> dict[str, str]:
+    return message[side]["marks"]
+
+
+async def test_a_page_is_told_of_all_differences_and_of_the_links_that_show_them(tmp_path):
+    async with compared(tmp_path) as (both, client):
+        told = await client.until("compared_descriptions")
+        displays = [display.id for display in both.made.viewer.displays if display.CLASS.endswith("RobotModel")]
+        assert [told["new"]["display"], told["old"]["display"]] == displays
+        assert told["new"]["label"].endswith("new.urdf")
+        assert marks(told, "old") == {"camera": "removed"}
+        assert marks(told, "new") == {"lidar": "added", "lower": "changed", "upper": "changed"}
+        assert told["joints"] == {"turn": "spin"}, "a joint that turned and slides now follows nothing"
+        items = {(each["subject"], each["name"], each["property"]): each for each in told["items"]}
+        mass = items["link", "lower", "inertial mass"]
+        assert (mass["old"], mass["new"], mass["unit"], mass["element"]) == ("1", "2", "kg", "lower")
+        assert (mass["old_place"]["line"], mass["new_place"]["line"]) == (3, 3)
+        assert mass["old_place"]["file"] == str(tmp_path / "old.urdf")
+        assert mass["new_place"]["text"].endswith("new.urdf:3:45")
+        gone = items["link", "camera", ""]
+        assert (gone["kind"], gone["element"], gone["in_old"], gone["new_place"]) == ("removed", "camera", True, None)
+        joint = items["joint", "mount", ""]
+        assert (joint["element_kind"], joint["element"], joint["in_old"]) == ("joint", "mount", True)
+        assert items["joint", "spin", "name"]["kind"] == "renamed"
+        friction = next(each for each in told["items"] if each["subject"] == "extension")
+        assert (friction["element_kind"], friction["element"], friction["in_old"]) == ("link", "lower", False)
+
+
+async def test_the_old_robot_stands_as_the_new_one_does(tmp_path):
+    async with compared(tmp_path) as (both, client):
+        await client.until("compared_descriptions")
+        await eventually(lambda: both.pose("old/camera") is not None)
+        assert both.pose("old/lower") == pytest.approx([0, 0, 0, 0, 0, 0, 1], abs=1e-6)
+        half = 0.75 / 2  # the middle of limits without zero, as joint_state_publisher has it
+        assert both.pose("old/upper")[:3] == pytest.approx([1, 0, 0], abs=1e-6)
+        assert both.pose("old/upper")[3:] == pytest.approx([np.sin(half), 0, 0, np.cos(half)], abs=1e-6)
+        both.move(spin=np.pi, bend=0.9)
+        turned = [-1, 0, 0]
+        await eventually(lambda: np.allclose(both.pose("old/upper")[:3], turned, atol=1e-6))
+        assert both.pose("old/lower")[3:] == pytest.approx([0, 0, 1, 0], abs=1e-6)
+        assert np.linalg.norm(both.pose("old/upper")[:3]) == pytest.approx(1.0), "its joint does not slide"
+
+
+async def test_a_new_root_carries_the_old_robot_along(tmp_path):
+    lifted = NEW.replace('<link name="lidar"/>', '<link name="foot"/>').replace(
+        '<joint name="fix" type="fixed"><parent link="upper"/><child link="lidar"/></joint>',
+        '<joint name="fix" type="fixed"><origin xyz="0 0 3"/><parent link="foot"/><child link="base"/></joint>',
+    )
+    async with compared(tmp_path, lifted, NEW) as (both, client):
+        told = await client.until("compared_descriptions")
+        assert marks(told, "old") == {"foot": "removed"}
+        await eventually(lambda: both.pose("old/foot") is not None)
+        assert both.pose("old/base")[:3] == pytest.approx([0, 0, 0], abs=1e-6)
+        assert both.pose("old/foot")[:3] == pytest.approx([0, 0, -3], abs=1e-6)
+
+
+async def test_an_edit_of_either_is_compared_anew(tmp_path):
+    async with compared(tmp_path) as (both, client):
+        count = len((await client.until("compared_descriptions"))["items"])
+        both.write(tmp_path, "new.urdf", NEW.replace('mass value="2"', 'mass value="1"'))
+        both.show_new()
+        fewer = await client.until("compared_descriptions")
+        assert len(fewer["items"]) == count - 1
+        assert "lower" in marks(fewer, "new"), "its joint has another name"
+        both.write(tmp_path, "old.urdf", both.pair.new.path.read_text(encoding="utf-8"))
+        both.show_old()
+        same = await client.until("compared_descriptions")
+        assert (same["items"], marks(same, "new"), marks(same, "old")) == ([], {}, {})
+
+
+async def test_sources_of_both_can_be_asked_for_though_they_say_the_same(tmp_path):
+    async with compared(tmp_path, NEW, NEW) as (both, client):
+        told = await client.until("compared_descriptions")
+        assert told["items"] == []
+        for side, name in (("old", "old.urdf"), ("new", "new.urdf")):
+            file = str(tmp_path / name)
+            await client.send("ask_description_text", display=told[side]["display"], file=file)
+            assert (await client.until("description_text", file=file))["text"] == NEW
+        assert both.made.library.packages(both.made.display("RobotModel").text) is None
+
+
+async def test_a_page_without_the_old_display_is_told_that_nothing_shows_it(tmp_path):
+    async with compared(tmp_path) as (both, client):
+        told = await client.until("compared_descriptions")
+        await client.send("remove_displays", displays=[told["old"]["display"]])
+        assert (await client.until("compared_descriptions"))["old"]["display"] == ""
+        assert both.made.viewer.manager.display(told["old"]["display"]) is None
+
+
+async def test_what_is_given_away_has_no_paths(tmp_path):
+    async with compared(tmp_path) as (both, client):
+        await client.until("compared_descriptions")
+        manager = both.made.viewer.manager
+        told = next(each for each in both.made.viewer.configured(manager) if isinstance(each, ComparedDescriptions))
+        bare = without_paths(told)
+        assert (bare.old.label, bare.new.label) == ("old.urdf", "new.urdf")
+        places = [place for item in bare.items for place in (item.old_place, item.new_place) if place is not None]
+        assert {place.file for place in places} == {""}
+        assert {place.text.partition(":")[0] for place in places} == {"old.urdf", "new.urdf"}

@@ -1,0 +1,238 @@
+"""What pages are told of the description behind a robot."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from linkwright.descriptions import examine
+from linkwright.diagnostics import LinkwrightError
+from linkwright.rviz import RvizConfig
+from tests.viewer.scene import ARM, page, world
+
+WHEELED = """\
+<robot name="wheeled" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:include filename="wheel.xacro"/>
+  <xacro:property name="sizes" value="${xacro.load_yaml('sizes.yaml')}"/>
+  <link name="base">
+    <inertial>
+      <origin xyz="0 0 0.1"/>
+      <mass value="6"/>
+      <inertia ixx="0.05" ixy="0" ixz="0" iyy="0.05" iyz="0" izz="0.05"/>
+    </inertial>
+  </link>
+  <xacro:wheel side="left" y="${sizes['track'] / 2}"/>
+  <xacro:wheel side="right" y="-0.2"/>
+</robot>
+"""
+WHEEL = """\
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="wheel" params="side y">
+    <link name="${side}_wheel">
+      <visual><geometry><cylinder radius="0.1" length="0.05"/></geometry></visual>
+      <inertial>
+        <mass value="0.5"/>
+        <inertia ixx="1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>
+      </inertial>
+    </link>
+    <joint name="${side}_wheel_joint" type="revolute">
+      <parent link="base"/>
+      <child link="${side}_wheel"/>
+      <origin xyz="0 ${y} 0" rpy="1.5707963267948966 0 0"/>
+      <axis xyz="0 0 2"/>
+      <limit lower="-1.5" upper="2" velocity="3" effort="4"/>
+      <dynamics damping="0.5"/>
+    </joint>
+  </xacro:macro>
+</robot>
+"""
+DISPLAY = "display-2"
+
+
+@pytest.fixture
+def files(tmp_path):
+    (tmp_path / "robot.xacro").write_text(WHEELED)
+    (tmp_path / "wheel.xacro").write_text(WHEEL)
+    (tmp_path / "sizes.yaml").write_text("track: 0.4\n")
+    return tmp_path
+
+
+def describe(scene, folder: Path) -> str:
+    text = scene.library.remember(examine(folder / "robot.xacro"))
+    scene.describe(text)
+    return text
+
+
+async def ask(client, kind: str, answer: str, **fields) -> dict:
+    await client.send(kind, **fields)
+    return await client.until(answer)
+
+
+def lines(text: str, written: dict) -> str:
+    """The text of a place, which begins and ends where it says."""
+    rows = text.splitlines(keepends=True)[written["line"] - 1 : written["end_line"]]
+    rows[-1] = rows[-1][: written["end_column"] - 1]
+    rows[0] = rows[0][written["column"] - 1 :]
+    return "".join(rows)
+
+
+async def test_links_and_joints_are_told_with_their_places(files):
+    async with world() as scene, page(scene.viewer) as client:
+        text = describe(scene, files)
+        told = await ask(client, "ask_description", "description", display=DISPLAY)
+    assert (told["name"], told["root"]) == ("wheeled", "base")
+    links = {link["name"]: link for link in told["links"]}
+    assert list(links) == ["base", "left_wheel", "right_wheel"]
+    left = links["left_wheel"]
+    assert (left["frame"], left["parent_joint"]) == ("left_wheel", "left_wheel_joint")
+    assert lines(text, left["written"]["expanded"]).startswith('<link name="left_wheel">')
+    assert lines(text, left["written"]["expanded"]).endswith("</link>")
+    origin = left["written"]["origin"]
+    assert origin["file"] == str(files / "wheel.xacro")
+    assert (origin["line"], origin["end_line"]) == (3, 9)
+    calls = [(call["macro"], Path(call["file"]).name, call["line"]) for call in left["written"]["calls"]]
+    assert calls == [("wheel", "robot.xacro", 11)]
+    (joint, _) = told["joints"]
+    assert (joint["kind"], joint["parent"], joint["child"]) == ("revolute", "base", "left_wheel")
+    assert joint["axis"] == [0, 0, 1]
+    assert joint["xyz"] == pytest.approx([0, 0.2, 0])
+    assert joint["rpy"] == pytest.approx([1.5707963, 0, 0])
+    assert [joint[name] for name in ("lower", "upper", "velocity", "effort", "damping", "friction")] == [
+        *(-1.5, 2, 3, 4, 0.5, 0),
+    ]
+    assert joint["soft_lower"] is None
+    assert joint["mimic"] is None
+
+
+async def test_masses_are_boxes_of_the_same_inertia(files):
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, files)
+        told = await ask(client, "ask_description", "description", display=DISPLAY)
+    base, left, _ = (link["inertia"] for link in told["links"])
+    assert (base["mass"], base["center"]) == (6, [0, 0, 0.1])
+    # A cube of edge a has I = m a2 / 6.
+    assert base["box"] == pytest.approx([(0.05 * 6 / 6) ** 0.5] * 3)
+    assert left["box"] == []  # 1 > 0.1 + 0.1: no body has that
+
+
+async def test_implausible_inertias_are_told_for_each_link_of_a_macro(files):
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, files)
+        told = await ask(client, "ask_inertia", "inertia_findings", display=DISPLAY)
+    broken = [finding["link"] for finding in told["findings"] if finding["code"] == "LW314"]
+    assert broken == ["left_wheel", "right_wheel"]
+    assert all(finding["message"] and finding["code"].startswith("LW3") for finding in told["findings"])
+
+
+async def test_texts_are_told_of_the_files_of_the_description_only(files):
+    (files / "secret.txt").write_text("secret")
+    async with world() as scene, page(scene.viewer) as client:
+        text = describe(scene, files)
+        told = await ask(client, "ask_description", "description", display=DISPLAY)
+        assert [Path(name).name for name in told["files"]] == ["robot.xacro", "wheel.xacro", "sizes.yaml"]
+
+        async def text_of(file: str) -> str | None:
+            answer = await ask(client, "ask_description_text", "description_text", display=DISPLAY, file=file)
+            assert answer["file"] == file
+            return answer["text"]
+
+        assert await text_of("") == text
+        assert await text_of(str(files / "wheel.xacro")) == WHEEL
+        assert await text_of(str(files / "sizes.yaml")) == "track: 0.4\n"
+        for other in ("secret.txt", "../secret.txt", "wheel.xacro/../secret.txt"):
+            assert await text_of(str(files / other)) is None
+        assert await text_of("/etc/hostname") is None
+        # What elements were written in stays what it was when the description was made.
+        (files / "wheel.xacro").write_text("<robot/>")
+        assert await text_of(str(files / "wheel.xacro")) == WHEEL
+
+
+async def test_an_edit_is_told_with_what_it_changed(files):
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, files)
+        first = await client.until("description_changed")
+        assert (first["links"], first["joints"]) == ([], [])
+        (files / "wheel.xacro").write_text(WHEEL.replace('radius="0.1"', 'radius="0.2"'))
+        describe(scene, files)
+        second = await client.until("description_changed")
+        assert (second["links"], second["joints"]) == (["left_wheel", "right_wheel"], [])
+        (files / "robot.xacro").write_text(
+            WHEELED.replace("-0.2", "-0.3").replace('  <link name="base"', '\n<link name="base"')
+        )
+        describe(scene, files)
+        third = await client.until("description_changed")
+        assert (third["links"], third["joints"]) == ([], ["right_wheel_joint"])
+        assert first["revision"] < second["revision"] < third["revision"]
+
+
+async def test_a_page_that_opens_is_told_that_there_is_a_description():
+    async with world() as scene:
+        scene.describe(ARM)
+        await scene.settle()
+        async with page(scene.viewer) as client:
+            told = await client.until("description_changed", display=DISPLAY)
+            assert (told["links"], told["joints"]) == ([], [])
+            account = await ask(client, "ask_description", "description", display=DISPLAY)
+    assert account["revision"] == told["revision"]
+    # Nobody knows of files: there is the text alone.
+    assert account["files"] == []
+    assert account["links"][0]["written"]["origin"] is None
+    assert account["links"][0]["written"]["expanded"]["line"] == 2
+
+
+async def test_the_text_that_is_wrong_is_told_and_not_the_one_of_the_robot_that_stands(files):
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, files)
+        (files / "robot.xacro").write_text(WHEELED.replace('side="left"', 'sid="left"'))
+        with pytest.raises(LinkwrightError) as caught:
+            examine(files / "robot.xacro")
+        scene.viewer.show_diagnostics(caught.value.diagnostics)
+        file = str(files / "robot.xacro")
+        told = await ask(client, "ask_description_text", "description_text", display=DISPLAY, file=file)
+        assert 'sid="left"' in told["text"]
+        scene.viewer.show_diagnostics([])
+        told = await ask(client, "ask_description_text", "description_text", display=DISPLAY, file=file)
+        assert told["text"] == WHEELED
+
+
+async def test_a_robot_none_of_whose_meshes_is_there_is_told_of(files):
+    box = '<visual><geometry><box size="1 1 1"/></geometry></visual>'
+    mesh = f'<visual><geometry><mesh filename="file://{files}/gone.stl"/></geometry></visual>'
+    async with world() as scene, page(scene.viewer) as client:
+        assert (await client.until("diagnostics"))["items"] == []
+        for shapes, codes in ((mesh, ["VIEW207"]), (box + mesh, []), (mesh, ["VIEW207"])):
+            scene.describe(f'<robot name="r"><link name="base">{shapes}</link></robot>')
+            told = await client.until("diagnostics")
+            assert [each["code"] for each in told["items"]] == codes
+        (note,) = told["items"][0]["notes"]
+        assert "gone.stl" in note["message"]
+
+
+async def test_what_is_not_there_is_not_answered_or_refused():
+    async with world(RvizConfig.for_model("base")) as scene, page(scene.viewer) as client:
+        told = await ask(client, "ask_description_text", "description_text", display="display-99", file="/etc/passwd")
+        assert told["text"] is None
+        await client.send("ask_description", display="display-99")
+        await client.send("ask_inertia", display="display-99")
+        rest = await client.drain()
+    assert not [message for message in rest if isinstance(message, dict) and message["type"] == "description"]
+
+
+async def test_a_page_with_displays_of_its_own_hears_of_those_only(files):
+    async with world() as scene, page(scene.viewer) as shared:
+        describe(scene, files)
+        told = await shared.until("description_changed")
+        async with page(SimpleNamespace(url=f"{scene.viewer.url}&own=of-my-own")) as alone:
+            mine = await alone.until("description_changed")
+            assert mine["display"] != told["display"]
+            await alone.send("ask_description", display=told["display"])  # which it does not see
+            account = await ask(alone, "ask_description", "description", display=mine["display"])
+            assert account["display"] == mine["display"]
+            describe(scene, files)
+            rest = await shared.drain()
+    kinds = [
+        message["display"] for message in rest if isinstance(message, dict) and "description_changed" in message["type"]
+    ]
+    assert set(kinds) <= {told["display"]}

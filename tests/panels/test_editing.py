@@ -1,0 +1,214 @@
+"""Editing a robot in the page: what can be edited, previews, writing, undo."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.descriptions import examine
+from linkwright.page.audience import Page
+from tests.viewer.scene import ARM, page, world
+
+ROBOT = """\
+<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="height" value="0.25"/>
+  <link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link>
+  <xacro:macro name="side" params="name">
+    <link name="${name}"/>
+    <joint name="${name}_joint" type="fixed">
+      <origin xyz="0 0 0.1"/><parent link="base"/><child link="${name}"/>
+    </joint>
+  </xacro:macro>
+  <xacro:side name="left"/>
+  <xacro:side name="right"/>
+  <link name="mast">
+    <visual name="pole"><origin xyz="0 0 0.5"/><geometry><cylinder radius="0.1" length="1"/></geometry></visual>
+    <collision><geometry><mesh filename="package://nowhere/mast.stl"/></geometry></collision>
+    <inertial><origin xyz="0 0 0.4"/><mass value="1.5"/>
+      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  </link>
+  <joint name="turn" type="continuous">
+    <origin xyz="0 0 ${height}" rpy="0 0 0.5"/><parent link="base"/><child link="mast"/><axis xyz="0 0 1"/>
+  </joint>
+</robot>
+"""
+DISPLAY = "display-2"
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "robot.xacro"
+    path.write_text(ROBOT)
+    return path
+
+
+def describe(scene: Any, file: Path) -> None:
+    scene.describe(scene.library.remember(examine(file)))
+
+
+def said(file: Path) -> str:
+    return file.read_text()
+
+
+def write(file: Path, text: str) -> None:
+    file.write_text(text)
+
+
+def gone(file: Path) -> None:
+    file.unlink()
+
+
+async def ask(client: Any, kind: str, answer: str, **fields: Any) -> dict[str, Any]:
+    await client.send(kind, **fields)
+    found: dict[str, Any] = await client.until(answer)
+    return found
+
+
+async def parts(client: Any, link: str) -> dict[str, Any]:
+    return await ask(client, "ask_editable_parts", "editable_parts", display=DISPLAY, link=link)
+
+
+async def preview(client: Any, number: int, part: str, name: str, **fields: Any) -> dict[str, Any]:
+    asked = {"index": 0, "xyz": None, "rpy": None, "together": False, **fields}
+    return await ask(
+        client, "preview_edit", "edit_preview", number=number, display=DISPLAY, part=part, name=name, **asked
+    )
+
+
+async def test_the_parts_of_a_link_are_told_with_numbers_and_places(file: Path) -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, file)
+        await client.until("description_changed")
+        told = await parts(client, "mast")
+        assert told["why_not"] == ""
+        found = [(each["part"], each["name"], each["title"], each["xyz"], each["rpy"]) for each in told["parts"]]
+        assert found == [
+            ("joint", "turn", "continuous", [0, 0, 0.25], [0, 0, 0.5]),
+            ("axis", "turn", "continuous", [0, 0, 1], []),
+            ("visual", "mast", "pole", [0, 0, 0.5], [0, 0, 0]),
+            ("collision", "mast", "mast.stl", [0, 0, 0], [0, 0, 0]),
+            ("inertial", "mast", "1.5 kg", [0, 0, 0.4], [0, 0, 0]),
+        ]
+        assert [each["written"] for each in told["parts"]] == [
+            'xyz="0 0 ${height}" rpy="0 0 0.5"',
+            'xyz="0 0 1"',
+            'xyz="0 0 0.5"',
+            "",
+            'xyz="0 0 0.4"',
+        ]
+        assert {(each["file"], each["line"]) for each in told["parts"][:2]} == {(str(file), 19)}
+
+
+async def test_a_robot_in_sdf_is_not_edited_and_it_is_said_why(tmp_path: Path) -> None:
+    file = tmp_path / "crate.sdf"
+    box = "<geometry><box><size>1 1 1</size></box></geometry>"
+    file.write_text(
+        f'<sdf version="1.9"><model name="crate"><link name="base"><visual name="v">{box}</visual></link></model></sdf>'
+    )
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, file)
+        await client.until("description_changed")
+        told = await parts(client, "base")
+        assert "described in SDF" in told["why_not"]
+        refused = await preview(client, 1, "visual", "base", xyz=[0, 0, 1])
+        assert refused["files"] == []
+        assert refused["refusal"]["message"] == told["why_not"]
+
+
+async def test_an_edit_is_shown_written_and_taken_back(file: Path) -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, file)
+        await client.until("description_changed")
+        shown = await preview(client, 7, "joint", "turn", xyz=[0, 0, 0.3])
+        assert (shown["number"], shown["refusal"], shown["also"]) == (7, None, [])
+        (changed,) = shown["files"]
+        assert changed["file"] == str(file)
+        old, new = '  <xacro:property name="height" value="0.25"/>', '  <xacro:property name="height" value="0.3"/>'
+        assert [line for line in changed["diff"] if line[0] in "+-"] == [f"-{old}", f"+{new}"]
+        assert said(file) == ROBOT
+
+        written = await ask(client, "apply_edit", "edit_written", number=7)
+        assert (written["files"], written["refusal"]) == ([str(file)], None)
+        assert said(file) == ROBOT.replace(old, new)
+        history = await client.until("edit_history")
+        assert (history["can_undo"], history["can_redo"]) == (True, False)
+
+        await ask(client, "undo_edit", "edit_written")
+        assert said(file) == ROBOT
+        await ask(client, "redo_edit", "edit_written")
+        assert said(file) == ROBOT.replace(old, new)
+
+
+async def test_only_what_was_shown_is_written(file: Path) -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, file)
+        await client.until("description_changed")
+        await preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
+        assert (await ask(client, "apply_edit", "edit_written", number=2))["refusal"]["code"] == "EDIT101"
+        assert said(file) == ROBOT
+
+
+async def test_what_would_change_more_is_refused_and_done_together_when_asked(file: Path) -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, file)
+        await client.until("description_changed")
+        refused = await preview(client, 1, "joint", "left_joint", xyz=[0, 0, 0.2])
+        assert refused["files"] == []
+        assert refused["refusal"]["code"] == "EDIT104"
+        assert refused["refusal"]["line"] == 7
+        assert "right_joint" in refused["refusal"]["message"]
+        shown = await preview(client, 2, "joint", "left_joint", xyz=[0, 0, 0.2], together=True)
+        assert (shown["refusal"], shown["also"]) == (None, ["joint 'right_joint'"])
+
+
+async def test_a_file_that_changed_after_the_preview_is_left_alone(file: Path) -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, file)
+        await client.until("description_changed")
+        await preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
+        write(file, ROBOT + "<!-- mine -->")
+        assert (await ask(client, "apply_edit", "edit_written", number=1))["refusal"]["code"] == "EDIT107"
+        assert said(file) == ROBOT + "<!-- mine -->"
+
+
+async def test_a_file_that_is_broken_or_gone_is_told_and_editing_goes_on(file: Path) -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, file)
+        await client.until("description_changed")
+        write(file, "<robot")
+        assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"].startswith("XML")
+        gone(file)
+        assert (await preview(client, 2, "joint", "turn", xyz=[0, 0, 1]))["refusal"] is not None
+        write(file, ROBOT)
+        assert (await preview(client, 3, "joint", "turn", xyz=[0, 0, 1]))["refusal"] is None
+        assert (await preview(client, 4, "joint", "turn", xyz=[0, 1]))["refusal"]["code"] == "EDIT102"
+
+
+async def test_a_description_that_is_only_a_text_is_not_edited(file: Path) -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        scene.describe(ARM)
+        await client.until("description_changed")
+        told = await parts(client, "base")
+        assert "linkwright view FILE" in told["why_not"]
+        assert (await preview(client, 1, "joint", "shoulder", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT101"
+
+
+async def test_a_page_of_another_machine_is_told_why_nothing_is_written(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = Page.__init__
+
+    def elsewhere(self: Page, *words: Any, is_here: bool = False, **named: Any) -> None:
+        assert is_here, "the page of the test is on this machine"
+        made(self, *words, is_here=False, **named)
+
+    monkeypatch.setattr(Page, "__init__", elsewhere)
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, file)
+        await client.until("description_changed")
+        assert "open on the files' machine" in (await parts(client, "mast"))["why_not"]
+        assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT109"
+        assert (await ask(client, "undo_edit", "edit_written"))["refusal"]["code"] == "EDIT109"
+    assert said(file) == ROBOT

@@ -1,0 +1,130 @@
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import pytest
+
+from linkwright.graph import Graph
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
+from linkwright.page.protocol.joints import CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints
+from linkwright.panels.joints import JointsFeature
+from tests.waiting import eventually
+
+PAGE = object()
+"""Whoever asks; the bridge tells all pages."""
+
+GRIPPER = """\
+<robot name="gripper">
+  <link name="base"/><link name="arm"/><link name="left"/><link name="right"/>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/></joint>
+  <joint name="open" type="prismatic">
+    <parent link="arm"/><child link="left"/><limit lower="0.01" upper="0.05" effort="1" velocity="1"/>
+  </joint>
+  <joint name="follow" type="prismatic">
+    <parent link="arm"/><child link="right"/><limit lower="-0.1" upper="0.1" effort="1" velocity="1"/>
+    <mimic joint="open" multiplier="-1"/>
+  </joint>
+</robot>
+"""
+
+
+@pytest.fixture
+async def graph():
+    made = Graph(on_log=lambda _: None)
+    yield made
+    await made.close()
+
+
+@pytest.fixture
+async def panel(graph):
+    options = NodeOptions(parameters={"robot_description": GRIPPER}, arguments=[])
+    running = JointStatePublisherGui(graph, options)
+    return running.panel
+
+
+@pytest.fixture
+def published():
+    return []
+
+
+@pytest.fixture
+def bridge(published):
+    pages = SimpleNamespace(publish=published.append)
+    return JointsFeature(SimpleNamespace(context=SimpleNamespace(pages=pages), managers=None))
+
+
+async def told(graph, bridge):
+    """Wait until the bridge has told of a change."""
+    await graph.settle()
+    await eventually(lambda: bridge._soon is None)
+
+
+async def filled(graph, panel):
+    from linkwright.graph import DESCRIPTION_QOS
+    from linkwright.messages import String
+
+    graph.create_node("rsp").create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(GRIPPER))
+    await graph.settle()
+    assert panel.sliders()
+
+
+def test_without_a_panel_there_are_no_joints(bridge):
+    assert bridge.opening() == [Joints(None)]
+    bridge.receive(PAGE, RandomizeJoints())
+
+
+async def test_a_panel_is_shown(graph, bridge, panel, published):
+    await filled(graph, panel)
+    bridge.attach(panel)
+    controls, positions = published
+    by_name = {control.name: control for control in controls.controls}
+    assert (by_name["turn"].kind, by_name["turn"].lower, by_name["turn"].upper) == ("continuous", -math.pi, math.pi)
+    assert (by_name["open"].lower, by_name["open"].upper) == (0.01, 0.05)
+    assert by_name["open"].zero == pytest.approx(0.03)
+    follow = by_name["follow"]
+    assert (follow.mimic, follow.multiplier, follow.offset) == ("open", -1.0, 0.0)
+    assert positions.positions == pytest.approx({"turn": 0.0, "open": 0.03, "follow": -0.03})
+    assert bridge.opening() == published
+
+
+async def test_rows_follow_the_description(graph, bridge, panel, published):
+    bridge.attach(panel)
+    assert published[0] == Joints([])
+    await filled(graph, panel)
+    await told(graph, bridge)
+    last = {type(message): message for message in published}
+    assert [control.name for control in last[Joints].controls] == ["turn", "open", "follow"]
+    assert set(last[JointPositions].positions) == {"turn", "open", "follow"}
+
+
+async def test_pages_move_joints_that_are_free(graph, bridge, panel, published):
+    await filled(graph, panel)
+    bridge.attach(panel)
+    bridge.receive(PAGE, SetJoint("turn", 0.5))
+    bridge.receive(PAGE, SetJoint("open", 7.0))
+    bridge.receive(PAGE, SetJoint("follow", 0.0))
+    bridge.receive(PAGE, SetJoint("nobody", 0.0))
+    await told(graph, bridge)
+    assert published[-1].positions == pytest.approx({"turn": 0.5, "open": 0.05, "follow": -0.05})
+    bridge.receive(PAGE, SetJoints({"turn": -0.25, "open": 0.02, "follow": 1.0, "nobody": 1.0}))
+    await told(graph, bridge)
+    assert published[-1].positions == pytest.approx({"turn": -0.25, "open": 0.02, "follow": -0.02})
+    bridge.receive(PAGE, CenterJoints())
+    await told(graph, bridge)
+    assert published[-1].positions == pytest.approx({"turn": 0.0, "open": 0.03, "follow": -0.03})
+    bridge.receive(PAGE, RandomizeJoints())
+    await told(graph, bridge)
+    assert published[-1].positions["turn"] != 0.0
+
+
+async def test_another_panel_takes_its_place(graph, bridge, panel, published):
+    await filled(graph, panel)
+    bridge.attach(panel)
+    bridge.attach(None)
+    assert published[-1] == Joints(None)
+    count = len(published)
+    panel.randomize()
+    await told(graph, bridge)
+    assert len(published) == count

@@ -1,0 +1,172 @@
+"""Which of RViz's panels a file shows, and how that is changed in it."""
+
+from __future__ import annotations
+
+import difflib
+
+import pytest
+
+from linkwright.rviz import RvizConfig
+from linkwright.rviz.config.panels import is_shown, with_shown
+from tests.panels.panels import RVIZ_PANELS, window_state
+from tests.viewer.configured import opened
+from tests.viewer.scene import page
+
+DISPLAYS = "Visualization Manager:\n  Displays: []\n"
+FIRST_OF_RVIZ = {"Selection": False, "Tool Properties": False}
+"""What is hidden in the window that RViz opens with."""
+
+
+def parsed(geometry: str = "", panels: str = RVIZ_PANELS) -> RvizConfig:
+    return RvizConfig.parse(panels + DISPLAYS + geometry)
+
+
+def changes(config: RvizConfig, before: str) -> list[str]:
+    """The lines that are others than before, without those that only changed the window's state."""
+    lines = difflib.ndiff(before.splitlines(), config.text().splitlines())
+    return [line for line in lines if line[0] in "+-" and "QMainWindow State" not in line]
+
+
+def test_the_panels_listed_are_shown_in_the_order_of_the_file():
+    assert parsed().panels.shown == ["displays", "selection", "tool-properties", "views"]
+    assert parsed(panels="Panels: []\n").panels.shown == []
+    assert parsed(panels="").panels.shown is None
+    assert parsed(panels="Panels: ~\n").panels.shown is None
+
+
+def test_panels_that_the_window_hides_are_not_shown():
+    assert parsed(window_state(**FIRST_OF_RVIZ)).panels.shown == ["displays", "views"]
+    assert parsed(window_state(Views=False)).panels.shown == ["displays", "selection", "tool-properties"]
+
+
+def test_panels_collapsed_with_their_side_of_the_window_are_not_shown():
+    assert parsed(window_state(("Views",), hide_right=True)).panels.shown == [
+        "displays",
+        "selection",
+        "tool-properties",
+    ]
+    # RViz shows what is collapsed on a side that is not hidden.
+    assert "views" in (parsed(window_state(("Views",), Views=False)).panels.shown or [])
+
+
+def test_names_of_rviz_1_are_known_and_entries_without_a_name_are_passed_over():
+    former = ("Displays, Name: Displays", "Time, Name: Zeit", "Views")
+    config = parsed(panels="Panels:\n" + "".join(f"  - {{Class: rviz/{each}}}\n" for each in former))
+    assert config.panels.shown == ["displays", "time"]
+    config.panels.show(["displays", "time", "selection", "transformation"])
+    assert config.panels.shown == ["displays", "time", "selection"]
+    assert "rviz/Selection" in config.text()
+    assert "Transformation" not in config.text(), "RViz 1 has none"
+
+
+def test_panels_of_other_packages_are_told_of_once_and_stay():
+    config = parsed()
+    assert [(warning.code, warning.span.line) for warning in config.warnings] == [("RVIZ204", 16)]
+    assert "'Knobs'" in config.warnings[0].message
+    config.panels.show([])
+    assert config.panels.shown == []
+    assert "  - Class: some_package/Knobs\n    Level: 11\n    Name: Knobs\n" in config.text()
+
+
+def test_a_closed_panel_is_hidden_in_the_window_and_keeps_its_entry():
+    config = parsed(window_state(**FIRST_OF_RVIZ))
+    before = config.text()
+    assert config.panels.show(["displays"])
+    assert changes(config, before) == []
+    again = RvizConfig.parse(config.text())
+    assert again.panels.shown == ["displays"]
+    assert not again.panels.show(["displays"])
+    assert again.panels.show(["displays", "views"])
+    assert (again.panels.shown, again.text()) == (["displays", "views"], before)
+
+
+def test_without_a_window_the_entry_goes_and_comes_back_in_its_place():
+    config = parsed()
+    before = config.text()
+    config.panels.show(["tool-properties"])
+    assert RvizConfig.parse(config.text()).panels.shown == ["tool-properties"]
+    config.panels.show(["views", "displays", "selection", "tool-properties"])
+    assert config.text() == before
+
+
+def test_an_opened_panel_that_the_file_did_not_list_is_added():
+    for geometry in ("", window_state(**FIRST_OF_RVIZ)):
+        config = parsed(geometry)
+        before = config.text()
+        shown = config.panels.shown
+        config.panels.show([*shown, "time"])
+        assert changes(config, before) == ["+   - Class: rviz_common/Time", "+     Name: Time"]
+        assert RvizConfig.parse(config.text()).panels.shown == [*shown, "time"]
+        config.panels.show(shown)
+        assert config.text() == before
+
+
+def test_an_opened_panel_is_collapsed_no_more():
+    config = parsed(window_state(("Views",), hide_right=True, Views=False))
+    before = config.text()
+    config.panels.show([*config.panels.shown, "views"])
+    assert RvizConfig.parse(config.text()).panels.shown == ["displays", "selection", "tool-properties", "views"]
+    assert changes(config, before) == ["-     collapsed: true", "+     collapsed: false"]
+
+
+def test_a_file_without_panels_gets_a_list():
+    config = parsed(panels="")
+    assert config.panels.show(["displays", "time"])
+    assert RvizConfig.parse(config.text()).panels.shown == ["displays", "time"]
+    assert config.text().startswith("Panels:\n- Class: rviz_common/Displays\n  Name: Displays\n- Class: rviz_")
+
+
+@pytest.mark.parametrize("state", ["", "zz", "00 ff", "fb0000000a0056006900650077007", "fbffffffff00560069"])
+def test_a_window_state_that_is_none_says_nothing(state):
+    assert is_shown(state, "Views") is None
+    assert with_shown(state, "Views", shown=False) == state
+
+
+def test_of_a_dock_named_twice_the_first_counts():
+    views = "FB0000000A00560069006500770073"
+    state = f"00ff{views}01aa{views}03bb"
+    assert is_shown(state, "Views") is True
+    hidden = with_shown(state, "Views", shown=False)
+    assert hidden == f"00ff{views}00aa{views}03bb"
+    assert with_shown(hidden, "Views", shown=True) == state
+    assert is_shown(state, "View") is None
+
+
+async def test_pages_begin_with_the_file_s_panels_and_the_last_change_is_saved(tmp_path):
+    path = tmp_path / "a.rviz"
+    text = RVIZ_PANELS + DISPLAYS + window_state(**FIRST_OF_RVIZ)
+    async with opened(text, path) as (made, client):
+        assert client.first["panels"]["shown"] == ["displays", "views"]
+        assert client.first["panels"]["opened"] == client.first["configuration"]["opened"] == 1
+        await client.send("show_panels", shown=["displays", "views"])
+        await client.send("show_panels", shown=["displays", "time"])
+        assert (await client.until("configuration"))["unsaved"]
+        assert made.viewer.config.panels.shown == ["displays", "time"]
+        await client.send("save_configuration", path=None, replace=False)
+        await client.until("configuration_saved")
+        assert RvizConfig.load(path).panels.shown == ["displays", "time"]
+        await client.send("new_configuration", discard=False)
+        told = await client.until("panels")
+        assert told["opened"] == 2
+        assert told["shown"] == ["displays", "selection", "tool-properties", "views", "time"]
+
+
+async def test_nobody_s_panels_change_by_another_s_hand(tmp_path):
+    path = tmp_path / "a.rviz"
+    async with opened(RVIZ_PANELS + DISPLAYS, path) as (made, client), page(made.viewer) as other:
+        await other.opened()
+        await client.send("show_panels", shown=[])
+        await other.until("configuration", unsaved=True)
+        assert "panels" not in [message["type"] for message in await other.drain() if isinstance(message, dict)]
+        async with page(made.viewer) as late:
+            assert (await late.opened())["panels"]["shown"] == []
+
+
+async def test_where_there_is_no_file_panels_are_no_edit(tmp_path):
+    async with opened(RVIZ_PANELS + DISPLAYS) as (made, client):
+        await client.send("show_panels", shown=["time"])
+        await client.drain(0.03)
+        assert not made.viewer.manager.history.unsaved
+        await client.send("save_configuration", path=str(tmp_path / "a.rviz"), replace=False)
+        await client.until("configuration_saved")
+    assert RvizConfig.load(tmp_path / "a.rviz").panels.shown == ["time"]

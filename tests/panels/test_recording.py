@@ -1,0 +1,336 @@
+"""Recording from pages: what is in the files, what pages are told, and how it ends."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import NamedTuple
+
+import aiohttp
+import pytest
+
+from linkwright.bag import BagReader, BagWriter
+from linkwright.graph import Parameter
+from linkwright.messages import Time
+from linkwright.page.access import TOKEN_PARAMETER
+from linkwright.panels import recording as module
+from linkwright.panels.recording import RecordingFeature
+from tests.full_disk import full_disk, needs_limits
+from tests.panels.test_live_history import KEPT, filled
+from tests.panels.test_time import config
+from tests.recordings import needs_rosbags
+from tests.skipping import skipping
+from tests.viewer.scene import Client, World, page, world
+
+pytestmark = needs_rosbags
+
+TF, STRING = "/tf", "std_msgs/msg/String"
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The working directory, where recordings go."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def made_in(folder: Path) -> set[str]:
+    """The names of what is in a folder."""
+    return {path.name for path in folder.iterdir()}
+
+
+def mcap(recording: str) -> Path:
+    """The file of a recording."""
+    (file,) = Path(recording).glob("*.mcap")
+    return file
+
+
+def feature(made: World) -> RecordingFeature:
+    return made.viewer.add_feature(RecordingFeature)
+
+
+async def begun(client: Client, *topics: str) -> dict:
+    await client.send("record_topics", topics=list(topics))
+    while not (state := await client.until("recording_state"))["path"]:
+        assert not state["problem"]
+    return state
+
+
+async def ended(client: Client) -> dict:
+    while (state := await client.until("recording_state"))["path"]:
+        pass
+    return state
+
+
+async def saved(client: Client, start: float | None = None, end: float | None = None) -> dict:
+    await client.send("save_minutes", start=start, end=end)
+    while (await client.until("recording_state"))["saved"] is None:
+        pass
+    while (state := await client.until("recording_state"))["saved"] is not None:
+        pass
+    return state
+
+
+@skipping
+async def test_what_all_topics_carry_is_recorded_and_the_file_opens_again(folder: Path):
+    async with world() as made, page(made.viewer) as client:
+        assert not (await client.until("recording_state"))["path"]
+        state = await begun(client)
+        await made.settle()
+        for x in range(5):
+            made.move_arm(float(x))
+            await made.settle()
+            await asyncio.sleep(0.5)
+        told = await client.until("recording_state")
+        assert told["length"] >= 0
+        await client.send("stop_recording")
+        (file,) = (await ended(client))["files"]
+        assert Path(state["path"]).parent == folder
+        assert Path(file["path"]) == Path(state["path"])
+        with BagReader(file["path"]) as bag:
+            assert {"/tf", "/tf_static"} <= {topic.name for topic in bag.topics}
+            assert len(list(bag.messages([TF]))) == 5
+
+
+@skipping
+async def test_only_chosen_topics_are_recorded():
+    async with world() as made, page(made.viewer) as client:
+        await begun(client, TF)
+        await made.settle()
+        made.move_arm(1.0)
+        made.describe("<robot name='r'/>")
+        await made.settle()
+        await client.send("stop_recording")
+        (file,) = (await ended(client))["files"]
+        with BagReader(file["path"]) as bag:
+            assert [topic.name for topic in bag.topics] == [TF]
+
+
+@skipping
+async def test_all_pages_see_one_recording_which_outlives_the_page_that_began_it():
+    async with world() as made:
+        async with page(made.viewer) as other:
+            async with page(made.viewer) as client:
+                state = await begun(client)
+                while (seen := await other.until("recording_state"))["path"] != state["path"]:
+                    pass
+                await other.send("record_topics", topics=[])
+            made.move_arm(1.0)
+            await made.settle()
+            await asyncio.sleep(2.0)
+            assert (await other.until("recording_state"))["path"] == seen["path"]
+        async with page(made.viewer) as late:
+            assert (await late.until("recording_state"))["path"] == state["path"]
+            made.move_arm(2.0)
+            await made.settle()
+            await late.send("stop_recording")
+            assert [each["path"] for each in (await ended(late))["files"]] == [state["path"]]
+
+
+@skipping
+async def test_a_recording_ends_well_when_the_program_does():
+    async with world() as made, page(made.viewer) as client:
+        state = await begun(client, TF)
+        await made.settle()
+        made.move_arm(1.0)
+        await made.settle()
+    with BagReader(state["path"]) as bag:
+        assert not bag.findings
+        assert len(list(bag.messages())) == 1
+
+
+@skipping
+async def test_recordings_of_one_second_have_names_of_their_own(folder: Path):
+    async with world() as made, page(made.viewer) as client:
+        paths = set()
+        for _ in range(3):
+            state = await begun(client, TF)
+            await made.settle()
+            made.move_arm(1.0)
+            await made.settle()
+            await client.send("stop_recording")
+            await ended(client)
+            paths.add(state["path"])
+        assert len(paths) == 3
+        assert {str(folder / each) for each in made_in(folder)} == paths
+
+
+@skipping
+async def test_a_recording_of_nothing_is_not_kept(folder: Path):
+    async with world() as made, page(made.viewer) as client:
+        await begun(client, "/nobody")
+        await client.send("stop_recording")
+        state = await ended(client)
+        assert "no messages arrived" in state["problem"]
+        assert not state["files"]
+        assert made_in(folder) == set()
+
+
+@skipping
+@needs_limits
+async def test_a_disk_that_refuses_ends_the_recording_and_keeps_what_was_written():
+    async with world() as made, page(made.viewer) as client:
+        await begun(client, "/long")
+        node = made.graph.create_node("talker")
+        publisher = node.create_publisher(STRING, "/long", 10)
+        await asyncio.sleep(0.5)
+        await made.settle()
+        publisher.publish(publisher.msg_type(data="first"))
+        await made.settle()
+        await asyncio.sleep(1.5)
+        with full_disk(20_000):
+            for _ in range(2000):
+                publisher.publish(publisher.msg_type(data="x" * 1000))
+                await made.settle()
+            await asyncio.sleep(2.0)
+            state = await ended(client)
+        assert "ends here" in state["problem"]
+        (file,) = state["files"]
+        with BagReader(Path(file["path"])) as bag:
+            assert len(list(bag.messages())) >= 1
+
+
+class Usage(NamedTuple):
+    """What `shutil.disk_usage` gives, bytes."""
+
+    total: int
+    used: int
+    free: int
+
+
+@skipping
+async def test_a_disk_with_little_room_is_left_to_others(monkeypatch: pytest.MonkeyPatch, folder: Path):
+    async with world() as made, page(made.viewer) as client:
+        state = await begun(client, TF)
+        await made.settle()
+        made.move_arm(1.0)
+        await made.settle()
+        monkeypatch.setattr(module.shutil, "disk_usage", lambda _: Usage(10**12, 10**12, 10**8))
+        stopped = await ended(client)
+        assert "less than 256 MB left" in stopped["problem"]
+        with BagReader(state["path"]) as bag:
+            assert not bag.findings, "it has its end"
+        await client.send("record_topics", topics=[])
+        while not (refused := await client.until("recording_state"))["problem"].startswith("there is not enough space"):
+            pass
+        assert not refused["path"]
+        assert made_in(folder) == {Path(state["path"]).name}
+
+
+@skipping
+async def test_a_folder_that_cannot_be_written_is_said(folder: Path):
+    async with world() as made, page(made.viewer) as client:
+        feature(made).folder = folder / "gone" / "away"
+        (folder / "gone").write_text("a file in its place")
+        await client.send("record_topics", topics=[])
+        while not (state := await client.until("recording_state"))["problem"]:
+            pass
+        assert not state["path"]
+
+
+@skipping
+async def test_a_reset_of_simulated_time_ends_the_recording():
+    async with world() as made, page(made.viewer) as client:
+        made.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
+        clock = made.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
+        state = await begun(client, TF)
+        for second in (100, 101, 102):
+            clock.publish(clock.msg_type(clock=Time(sec=second)))
+            await made.settle()
+            await asyncio.sleep(0.2)
+            made.move_arm(1.0)
+            await made.settle()
+        clock.publish(clock.msg_type(clock=Time(sec=1)))
+        await made.settle()
+        stopped = await ended(client)
+        assert "simulated time was reset" in stopped["problem"]
+        with BagReader(state["path"]) as bag:
+            assert 100 <= bag.start_ns / 1e9 <= bag.end_ns / 1e9 <= 102
+
+
+@skipping
+async def test_the_last_minutes_and_a_part_of_them_are_saved():
+    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
+        await client.until("recording_state")
+        made.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
+        between = await filled(made)
+        (whole,) = (await saved(client))["files"]
+        with BagReader(whole["path"]) as bag:
+            assert len(list(bag.messages([TF]))) == 5
+        part = (await saved(client, between[1], between[3]))["files"][0]
+        assert part["path"] != whole["path"]
+        with BagReader(part["path"]) as bag:
+            stamps = [stamp / 1e9 for _, stamp, _ in bag.messages()]
+            assert between[1] - 1e-6 <= stamps[0] <= stamps[-1] <= between[3]
+            assert len(list(bag.messages(["/tf_static"]))) == 1, "the static transforms from before are in it"
+            later = [stamp for _, stamp, _ in bag.messages([TF]) if stamp / 1e9 > between[1] + 1e-6]
+            assert len(later) == 2
+        nothing = await saved(client, 1.0, 2.0)
+        assert "no messages arrived in that time" in nothing["problem"]
+
+
+@skipping
+async def test_the_last_minutes_of_a_simulation_have_its_times_since_its_last_reset():
+    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
+        await client.until("recording_state")
+        made.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
+        clock = made.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
+        await made.settle()
+        made.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
+        await made.settle()
+        for second in (50, 51, 52, 3, 4):
+            clock.publish(clock.msg_type(clock=Time(sec=second)))
+            await made.settle()
+            await asyncio.sleep(0.2)
+            made.move_arm(float(second))
+            await made.settle()
+            await asyncio.sleep(0.2)
+        (file,) = (await saved(client))["files"]
+        with BagReader(file["path"]) as bag:
+            assert (bag.start_ns, bag.end_ns) == (3 * 10**9, 4 * 10**9)
+            assert len(list(bag.messages([TF]))) == 2
+            assert len(list(bag.messages(["/tf_static"]))) >= 1
+
+
+@skipping
+async def test_a_recording_can_be_fetched_whole_and_again():
+    async with world() as made, page(made.viewer) as client:
+        await begun(client, TF)
+        await made.settle()
+        for x in range(2000):
+            made.move_arm(float(x))
+            await made.settle()
+        await client.send("stop_recording")
+        (file,) = (await ended(client))["files"]
+        path = mcap(file["path"])
+        address = made.viewer.url.split(f"?{TOKEN_PARAMETER}")[0].rstrip("/") + file["url"]
+        async with aiohttp.ClientSession() as session:
+            for _ in range(2):
+                async with session.get(address) as answer:
+                    assert answer.status == 200
+                    assert answer.headers["Content-Disposition"].endswith(path.name)
+                    assert await answer.read() == path.read_bytes()
+            path.unlink()
+            async with session.get(address) as answer:
+                assert answer.status == 404
+
+
+@skipping
+async def test_beside_a_recording_nothing_is_recorded(folder: Path):
+    from tests.panels.test_timeline import shown
+
+    async with shown(folder) as made, page(made.viewer) as client:
+        assert not (await client.until("recording_state"))["possible"]
+        await client.send("record_topics", topics=[])
+        await client.send("play", playing=False)
+        await client.until("playhead", playing=False)
+        assert made_in(folder) == {"drive"}
+
+
+def test_a_writer_tells_how_much_is_written(tmp_path: Path):
+    with BagWriter(tmp_path / "bag") as writer:
+        writer.add_topic("/chatter", STRING)
+        before = writer.size
+        writer.write("/chatter", 1, bytes(1000))
+        writer.flush()
+        assert writer.size >= before + 1000

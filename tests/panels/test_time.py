@@ -1,0 +1,238 @@
+from __future__ import annotations
+
+import asyncio
+import time
+
+import numpy as np
+import yaml
+
+from linkwright.messages import get_message
+from linkwright.rviz import RvizConfig
+from linkwright.rviz.frames.stream import TimeControl
+from tests.skipping import skipping
+from tests.viewer.scene import page, world
+
+POINT = "geometry_msgs/msg/PointStamped"
+CONFIG = {
+    "Visualization Manager": {
+        "Displays": [
+            {"Class": "rviz_default_plugins/PointStamped", "Name": "Clicks", "Enabled": True, "Topic": {"Value": "/p"}},
+        ],
+        "Global Options": {"Fixed Frame": "base"},
+    }
+}
+
+
+class FakeClock:
+    def __init__(self) -> None:
+        self.ns = 100
+
+    def now_ns(self) -> int:
+        return self.ns
+
+
+def config() -> RvizConfig:
+    return RvizConfig.parse(yaml.safe_dump(CONFIG))
+
+
+def x_of(client, transforms, name: str) -> float:
+    table = next(
+        message
+        for message in reversed(client.messages)
+        if isinstance(message, dict) and message["type"] == "frame_table"
+    )
+    return float(transforms.poses[table["names"].index(name), 0])
+
+
+async def arrived(client, name: str, x: float) -> None:
+    """Wait until a frame is somewhere."""
+    while True:
+        transforms = await client.transforms()
+        if transforms.poses.size and x_of(client, transforms, name) == x:
+            return
+
+
+def point(x: float, stamp: float, frame: str = "base"):
+    message = get_message(POINT)()
+    message.header.frame_id = frame
+    message.header.stamp.sec, message.header.stamp.nanosec = int(stamp), int(stamp % 1 * 1e9)
+    message.point.x = x
+    return message
+
+
+def test_exact_shows_the_time_of_the_sources_last_message():
+    clock, told = FakeClock(), []
+    control = TimeControl(clock, signalled=lambda: told.append(1))
+    control.took("scan", 90)
+    assert (control.lookup_ns(), control.sources) == (None, ["scan"])
+    control.set(paused=False, mode="Exact", source="scan")
+    assert control.lookup_ns() is None  # until its next message
+    control.took("other", 80)
+    control.took("scan", 95)
+    assert (control.lookup_ns(), control.now_ns(), told) == (95, 95, [1])
+
+
+def test_approximate_follows_the_delay_of_the_source_smoothly():
+    clock = FakeClock()
+    control = TimeControl(clock)
+    control.set(paused=False, mode="Approximate", source="scan")
+    clock.ns = 2_000
+    control.took("scan", 1_000)
+    times = [control.lookup_ns() for _ in range(30)]
+    assert times[0] == 1_700
+    assert abs(times[-1] - 1_000) < 20
+    assert times == sorted(times, reverse=True)
+
+
+def test_the_time_shown_stands_still_while_paused():
+    clock = FakeClock()
+    control = TimeControl(clock)
+    control.set(paused=True, mode="Off", source="")
+    clock.ns = 500
+    assert (control.now_ns(), control.lookup_ns()) == (100, None)
+    control.set(paused=False, mode="Off", source="")
+    assert control.now_ns() == 500
+
+
+async def test_pause_freezes_frames_and_messages_for_all_pages():
+    async with world(config()) as made, page(made.viewer) as one, page(made.viewer) as other:
+        node = made.graph.create_node("clicker")
+        points = node.create_publisher(POINT, "/p", 10)
+        await one.opened()
+        await other.opened()
+        made.move_arm(x=1.0)
+        await arrived(one, "tip", 1.0)
+        await other.send("set_time", paused=True, mode="Off", source="")
+        assert (await one.until("time_state"))["paused"] is True
+        await one.drain()
+        made.move_arm(x=2.0)
+        made.move_arm(x=3.0)
+        points.publish(point(0.25, time.time()))
+        await made.settle()
+        drained = await one.drain()
+        assert all(isinstance(each, dict) for each in drained)  # neither transforms nor data
+        async with page(made.viewer) as late:
+            assert (await late.opened())["time_state"]["paused"] is True
+            await arrived(late, "tip", 1.0)
+        await one.send("set_time", paused=False, mode="Off", source="")
+        await arrived(one, "tip", 3.0)
+        display = made.display("PointStamped")
+        assert len(display.data()) == 1
+
+
+PANEL = """\
+Panels:
+  - Class: rviz_common/Time
+    Experimental: true
+    Name: Time
+    SyncMode: 1
+    SyncSource: Clicks
+Visualization Manager:
+  Name: root
+"""
+
+
+async def test_the_time_panel_of_the_last_rviz_1_is_read_and_stays_one():
+    text = PANEL.replace("    Experimental: true\n", "").replace("rviz_common", "rviz")
+    file = RvizConfig.parse(text)
+    async with world(file) as made, page(made.viewer) as client:
+        state = (await client.opened())["time_state"]
+        assert (state["mode"], state["source"]) == ("Exact", "Clicks")
+        await client.send("set_time", paused=False, mode="Approximate", source="Clicks")
+        await client.until("time_state", mode="Approximate")
+        assert file.text() == text.replace("SyncMode: 1", "SyncMode: 2")
+
+
+async def test_the_time_panel_of_a_file_is_read_and_written():
+    file = RvizConfig.parse(PANEL)
+    async with world(file) as made, page(made.viewer) as client:
+        state = (await client.opened())["time_state"]
+        assert (state["mode"], state["source"], state["paused"]) == ("Exact", "Clicks", False)
+        assert file.text() == PANEL
+        await client.send("set_time", paused=False, mode="Approximate", source="Other")
+        await client.until("time_state", mode="Approximate")
+        assert file.text() == PANEL.replace("SyncMode: 1", "SyncMode: 2").replace("Clicks", "Other")
+
+
+@skipping
+async def test_exact_synchronization_shows_frames_at_the_time_of_messages():
+    async with world(config()) as made, page(made.viewer) as client:
+        node = made.graph.create_node("clicker")
+        points = node.create_publisher(POINT, "/p", 10)
+        await client.opened()
+        points.publish(point(0.0, time.time()))
+        assert (await client.until("time_state"))["sources"] == ["Clicks"]
+        await client.send("set_time", paused=False, mode="Exact", source="Clicks")
+        await client.until("time_state", mode="Exact")
+        now_ns = made.graph.timebase.now_ns
+        stamps = []
+        for x in (0.0, 1.0):
+            made.move_arm(x=x)
+            stamps.append(now_ns() / 1e9)
+            await asyncio.sleep(0.1)
+        points.publish(point(0.0, (stamps[0] + stamps[1]) / 2))
+        await made.settle()
+        await client.drain()
+        made.move_arm(x=2.0)  # the newest, yet the frame is shown where it was half way
+        points.publish(point(0.0, (stamps[0] + stamps[1]) / 2))
+        await client.drain()
+        frames = [message for message in client.messages if not isinstance(message, dict) and hasattr(message, "poses")]
+        shown = x_of(client, frames[-1], "tip")
+        assert 0.3 < shown < 0.7
+
+
+async def test_reset_clears_displays_and_moving_frames():
+    async with world(config()) as made, page(made.viewer) as client:
+        node = made.graph.create_node("clicker")
+        points = node.create_publisher(POINT, "/p", 10)
+        await client.opened()
+        made.move_arm(x=1.0)
+        points.publish(point(0.25, time.time()))
+        await made.settle()
+        assert len(made.display("PointStamped").data()) == 1
+        await client.send("reset_time")
+        await client.until("time_reset")
+        assert made.display("PointStamped").data() == []
+        frames = made.viewer.manager.frames
+        assert "mark" in frames.names
+        assert "base" not in frames.names
+
+
+async def test_clocks_are_told_to_pages_that_watch_and_counted_by_them():
+    async with world() as made, page(made.viewer) as client:
+        await client.opened()
+        assert not [each for each in await client.drain() if isinstance(each, dict) and each["type"] == "clock"]
+        await client.send("watch_clock", watching=True)
+        clock = await client.until("clock")
+        assert abs(clock["ros"] - time.time()) < 5
+        assert clock["running"] is True
+        assert 0 <= clock["wall"] - clock["wall_start"] < 5
+        assert not [each for each in await client.drain() if isinstance(each, dict) and each["type"] == "clock"]
+        await client.send("set_time", paused=True, mode="Off", source="")
+        assert (await client.until("clock"))["running"] is False
+
+
+async def test_simulated_time_is_followed_and_going_back_begins_anew():
+    async with world() as made, page(made.viewer) as client:
+        await client.opened()
+        await client.send("watch_clock", watching=True)
+        await client.until("clock")
+        viewer_node = made.viewer.manager.context.node
+        from linkwright.graph import Parameter
+
+        viewer_node.set_parameters([Parameter("use_sim_time", value=True)])
+        clocks = made.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
+        message = get_message("rosgraph_msgs/msg/Clock")()
+        for seconds in (50, 51):
+            message.clock.sec = seconds
+            clocks.publish(message)
+            await made.settle()
+            clock = await client.until("clock", ros=float(seconds), running=False)
+            assert clock["ros_start"] == 50  # not the zero from before anybody told the time
+        message.clock.sec = 10
+        await client.drain()
+        clocks.publish(message)
+        await made.settle()
+        await client.until("time_reset")
+        clock = await client.until("clock")
+        assert np.isclose(clock["ros"] - clock["ros_start"], 0.0, atol=0.5)

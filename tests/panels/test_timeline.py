@@ -1,0 +1,128 @@
+"""A recording in a viewer: what pages are told of it, and have it do."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from linkwright.bag import BagReader, BagWriter, Playback, PublishedRecording
+from linkwright.graph import DEFAULT_QOS, Parameter
+from linkwright.messages import TFMessage, TransformBatch, serialize
+from tests.panels.test_time import POINT, arrived, config, point
+from tests.skipping import skipping
+from tests.viewer.scene import World, page, world
+
+START = 1_700_000_000
+SECOND = 1_000_000_000
+
+
+def recorded(folder: Path) -> Path:
+    """Ten seconds: each second a point, and a frame whose x is the seconds since the start."""
+    pytest.importorskip("rosbags", reason="there is no wheel for Python 3.15")
+    path = folder / "drive"
+    with BagWriter(path) as writer:
+        writer.add_topic("/p", POINT, [DEFAULT_QOS])
+        writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
+        for second in range(11):
+            stamp = (START + second) * SECOND
+            batch = TransformBatch(("base",), ("tip",), stamp, np.array([[second, 0, 0, 0, 0, 0, 1.0]]))
+            writer.write("/tf", stamp, serialize(TFMessage(batch=batch)))
+            writer.write("/p", stamp, serialize(point(float(second), START + second)))
+    return path
+
+
+@asynccontextmanager
+async def shown(folder: Path, **other: str) -> AsyncIterator[World]:
+    """A viewer that shows the recording, in the recording's time; words of its files are others of equal length."""
+    path = recorded(folder)
+    for file in path.iterdir():
+        for word, instead in other.items():
+            file.write_bytes(file.read_bytes().replace(word.encode(), instead.encode()))
+    async with world(config()) as made:
+        with BagReader(path) as bag:
+            made.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
+            player = made.graph.create_node("player")
+            output = PublishedRecording(player, bag)
+            playback = Playback(player.handle, bag, output, made.viewer.playback_failed)
+            made.viewer.attach_recording(playback, bag)
+            yield made
+            playback.close()
+
+
+@skipping
+async def test_a_page_is_told_of_the_recording_which_begins_to_play(tmp_path):
+    async with shown(tmp_path) as made, page(made.viewer) as client:
+        timeline = await client.until("timeline")
+        assert (timeline["name"], timeline["start"], timeline["end"]) == ("drive", START, START + 10)
+        assert {each["name"]: sum(each["counts"]) for each in timeline["topics"]} == {"/p": 11, "/tf": 11}
+        await client.until("playhead", playing=True)
+        await arrived(client, "tip", 3)
+        await client.until("playhead", playing=False, position=START + 10)
+
+
+@skipping
+async def test_a_page_goes_to_another_time_and_all_that_is_shown_is_of_that_time(tmp_path):
+    async with shown(tmp_path) as made, page(made.viewer) as client:
+        await client.until("playhead", playing=True)
+        await client.send("play", playing=False)
+        await client.until("playhead", playing=False)
+        for second in (7, 2, 9):
+            await client.send("seek_time", position=START + second)
+            await client.until("playhead", position=START + second, playing=False)
+            await arrived(client, "tip", second)
+        await client.send("step_time", forward=False)
+        await client.until("playhead", position=START + 8)
+        await arrived(client, "tip", 8)
+
+
+@skipping
+async def test_a_page_sets_speed_and_whether_it_begins_anew(tmp_path):
+    async with shown(tmp_path) as made, page(made.viewer) as client:
+        await client.until("playhead", playing=True)
+        await client.send("set_playback", speed=5, loop=True)
+        await client.until("playhead", speed=5, loop=True)
+        await client.send("set_playback", speed=-5, loop=False)
+        await client.send("set_playback", speed=2, loop=True)
+        await client.until("playhead", speed=2, loop=True)
+        assert not any(isinstance(message, dict) and message.get("speed") == -5 for message in client.messages)
+
+
+@skipping
+async def test_a_simulation_that_was_recorded_has_no_bar(tmp_path):
+    async with shown(tmp_path) as made:
+        node = made.graph.create_node("recorded_simulation")
+        state = node.create_publisher("simulation_interfaces/msg/SimulationState", "/simulation_state", 1)
+        async with page(made.viewer) as client:
+            assert (await client.until("simulation_status"))["present"] is False
+            state.publish(state.msg_type(state=1))
+            await client.until("playhead", playing=False, position=START + 10)
+            told = [
+                message
+                for message in client.messages
+                if isinstance(message, dict) and message["type"] == "simulation_status"
+            ]
+            assert not any(each["present"] for each in told)
+
+
+@skipping
+async def test_a_page_is_told_of_topics_whose_type_nobody_knows(tmp_path):
+    # What the recording carries for the type that nobody has is of no use either.
+    async with shown(tmp_path, Point="Paint", float64="flaot64") as made, page(made.viewer) as client:
+        told = await client.until("playhead", playing=True)
+        assert told["problem"] == (
+            "topics of 'drive' are left out, for the definitions of their types are missing or broken: "
+            "/p (geometry_msgs/msg/PaintStamped)"
+        )
+        await arrived(client, "tip", 3)
+
+
+@skipping
+async def test_a_viewer_without_a_recording_has_no_timeline():
+    async with world() as made, page(made.viewer) as client:
+        assert "timeline" not in await client.opened()
+        await client.send("play", playing=True)
+        await client.send("seek_time", position=1)

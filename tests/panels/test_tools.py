@@ -1,0 +1,192 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+import yaml
+
+from linkwright.graph import ActionServer
+from linkwright.messages import get_action
+from linkwright.rviz import RvizConfig
+from linkwright.rviz.config.tools import TOOL_KINDS, USUAL_TOOLS, tool_name
+from tests.viewer.scene import page, rows_by_id, world
+from tests.waiting import eventually
+
+FILE = """\
+Visualization Manager:
+  Tools:
+    - Class: rviz_default_plugins/MoveCamera
+    - Class: rviz/SetGoal
+      Topic: /move_base_simple/goal
+    - Class: other_plugins/GoalTool
+      Secret: kept
+    - Class: rviz_default_plugins/SetInitialPose
+      Covariance x: 0.04
+      Covariance y: 0.09
+      Covariance yaw: 0.01
+      Topic:
+        Depth: 5
+        Durability Policy: Volatile
+        History Policy: Keep Last
+        Reliability Policy: Reliable
+        Value: /first
+"""
+
+
+def tools_of(config: RvizConfig) -> list[dict]:
+    return yaml.safe_load(config.text())["Visualization Manager"]["Tools"]
+
+
+def test_names_are_those_of_rviz():
+    assert [kind.name for kind in TOOL_KINDS.values()] == [
+        "Interact",
+        "Move Camera",
+        "Select",
+        "Focus Camera",
+        "Measure",
+        "2D Pose Estimate",
+        "2D Goal Pose",
+        "Publish Point",
+        "Nav2 Goal",
+    ]
+    assert tool_name("other_plugins/GoalTool") == "Goal Tool"
+
+
+def test_the_tools_of_a_file_keep_order_classes_and_what_is_unknown():
+    config = RvizConfig.parse(FILE)
+    assert [entry.cls.rpartition("/")[2] for entry in config.tools.entries] == [
+        "MoveCamera",
+        "SetGoal",
+        "GoalTool",
+        "SetInitialPose",
+    ]
+    goal, pose = config.tools.entries[1], config.tools.entries[3]
+    assert goal.properties.text("Topic") == "/move_base_simple/goal"
+    assert pose.properties.number("Covariance y") == 0.09
+    pose.properties.set(("Topic",), "/second")
+    assert config.text() == FILE.replace("/first", "/second")
+
+
+def test_a_file_without_tools_has_the_usual_ones_and_lists_them_when_one_changes():
+    config = RvizConfig.parse("Visualization Manager: {}\n")
+    assert [entry.cls for entry in config.tools.entries] == list(USUAL_TOOLS)
+    assert "Tools" not in config.text()
+    config.tools.remove(config.tools.entries[0].id)
+    config.tools.add("rviz_default_plugins/Measure")
+    assert [each["Class"] for each in tools_of(config)] == [*list(USUAL_TOOLS)[1:], "rviz_default_plugins/Measure"]
+    with pytest.raises(ValueError, match="no tool"):
+        config.tools.add("no/Such")
+    while len(config.tools.entries) < 100:
+        config.tools.add("rviz_default_plugins/Measure")
+    with pytest.raises(ValueError, match="already"):
+        config.tools.add("rviz_default_plugins/Measure")
+
+
+@pytest.fixture
+def config() -> RvizConfig:
+    config = RvizConfig.parse(FILE.replace("rviz_default_plugins/MoveCamera", "rviz_default_plugins/PublishPoint"))
+    config.options.set(("Fixed Frame",), "odom")
+    return config
+
+
+def listen(made, kind: str, topic: str) -> list:
+    heard: list = []
+    node = made.graph.create_node("listener")
+    node.create_subscription(kind, topic, heard.append, 10)
+    return heard
+
+
+async def test_poses_and_points_are_published_in_the_fixed_frame(config):
+    async with world(config) as made, page(made.viewer) as client:
+        point, goal, unknown, pose = (await client.opened())["tools"]["tools"]
+        assert [tool["supported"] for tool in (point, goal, unknown, pose)] == [True, True, False, True]
+        poses = listen(made, "geometry_msgs/msg/PoseWithCovarianceStamped", "/first")
+        goals = listen(made, "geometry_msgs/msg/PoseStamped", "/move_base_simple/goal")
+        points = listen(made, "geometry_msgs/msg/PointStamped", "/clicked_point")
+        await client.send("pose_chosen", tool=pose["id"], x=1.0, y=-2.0, yaw=math.pi / 2)
+        await client.send("pose_chosen", tool=goal["id"], x=3.0, y=4.0, yaw=0.0)
+        await client.send("point_chosen", tool=point["id"], x=0.5, y=0.25, z=-1.0)
+        await client.send("point_chosen", tool=goal["id"], x=0.0, y=0.0, z=0.0)
+        await client.send("pose_chosen", tool=unknown["id"], x=1.0, y=-2.0, yaw=0.0)
+        await eventually(lambda: poses and goals and points)
+        await made.settle()
+    (estimate,), (target,), (clicked,) = poses, goals, points
+    assert estimate.header.frame_id == target.header.frame_id == clicked.header.frame_id == "odom"
+    assert estimate.header.stamp.sec > 0
+    assert (estimate.pose.pose.position.x, estimate.pose.pose.position.y) == (1.0, -2.0)
+    assert estimate.pose.pose.orientation.z == pytest.approx(math.sqrt(0.5))
+    covariance = list(estimate.pose.covariance)
+    assert (covariance[0], covariance[7], covariance[35]) == (0.04, 0.09, 0.01)
+    assert sum(map(bool, covariance)) == 3
+    assert (target.pose.position.x, target.pose.position.y, target.pose.orientation.w) == (3.0, 4.0, 1.0)
+    assert (clicked.point.x, clicked.point.y, clicked.point.z) == (0.5, 0.25, -1.0)
+    assert "Setting estimate pose: Frame:odom, Position(1, -2, 0)" in made.logged()
+
+
+async def test_another_topic_is_published_to_and_a_bad_one_is_refused(config):
+    async with world(config) as made, page(made.viewer) as one, page(made.viewer) as other:
+        goal = (await one.opened())["tools"]["tools"][1]
+        await other.opened()
+        topic = f"{goal['id']}/Topic"
+        assert rows_by_id(goal["properties"])[topic]["value"] == "/move_base_simple/goal"
+        await one.send("set_tool_property", id=topic, value="/elsewhere")
+        assert (await other.until("tool_property_changed"))["value"] == "/elsewhere"
+        await one.send("set_tool_property", id=topic, value="not a name!")
+        assert (await one.until("tool_property_changed", value="/elsewhere"))["id"] == topic
+        heard = listen(made, "geometry_msgs/msg/PoseStamped", "/elsewhere")
+        await one.send("pose_chosen", tool=goal["id"], x=3.0, y=4.0, yaw=0.0)
+        await eventually(lambda: heard)
+        await made.settle()
+    assert len(heard) == 1
+    assert tools_of(config)[1]["Topic"] == "/elsewhere"
+
+
+async def test_tools_are_added_and_removed_for_all_pages(config):
+    async with world(config) as made, page(made.viewer) as one, page(made.viewer) as other:
+        tools = (await one.opened())["tools"]["tools"]
+        await other.opened()
+        await one.send("add_tool", cls="rviz_default_plugins/Measure")
+        added = (await other.until("tools"))["tools"]
+        assert [tool["name"] for tool in added] == [*(tool["name"] for tool in tools), "Measure"]
+        await other.send("remove_tool", id=tools[0]["id"])
+        await one.until("tools")
+        assert [tool["id"] for tool in (await one.until("tools"))["tools"]] == [tool["id"] for tool in added[1:]]
+    assert [each["Class"].rpartition("/")[2] for each in tools_of(config)] == [
+        "SetGoal",
+        "GoalTool",
+        "SetInitialPose",
+        "Measure",
+    ]
+
+
+NAV2 = """\
+Visualization Manager:
+  Global Options: {Fixed Frame: base}
+  Tools:
+    - Class: nav2_rviz_plugins/GoalTool
+"""
+
+
+async def test_goals_of_nav2_go_to_its_action_and_the_log_says_when_nobody_takes_them():
+    config = RvizConfig.parse(NAV2)
+    async with world(config) as made, page(made.viewer) as opened:
+        (tool,) = (await opened.opened())["tools"]["tools"]
+        assert (tool["name"], tool["supported"], tool["properties"]) == ("Nav2 Goal", True, [])
+        await opened.send("pose_chosen", tool=tool["id"], x=1.0, y=2.0, yaw=0.0)
+        await eventually(lambda: "navigate_to_pose action server is not available" in made.logged())
+        goals = []
+
+        def drive(handle):
+            goals.append(handle.request)
+            handle.succeed()
+            return get_action("nav2_msgs/action/NavigateToPose").Result()
+
+        navigator = made.graph.create_node("bt_navigator")
+        ActionServer(navigator, "nav2_msgs/action/NavigateToPose", "navigate_to_pose", drive)
+        await made.settle()
+        await opened.send("pose_chosen", tool=tool["id"], x=3.0, y=4.0, yaw=math.pi)
+        await eventually(lambda: goals)
+    (goal,) = goals
+    assert (goal.pose.header.frame_id, goal.behavior_tree) == ("base", "")
+    assert (goal.pose.pose.position.x, goal.pose.pose.position.y) == (3.0, 4.0)
+    assert goal.pose.pose.orientation.z == pytest.approx(1.0)

@@ -1,0 +1,203 @@
+from __future__ import annotations
+
+import pytest
+import yaml
+
+from linkwright.page.protocol.views_and_tools import View
+from linkwright.rviz import RvizConfig
+from linkwright.rviz.config.views import CURRENT_NAME, ORBIT, PITCH_LIMIT, VIEW_SCHEMAS, view_classes
+from tests.viewer.scene import page, world
+
+FLYING = """\
+Visualization Manager:
+  Views:
+    Current:
+      Class: rviz_default_plugins/FPS
+      Enable Stereo Rendering:
+        Stereo Eye Separation: 0.05999999865889549
+        Stereo Focal Distance: 1
+        Swap Stereo Eyes: false
+        Value: false
+      Invert Z Axis: false
+      Mine: kept
+      Name: Current View
+      Near Clip Distance: 0.009999999776482582
+      Pitch: 0.5
+      Position:
+        X: 1
+        Y: 2
+        Z: 3
+      Target Frame: <Fixed Frame>
+      Value: FPS (rviz)
+      Yaw: -1
+    Saved:
+      - Class: rviz_default_plugins/TopDownOrtho
+        Name: from above
+        Scale: 70
+        Other: kept
+      - Class: somebody/Else
+        Name: unknown
+"""
+
+
+def config_of(view: str) -> RvizConfig:
+    return RvizConfig.parse(yaml.safe_dump({"Visualization Manager": {"Views": {"Current": yaml.safe_load(view)}}}))
+
+
+def default_view(cls: str = ORBIT) -> View:
+    """A view as a page makes one of a class."""
+    return next(View(each.cls, CURRENT_NAME, each.defaults) for each in view_classes() if each.cls == cls)
+
+
+def test_a_negative_scale_is_kept():
+    """RViz leads to one when its right button is dragged far."""
+    config = config_of("{Class: rviz/TopDownOrtho, Scale: -88.9}")
+    assert config.views.current.values["Scale"] == -88.9
+    assert config.warnings == []
+
+
+def test_the_classes_are_those_of_rviz_with_its_rows():
+    classes = {each.cls.rpartition("/")[2]: each for each in view_classes()}
+    assert list(classes) == ["FPS", "Orbit", "ThirdPersonFollower", "TopDownOrtho", "XYOrbit"]
+    rows = [row.name for row in classes["Orbit"].properties]
+    assert rows[:3] == ["Near Clip Distance", "Invert Z Axis", "Target Frame"]
+    assert [row.name for row in classes["TopDownOrtho"].properties][2:] == ["Scale", "Angle", "X", "Y"]
+    assert classes["FPS"].defaults["Position/Z"] == 10.0
+    assert classes["XYOrbit"].defaults["Enable Stereo Rendering/Stereo Eye Separation"] == 0.06
+
+
+@pytest.mark.parametrize("cls", VIEW_SCHEMAS)
+def test_a_view_of_every_class_is_written_and_read_back(cls):
+    config = RvizConfig.default()
+    view = default_view(cls)
+    view.values |= {name: value + 0.25 for name, value in view.values.items() if isinstance(value, float)}
+    view.values["Target Frame"] = "base_link"
+    config.views.current = view
+    again = RvizConfig.parse(config.text())
+    assert again.views.current == view
+    assert again.warnings == []
+    current = yaml.safe_load(config.text())["Visualization Manager"]["Views"]["Current"]
+    assert current["Value"].startswith(cls.rpartition("/")[2])
+
+
+def test_a_file_is_written_only_where_it_differs():
+    config = RvizConfig.parse(FLYING)
+    config.views.current = config.views.current
+    assert config.text() == FLYING
+    view = config.views.current
+    view.values["Pitch"] = 0.75
+    config.views.current = view
+    assert config.text() == FLYING.replace("Pitch: 0.5", "Pitch: 0.75")
+
+
+def test_values_are_clamped_and_angles_stay_as_they_are_written():
+    config = config_of("{Class: rviz/Orbit, Pitch: 3, Yaw: -0.5, Near Clip Distance: 0}")
+    values = config.views.current.values
+    assert (values["Pitch"], values["Yaw"], values["Near Clip Distance"]) == (PITCH_LIMIT, -0.5, 0.001)
+    assert config.views.current.cls == "rviz_default_plugins/Orbit"
+
+
+def test_a_file_without_a_view_has_rviz_own():
+    assert RvizConfig.parse("Visualization Manager: {}").views.current == default_view()
+
+
+def test_another_class_takes_the_keys_of_the_one_before_away_and_keeps_what_is_unknown():
+    config = RvizConfig.parse(FLYING)
+    config.views.current = default_view("rviz_default_plugins/TopDownOrtho")
+    current = yaml.safe_load(config.text())["Visualization Manager"]["Views"]["Current"]
+    assert current["Class"] == "rviz_default_plugins/TopDownOrtho"
+    assert not {"Pitch", "Yaw", "Position"} & set(current)
+    assert current["Mine"] == "kept"
+    assert RvizConfig.parse(config.text()).views.current == default_view("rviz_default_plugins/TopDownOrtho")
+
+
+def test_an_unknown_class_is_shown_as_an_orbit_and_stays_in_the_file():
+    text = "Visualization Manager: {Views: {Current: {Class: mine/Fancy, Distance: 3}}}\n"
+    config = RvizConfig.parse(text)
+    assert [warning.code for warning in config.warnings] == ["RVIZ203"]
+    view = config.views.current
+    assert (view.cls, view.values["Distance"]) == ("rviz_default_plugins/Orbit", 3.0)
+    config.views.current = view
+    assert config.text() == text
+
+
+def test_a_frame_aligned_view_is_shown_as_one_that_flies_and_stays_what_it_is():
+    text = (
+        "Visualization Manager: {Views: {Current: {Class: rviz/FrameAligned, Name: Current View, "
+        "Point towards: +x axis, Yaw: 1.5, Position: {X: 1, Y: 2, Z: 3}}}}\n"
+    )
+    config = RvizConfig.parse(text)
+    assert [warning.message for warning in config.warnings] == ["the view 'rviz/FrameAligned' is shown as an FPS view"]
+    view = config.views.current
+    assert (view.cls, view.values["Yaw"], view.values["Position/Z"]) == ("rviz_default_plugins/FPS", 1.5, 3.0)
+    view.values["Yaw"] = 2.0
+    config.views.current = view
+    assert config.text() == text.replace("1.5", "2.0")
+
+
+@pytest.mark.parametrize(
+    "view",
+    [
+        View("mine/Fancy", "Current View", {}),
+        View("rviz_default_plugins/Orbit", "Current View", {"Focal Point": 1.0}),
+        View("rviz_default_plugins/Orbit", "Current View", {"Distance": "far"}),
+        View("rviz_default_plugins/FPS", "Current View", {"Distance": 1.0}),
+        View("rviz_default_plugins/FPS", "n" * 5000, {}),
+    ],
+)
+def test_a_view_that_is_none_is_refused_and_nothing_is_written(view):
+    config = RvizConfig.default()
+    before = config.text()
+    with pytest.raises(ValueError):
+        config.views.current = view
+    with pytest.raises(ValueError):
+        config.views.save(view)
+    assert config.text() == before
+
+
+def test_saved_views_are_renamed_changed_and_removed():
+    config = RvizConfig.parse(FLYING)
+    above, unknown = config.views.saved
+    assert config.views.saved[above].values["Scale"] == 70.0
+    view = config.views.saved[above]
+    view.name = "map"
+    config.views.change(above, view)
+    added = config.views.save(config.views.current)
+    config.views.remove(unknown)
+    saved = yaml.safe_load(config.text())["Visualization Manager"]["Views"]["Saved"]
+    assert [(each["Class"].rpartition("/")[2], each["Name"]) for each in saved] == [
+        ("TopDownOrtho", "map"),
+        ("FPS", "Current View"),
+    ]
+    assert saved[0]["Other"] == "kept"
+    assert saved[1]["Position"] == {"X": 1, "Y": 2, "Z": 3}
+    again = RvizConfig.parse(config.text()).views
+    assert list(again.saved.values()) == [config.views.saved[above], config.views.saved[added]]
+
+
+def test_the_first_saved_view_comes_where_the_file_says_none():
+    config = RvizConfig.default()
+    config.views.save(default_view("rviz_default_plugins/FPS"))
+    config = RvizConfig.parse(config.text())
+    assert [view.cls for view in config.views.saved.values()] == ["rviz_default_plugins/FPS"]
+
+
+async def test_pages_share_the_saved_views():
+    async with world() as made, page(made.viewer) as one, page(made.viewer) as other:
+        opening = await one.opened()
+        await other.opened()
+        assert opening["saved_views"]["views"] == []
+        assert [each["cls"] for each in opening["view_classes"]["classes"]] == list(VIEW_SCHEMAS)
+        view = opening["view_state"]["view"] | {"name": "mine"}
+        await one.send("save_view", view=view)
+        (saved,) = (await other.until("saved_views"))["views"]
+        assert saved["view"] == view
+        changed = view | {"name": "ours", "values": view["values"] | {"Distance": 4.0}}
+        await other.send("change_saved_view", id=saved["id"], view=changed)
+        await one.until("saved_views")
+        assert (await one.until("saved_views"))["views"] == [saved | {"view": changed}]
+        await one.send("remove_saved_view", id=saved["id"])
+        await one.send("remove_saved_view", id=saved["id"])
+        await one.send("save_view", view=view | {"cls": "no/Such"})
+        assert (await one.until("saved_views"))["views"] == []
+    assert "an invalid view" in made.logged()

@@ -1,0 +1,106 @@
+from __future__ import annotations
+
+import pytest
+import yaml
+
+from linkwright.rviz.config import yaml_tree
+from linkwright.rviz.config.former_names import former_keys, modern_class
+from linkwright.rviz.config.property_store import PropertyStore
+from linkwright.rviz.config.schema import PropertySpec, topic_spec
+
+
+@pytest.mark.parametrize(
+    ("written", "modern"),
+    [
+        ("rviz/Grid", "rviz_default_plugins/Grid"),
+        ("rviz/Group", "rviz_common/Group"),
+        ("rviz/WrenchStamped", "rviz_default_plugins/Wrench"),
+        ("rviz/SetInitialPose", "rviz_default_plugins/SetInitialPose"),
+        ("rviz_default_plugins/Grid", "rviz_default_plugins/Grid"),
+        ("rviz_common/Group", "rviz_common/Group"),
+        ("rviz_imu_plugin/Imu", "rviz_imu_plugin/Imu"),
+        ("Group", "Group"),
+    ],
+)
+def test_classes_have_the_names_of_today(written, modern):
+    assert modern_class(written) == modern
+
+
+def store(cls: str, text: str, *specs: PropertySpec) -> tuple[PropertyStore, yaml_tree.Section]:
+    section = yaml_tree.parse(text, "x")
+    return PropertyStore("d", section, lambda: specs, lambda _: None, former=former_keys(cls)), section
+
+
+def test_a_topic_of_rviz_1_has_its_quality_of_service_beside_it():
+    properties, section = store("rviz/LaserScan", "Queue Size: 7\nTopic: /scan\nUnreliable: true\n", topic_spec())
+    assert properties.text("Topic") == "/scan"
+    assert properties.number("Topic", "Depth") == 7
+    assert properties.text("Topic", "Reliability Policy") == "Best Effort"
+    properties.set(("Topic",), "/other")
+    properties.set(("Topic", "Depth"), 9)
+    properties.set(("Topic", "Reliability Policy"), "Reliable")
+    assert yaml.safe_load(yaml_tree.write(section)) == {"Queue Size": 9, "Topic": "/other", "Unreliable": False}
+
+
+def test_what_rviz_1_did_not_have_is_kept_as_today():
+    properties, section = store("rviz/LaserScan", "Topic: /scan\n", topic_spec())
+    properties.set(("Topic", "Durability Policy"), "Transient Local")
+    assert yaml.safe_load(yaml_tree.write(section)) == {
+        "Topic": {"Value": "/scan", "Durability Policy": "Transient Local"}
+    }
+    assert properties.text("Topic") == "/scan"
+
+
+@pytest.mark.parametrize(
+    ("cls", "text", "spec", "value"),
+    [
+        ("rviz/RobotModel", "Robot Description: my_robot\n", topic_spec("Description Topic"), "my_robot"),
+        ("rviz/Marker", "Marker Topic: /m\n", topic_spec(), "/m"),
+        ("rviz/Image", "Image Topic: /camera\n", topic_spec(), "/camera"),
+        (
+            "rviz/InteractiveMarkers",
+            "Update Topic: /menu/update\n",
+            PropertySpec("Interactive Markers Namespace", "string", ""),
+            "/menu",
+        ),
+    ],
+)
+def test_keys_of_rviz_1_are_read_and_written(cls, text, spec, value):
+    properties, section = store(cls, text, spec)
+    assert properties.text(spec.name) == value
+    key = text.partition(":")[0]
+    before = section.scalar(key).text
+    properties.set((spec.name,), "/new")
+    assert section.keys() == [key]
+    properties.set((spec.name,), value)
+    assert section.scalar(key).text == before
+
+
+def test_keys_of_rviz_1_mean_nothing_in_a_file_of_today():
+    properties, _ = store("rviz_default_plugins/LaserScan", "Queue Size: 7\nTopic: /scan\n", topic_spec())
+    assert properties.number("Topic", "Depth") == 5
+
+
+def test_standard_deviations_are_covariances():
+    spec = PropertySpec("Covariance x", "float", 0.25)
+    properties, section = store("rviz/SetInitialPose", "X std deviation: 0.3\n", spec)
+    assert properties.number("Covariance x") == pytest.approx(0.09)
+    properties.set(("Covariance x",), 0.16)
+    assert float(section.scalar("X std deviation").text) == pytest.approx(0.4)
+
+
+def test_what_was_recalled_is_as_it_was():
+    text = "Queue Size: 7\nTopic: /scan\n"
+    properties, section = store("rviz/LaserScan", text, topic_spec())
+    for path, value, keys in (
+        (("Topic", "Depth"), 9, ["Queue Size"]),
+        (("Topic",), "/b", ["Topic"]),
+        (("Topic", "Durability Policy"), "Transient Local", ["Topic"]),
+        (("Topic", "Durability Policy"), "Volatile", []),
+    ):
+        properties.rows()
+        with properties.recording() as memories:
+            properties.set(path, value)
+        assert [memory.key for memory in memories] == keys
+        assert properties.recall(memories) == ([path] if keys else [])
+        assert yaml_tree.write(section) == text

@@ -1,0 +1,155 @@
+"""What was not saved when the program ended."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.rviz import RvizConfig, find_unsaved
+from linkwright.rviz.config.locations import RecentFiles, recovery_file, recovery_folder
+from tests.rviz.visualization.test_managers import own_page
+from tests.viewer.configured import edit, opened
+
+
+def kept() -> list[Path]:
+    folder = recovery_folder()
+    return sorted(folder.iterdir()) if folder.exists() else []
+
+
+async def change(client, alpha: float = 0.25) -> None:
+    await client.set("display-1/Alpha", alpha)
+    await client.until("configuration", unsaved=True)
+
+
+async def test_what_is_unsaved_is_kept_beside_the_file_and_told_of_next_time(tmp_path):
+    path = tmp_path / "a.rviz"
+    async with opened(path=path) as (made, client):
+        text = path.read_text()
+        await change(client)
+        (said,) = made.viewer.keep_unsaved()
+        edited = made.viewer.config.text()
+    (recovered,) = kept()
+    assert (said.code, path.read_text(), recovered.read_text()) == ("RVIZ301", text, edited)
+    assert f"'{path}'" in said.message
+    assert f"'{recovered}'" in said.message
+    assert RecentFiles().paths[0] == str(recovered)
+    (told,) = find_unsaved(RvizConfig.load(path))
+    assert told.code == "RVIZ302"
+    assert f"'{recovered}'" in told.message
+    assert find_unsaved(RvizConfig.load(recovered)) == []
+    assert find_unsaved(RvizConfig.default()) == []
+
+
+async def test_saving_removes_it(tmp_path):
+    path = tmp_path / "a.rviz"
+    async with opened(path=path) as (made, client):
+        await change(client)
+        made.viewer.keep_unsaved()
+        assert len(kept()) == 1
+        await client.send("save_configuration", path=None, replace=False)
+        await client.until("configuration_saved")
+        assert kept() == []
+        assert (await client.until("configuration", unsaved=False))["recent"] == [str(path)]
+        assert made.viewer.keep_unsaved() == []
+
+
+async def test_what_was_recovered_goes_when_it_is_saved_elsewhere(tmp_path):
+    path = tmp_path / "a.rviz"
+    async with opened(path=path) as (made, client):
+        await change(client)
+        made.viewer.keep_unsaved()
+        (recovered,) = kept()
+        await client.send("open_configuration", path=str(recovered), discard=True)
+        await client.until("configuration", path=str(recovered))
+        assert made.viewer.keep_unsaved() == []
+        await client.send("add_display", cls="rviz_default_plugins/Axes", name="More", group=None, topic=None)
+        await client.until("configuration", unsaved=True)
+        made.viewer.keep_unsaved()
+        assert kept() == [recovered]
+        assert "Name: More" in recovered.read_text()
+        await client.send("save_configuration", path=str(path), replace=True)
+        await client.until("configuration_saved")
+        assert "Name: More" in path.read_text()
+        assert kept() == []
+
+
+async def test_without_edits_nothing_is_written(tmp_path):
+    path = tmp_path / "a.rviz"
+    async with opened(path=path) as (made, client):
+        assert made.viewer.keep_unsaved() == []
+        await change(client)
+        await edit(client, "undo")
+        assert made.viewer.keep_unsaved() == []
+        # Edited back by hand.
+        await client.send("show_panels", shown=["time"])
+        await client.until("configuration", unsaved=True)
+        await client.send("show_panels", shown=[])
+        await client.drain(0.03)
+        assert made.viewer.manager.history.unsaved
+        assert made.viewer.keep_unsaved() == []
+    assert not recovery_folder().exists()
+
+
+async def test_displays_of_no_file_are_kept_too(tmp_path):
+    async with opened() as (made, client):
+        await change(client)
+        (said,) = made.viewer.keep_unsaved()
+    assert [path.name for path in kept()] == ["untitled.rviz"]
+    assert said.message.startswith("unsaved displays are stored in")
+
+
+async def test_those_of_a_single_page_are_kept_beside_the_shared_ones(tmp_path):
+    async with opened(path=tmp_path / "a.rviz") as (made, client), own_page(made) as own:
+        first = await own.opened()
+        await change(client)
+        await own.set(f"{first['tree']['displays'][0]['id']}/Alpha", 0.125)
+        await own.until("configuration", unsaved=True)
+        assert [each.code for each in made.viewer.keep_unsaved()] == ["RVIZ301", "RVIZ301"]
+    shared, single = kept() if len(kept()[0].stem) < len(kept()[1].stem) else reversed(kept())
+    assert "Alpha: 0.25" in shared.read_text()
+    assert "Alpha: 0.125" in single.read_text()
+
+
+def test_each_file_has_one_of_its_own(tmp_path, monkeypatch):
+    text = RvizConfig.default().text()
+    files = [tmp_path / "a" / "x.rviz", tmp_path / "b" / "x.rviz"]
+    for file in files:
+        file.parent.mkdir()
+        file.write_text(text)
+    one, other = (recovery_file(RvizConfig.load(file)) for file in files)
+    assert one != other
+    assert one.name.startswith("x-")
+    monkeypatch.chdir(tmp_path / "a")
+    assert recovery_file(RvizConfig.load("x.rviz")) == one
+    assert recovery_file(RvizConfig.parse(text, "from my computer.rviz")).name.startswith("from my computer-")
+
+
+async def test_a_folder_that_cannot_be_written_is_told_of(tmp_path, monkeypatch):
+    blocked = tmp_path / "blocked"
+    blocked.write_text("no folder")
+    path = tmp_path / "a.rviz"
+    async with opened(path=path) as (made, client):
+        await change(client)
+        monkeypatch.setenv("XDG_STATE_HOME", str(blocked))
+        (said,) = made.viewer.keep_unsaved()
+    assert said.code == "RVIZ104"
+
+
+@pytest.mark.parametrize("name", ["ü x.rviz", "a.b.rviz"])
+def test_the_name_tells_what_it_is_of(tmp_path, name):
+    file = tmp_path / name
+    file.write_text(RvizConfig.default().text())
+    found = recovery_file(RvizConfig.load(file))
+    assert found.name.startswith(file.stem + "-")
+    assert found.suffix == ".rviz"
+
+
+@pytest.mark.parametrize("name", ["../../x", "/etc/x.rviz", "a\0b", "..", "", "x" * 5000, "C:\\x:y?.rviz", "\n"])
+def test_a_name_that_a_page_gave_leads_nowhere_else(name):
+    path = recovery_file(RvizConfig.parse(RvizConfig.default().text(), name))
+    assert path.parent == recovery_folder()
+    path.parent.mkdir(parents=True)
+    path.write_text("")
+    assert kept() == [path]
+    assert not path.name.startswith(".")

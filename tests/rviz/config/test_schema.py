@@ -1,0 +1,133 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.rviz.config.schema import MAXIMUM_TEXT, PropertySpec, accept, from_text, to_text
+
+ALPHA = PropertySpec("Alpha", "float", 1.0, minimum=0.0, maximum=1.0)
+LENGTH = PropertySpec("Length", "float", 0.0)
+COUNT = PropertySpec("Count", "int", 10, minimum=1)
+STYLE = PropertySpec("Style", "enum", "Lines", options=("Lines", "Billboards"))
+COLOUR = PropertySpec("Color", "color", "#a0a0a4")
+FRAME = PropertySpec("Frame", "frame", "map")
+BOX = PropertySpec("Box", "bool", True)
+TEXT = PropertySpec("Text", "string", "")
+
+
+@pytest.mark.parametrize(
+    ("spec", "value", "taken"),
+    [
+        (ALPHA, 0.25, 0.25),
+        (ALPHA, 1, 1.0),
+        (ALPHA, 7.5, 1.0),
+        (ALPHA, -1, 0.0),
+        (COUNT, 3, 3),
+        (COUNT, 3.0, 3),
+        (COUNT, 0, 1),
+        (STYLE, "Billboards", "Billboards"),
+        (COLOUR, "#A0b1C2", "#a0b1c2"),
+        (FRAME, " /odom ", "odom"),
+        (FRAME, "<Fixed Frame>", "<Fixed Frame>"),
+        (BOX, False, False),
+        (TEXT, "", ""),
+    ],
+)
+def test_values_of_the_kind_are_taken_and_clamped(spec, value, taken):
+    got = accept(spec, value)
+    assert got == taken
+    assert type(got) is type(taken)
+
+
+@pytest.mark.parametrize(
+    ("spec", "value"),
+    [
+        (ALPHA, "0.5"),
+        (ALPHA, True),
+        (ALPHA, math.nan),
+        (ALPHA, math.inf),
+        (ALPHA, None),
+        (ALPHA, 10**400),
+        (COUNT, 2.5),
+        (COUNT, True),
+        (COUNT, 1e300),
+        (STYLE, "lines"),
+        (STYLE, 0),
+        (COLOUR, "red"),
+        (COLOUR, "#12345"),
+        (FRAME, " "),
+        (FRAME, "/"),
+        (BOX, 1),
+        (BOX, "true"),
+        (TEXT, "x" * (MAXIMUM_TEXT + 1)),
+        (TEXT, ["x"]),
+        (PropertySpec("Group", "group"), "x"),
+    ],
+)
+def test_other_values_are_refused(spec, value):
+    with pytest.raises(ValueError, match="expected"):
+        accept(spec, value)
+
+
+@pytest.mark.parametrize(
+    ("spec", "text", "value"),
+    [
+        (ALPHA, "0.029999999329447746", 0.029999999329447746),
+        (ALPHA, "1e-3", 0.001),
+        (COUNT, "12", 12),
+        (COLOUR, "160; 160; 164", "#a0a0a4"),
+        (COLOUR, "0;0;999", "#0000ff"),
+        (COLOUR, "-1; 2 ;3; 128", "#000203"),
+        (COLOUR, "#ff0000", "#ff0000"),
+        (COLOUR, "#F0a", "#ff00aa"),
+        (COLOUR, "SkyBlue", "#87ceeb"),
+        (BOX, "True", True),
+        (BOX, "0", False),
+        (BOX, "", False),
+        (BOX, "on", True),
+        (COUNT, "1e+06", 1_000_000),
+        (ALPHA, "nan", 1.0),
+        (ALPHA, "-.NaN", 1.0),
+        (ALPHA, "inf", 1.0),
+        (LENGTH, "-Infinity", -3.4028234663852886e38),
+        (LENGTH, ".inf", 3.4028234663852886e38),
+        (FRAME, "/base_footprint", "base_footprint"),
+    ],
+)
+def test_spellings_of_files_are_read(spec, text, value):
+    assert from_text(spec, text) == value
+
+
+SPELLINGS_OF_NOTHING = [
+    (ALPHA, "much"),
+    (ALPHA, "1,5"),
+    (COUNT, "1_000"),
+    (COUNT, "0x10"),
+    (COUNT, "٣"),
+    (COUNT, "inf"),
+    (BOX, "maybe"),
+    (BOX, "off"),
+    (COLOUR, "1; 2"),
+    (COLOUR, "255, 0, 0"),
+    (COLOUR, "reddish"),
+]
+
+
+@pytest.mark.parametrize(("spec", "text"), SPELLINGS_OF_NOTHING)
+def test_spellings_that_mean_nothing_are_named(spec, text):
+    with pytest.raises(ValueError, match="expected"):
+        from_text(spec, text)
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_floats_survive_the_file(value):
+    spec = PropertySpec("x", "float", 0.0)
+    assert from_text(spec, to_text(spec, value)) == value
+
+
+@given(st.from_regex(r"#[0-9a-f]{6}", fullmatch=True))
+def test_colours_survive_the_file(colour):
+    assert from_text(COLOUR, to_text(COLOUR, colour)) == colour

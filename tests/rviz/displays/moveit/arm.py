@@ -1,0 +1,97 @@
+"""An arm and messages about it; for tests."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.messages import get_message
+from linkwright.rviz import RvizConfig
+
+ARM = """\
+<robot name="arm">
+  <link name="base"><visual><geometry><box size="0.4 0.4 0.2"/></geometry>
+    <material name="grey"><color rgba="0.5 0.5 0.5 1"/></material></visual></link>
+  <link name="upper"><visual><origin xyz="0 0 0.5"/><geometry><cylinder radius="0.1" length="1"/></geometry></visual>
+    <collision><geometry><box size="0.2 0.2 1"/></geometry></collision></link>
+  <link name="hand"><visual><geometry><sphere radius="0.1"/></geometry></visual></link>
+  <link name="tip"/>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
+    <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+  <joint name="wrist" type="prismatic"><parent link="upper"/><child link="hand"/><origin xyz="0 0 1"/>
+    <axis xyz="0 0 1"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="fixed" type="fixed"><parent link="hand"/><child link="tip"/></joint>
+</robot>
+"""
+
+Pose = get_message("geometry_msgs/msg/Pose")
+SolidPrimitive = get_message("shape_msgs/msg/SolidPrimitive")
+CollisionObject = get_message("moveit_msgs/msg/CollisionObject")
+AttachedCollisionObject = get_message("moveit_msgs/msg/AttachedCollisionObject")
+DisplayTrajectory = get_message("moveit_msgs/msg/DisplayTrajectory")
+JointTrajectoryPoint = get_message("trajectory_msgs/msg/JointTrajectoryPoint")
+ObjectColor = get_message("moveit_msgs/msg/ObjectColor")
+PlanningScene = get_message("moveit_msgs/msg/PlanningScene")
+RobotState = get_message("moveit_msgs/msg/RobotState")
+RobotTrajectory = get_message("moveit_msgs/msg/RobotTrajectory")
+
+
+def config(cls: str, extra: str = "") -> RvizConfig:
+    """A file with one display of moveit_rviz_plugin."""
+    return RvizConfig.parse(
+        "Visualization Manager:\n  Global Options: {Fixed Frame: base}\n  Displays:\n"
+        f"    - {{Class: moveit_rviz_plugin/{cls}, Enabled: true, Name: {cls}{extra}}}\n"
+    )
+
+
+def pose(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Any:
+    made = Pose()
+    made.position.x, made.position.y, made.position.z = x, y, z
+    return made
+
+
+def state(**positions: float) -> Any:
+    """A RobotState; a diff when it says nothing of joints."""
+    made = RobotState(is_diff=not positions)
+    made.joint_state.name = list(positions)
+    made.joint_state.position = [float(position) for position in positions.values()]
+    return made
+
+
+def primitive(kind: int, *dimensions: float) -> Any:
+    return SolidPrimitive(type=kind, dimensions=[float(dimension) for dimension in dimensions])
+
+
+def thing(name: str, *primitives: Any, frame: str = "base", at: Any = None, operation: bytes = b"\x00") -> Any:
+    """A CollisionObject; a box of one metre where it says nothing."""
+    made = CollisionObject(id=name, operation=operation, pose=at or pose())
+    made.header.frame_id = frame
+    if operation in (b"\x00", b"\x02"):
+        made.primitives = list(primitives) or [primitive(SolidPrimitive.BOX, 1, 1, 1)]
+    return made
+
+
+def scene(*objects: Any, robot: Any = None, diff: bool = False, **fields: Any) -> Any:
+    made = PlanningScene(is_diff=diff, robot_state=robot or state(), **fields)
+    made.world.collision_objects = list(objects)
+    return made
+
+
+def attached(link: str, held: Any) -> Any:
+    return AttachedCollisionObject(link_name=link, object=held)
+
+
+def trajectory(*angles: float, seconds: float = 0.1) -> Any:
+    """A DisplayTrajectory of the shoulder; the wrist is out by half a metre from the start."""
+    part = RobotTrajectory()
+    part.joint_trajectory.joint_names = ["shoulder"]
+    for number, angle in enumerate(angles, start=1):
+        point = JointTrajectoryPoint(positions=[angle])
+        nanoseconds = round(number * seconds * 1e9)
+        point.time_from_start.sec, point.time_from_start.nanosec = divmod(nanoseconds, 1_000_000_000)
+        part.joint_trajectory.points.append(point)
+    return DisplayTrajectory(trajectory=[part], trajectory_start=state(shoulder=0.0, wrist=0.5))
+
+
+def signed(data: bytes) -> list[int]:
+    """Bytes as an Octomap has them."""
+    return [byte - 256 if byte > 127 else byte for byte in data]

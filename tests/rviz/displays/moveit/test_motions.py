@@ -1,0 +1,218 @@
+"""Trajectory, RobotState and MotionPlanning."""
+
+from __future__ import annotations
+
+import math
+from contextlib import asynccontextmanager
+
+import pytest
+
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.messages import get_message
+from linkwright.page.files import MeshIndex
+from linkwright.rviz.displays.moveit.robot import PosableRobot, UnusableStateError
+from linkwright.rviz.displays.moveit.trajectory import read_motion, shown_for
+from tests.rviz.displays.moveit.arm import ARM, ObjectColor, attached, config, scene, state, thing, trajectory
+from tests.viewer.contents import shown_markers
+from tests.viewer.scene import world
+from tests.waiting import eventually
+
+PATH = "/display_planned_path"
+SLOW = ", State Display Time: 1000s"
+FAST = ", State Display Time: 0.001s"
+DisplayRobotState = get_message("moveit_msgs/msg/DisplayRobotState")
+
+
+@asynccontextmanager
+async def shown(cls: str, message_type: str, topic: str, extra: str = ""):
+    """A display, a function that publishes to it, and one that gives the markers drawn."""
+    async with world(config(cls, extra)) as w:
+        w.describe(ARM)
+        publisher = w.graph.create_node("talker").create_publisher(message_type, topic, 10)
+        await w.settle()
+
+        async def say(message) -> dict[str, dict]:
+            publisher.publish(message)
+            await w.settle()
+            return shown_markers(w.viewer.displays[0])
+
+        yield w, say
+
+
+def moving(extra: str = ""):
+    return shown("Trajectory", "moveit_msgs/msg/DisplayTrajectory", PATH, extra)
+
+
+def robot() -> PosableRobot:
+    return PosableRobot(DescriptionLibrary().read(ARM).robot, MeshIndex(None))
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [("3x", 0.2), ("0.05 s", 0.05), ("0.05s", 0.05), ("0.1", 0.1), ("REALTIME", 0.6), ("0x", 0.2), ("soon", 0.2)],
+)
+def test_how_long_a_state_is_shown(text, seconds):
+    assert shown_for(text, 0.6) == pytest.approx(seconds)
+
+
+def test_a_motion_begins_with_its_start_and_keeps_what_does_not_move():
+    motion = read_motion(robot(), trajectory(0.5, 1.0))
+    assert [state.values for state in motion.states] == [
+        {"shoulder": 0.0, "wrist": 0.5},
+        {"shoulder": 0.5, "wrist": 0.5},
+        {"shoulder": 1.0, "wrist": 0.5},
+    ]
+    assert motion.durations == pytest.approx([0.1, 0.1])
+    assert motion.joints == {"shoulder"}
+
+
+def test_motions_that_cannot_be_shown_are_refused():
+    with pytest.raises(UnusableStateError, match="no states"):
+        read_motion(robot(), trajectory())
+    with pytest.raises(UnusableStateError, match="position of joint 'shoulder' is nan"):
+        read_motion(robot(), trajectory(math.nan))
+    short = trajectory(1.0)
+    short.trajectory[0].joint_trajectory.points[0].positions = []
+    with pytest.raises(UnusableStateError, match="1 joints and 0 positions"):
+        read_motion(robot(), short)
+
+
+async def test_properties_are_those_of_rviz():
+    async with moving() as (w, _):
+        rows = {row.name: row for row in w.display("Trajectory").row().properties}
+        assert {name: row.value for name, row in rows.items() if name != "Links"} == {
+            "Robot Description": "robot_description",
+            "Trajectory Topic": PATH,
+            "Show Robot Visual": True,
+            "Show Robot Collision": False,
+            "Robot Alpha": 0.5,
+            "State Display Time": "3x",
+            "Loop Animation": False,
+            "Show Trail": False,
+            "Trail Step Size": 1,
+            "Interrupt Display": False,
+            "Robot Color": "#963296",
+            "Color Enabled": False,
+        }
+
+
+async def test_the_robot_goes_through_the_states_and_is_gone_at_the_end():
+    async with moving(FAST) as (w, say):
+        places = []
+        display = w.display("Trajectory")
+        put = display.put
+
+        def watched(group, shapes):
+            shapes = list(shapes)
+            places.extend(round(shape.pose[0], 3) for shape in shapes if shape.id == "Planned Path/hand")
+            put(group, shapes)
+
+        display.put = watched
+        await say(trajectory(math.pi / 6, math.pi / 2))
+        await eventually(lambda: not shown_markers(display))
+        assert places == [0.0, 0.75, 1.5]
+
+
+async def test_a_motion_is_repeated_when_it_is_to_be():
+    async with moving(FAST + ", Loop Animation: true") as (w, say):
+        await say(trajectory(0.1))
+        player = w.display("Trajectory")._player
+        times = []
+        step = player._step
+
+        def counted():
+            times.append(player._place)
+            step()
+
+        player._step = counted
+        await eventually(lambda: len(times) > 5)
+        assert set(times) == {0, 1}
+
+
+async def test_color_and_trail():
+    async with moving(SLOW + ", Show Trail: true, Color Enabled: true") as (w, say):
+        drawn = await say(trajectory(0.1, 0.2, 0.3))
+        hands = sorted(name for name in drawn if name.endswith("/hand"))
+        assert hands == [
+            "Planned Path 0/hand",
+            "Planned Path 1/hand",
+            "Planned Path 2/hand",
+            "Planned Path 3/hand",
+            "Planned Path/hand",
+        ]
+        assert drawn["Planned Path/base"]["color"] == pytest.approx([150 / 255, 50 / 255, 150 / 255, 0.5])
+        display = w.display("Trajectory")
+        display.set_property(("Trail Step Size",), 2)
+        assert len([name for name in shown_markers(display) if name.endswith("/hand")]) == 3
+        display.set_property(("Show Trail",), False)
+        display.set_property(("Color Enabled",), False)
+        (grey,) = [each["color"] for name, each in shown_markers(display).items() if name.endswith("/base")]
+        assert grey == [0.5, 0.5, 0.5, 0.5]
+
+
+async def test_a_new_motion_waits_unless_it_is_to_interrupt():
+    async with moving(SLOW) as (w, say):
+        display = w.display("Trajectory")
+        await say(trajectory(0.1))
+        await say(trajectory(0.2, 0.3))
+        assert len(display._player.motion.states) == 2
+        display.set_property(("Interrupt Display",), True)
+        await say(trajectory(0.2, 0.3))
+        assert len(display._player.motion.states) == 3
+
+
+async def test_bad_motions_are_said():
+    async with moving(", Interrupt Display: true") as (w, say):
+        await say(trajectory(math.inf))
+        assert w.status("Trajectory")["State"] == ("error", "The position of joint 'shoulder' is inf")
+        strange = trajectory(0.1)
+        strange.trajectory[0].joint_trajectory.joint_names = ["elbow"]
+        await say(strange)
+        assert w.status("Trajectory")["Joints"] == ("warn", "The robot has no joint 'elbow'")
+        await say(trajectory(0.1))
+        assert "Joints" not in w.status("Trajectory")
+
+
+async def test_a_state_with_links_in_colours_of_their_own():
+    async with shown("RobotState", "moveit_msgs/msg/DisplayRobotState", "/display_robot_state") as (w, say):
+        red = ObjectColor(id="hand")
+        red.color.r = red.color.a = 1.0
+        nobody = ObjectColor(id="foot")
+        message = DisplayRobotState(state=state(shoulder=math.pi / 2), highlight_links=[red, nobody])
+        message.state.attached_collision_objects = [attached("hand", thing("cup", frame="hand"))]
+        drawn = await say(message)
+        assert drawn["Robot State/hand"]["color"] == [1, 0, 0, 1]
+        assert drawn["Robot State/base"]["color"] == [0.5, 0.5, 0.5, 1]
+        assert drawn["Robot State holds/cup"]["pose"][:3] == pytest.approx([1, 0, 0])
+        assert w.status("RobotState")["Highlights"] == ("warn", "The robot has no link 'foot'")
+        display = w.display("RobotState")
+        display.set_property(("Show Highlights",), False)
+        assert shown_markers(display)["Robot State/hand"]["color"] == [1, 0, 0, 1]  # RViz's red of no colour
+        display.set_property(("Visual Enabled",), False)
+        assert list(shown_markers(display)) == ["Robot State holds/cup"]
+        assert await say(DisplayRobotState(hide=True)) == {}
+        await say(DisplayRobotState(state=state(shoulder=math.nan)))
+        assert w.status("RobotState")["State"] == ("error", "The position of joint 'shoulder' is nan")
+
+
+async def test_motion_planning_shows_the_scene_the_motion_and_its_ends():
+    extra = ", Scene Geometry: {Scene Display Time: 0.0001}, Planned Path: {State Display Time: 1000s}"
+    kind, topic = "moveit_msgs/msg/DisplayTrajectory", PATH
+    async with shown("MotionPlanning", kind, topic, extra) as (w, say):
+        display = w.display("MotionPlanning")
+        node = w.graph.create_node("move_group")
+        scenes = node.create_publisher("moveit_msgs/msg/PlanningScene", "/monitored_planning_scene", 10)
+        scenes.publish(scene(thing("shelf"), robot=state(shoulder=0.0)))
+        await eventually(lambda: "Scene Robot/hand" in shown_markers(display))
+        drawn = await say(trajectory(math.pi / 2))
+        assert {"Scene Geometry/shelf", "Planned Path/base", "Goal State/hand"} <= set(drawn)
+        assert not [name for name in drawn if name.startswith("Start State") or name == "Goal State/base"]
+        assert drawn["Goal State/hand"]["pose"][:3] == pytest.approx([1.5, 0, 0])
+        assert drawn["Goal State/hand"]["color"] == pytest.approx([250 / 255, 128 / 255, 0, 1])
+        display.set_property(("Planning Request", "Query Start State"), True)
+        display.set_property(("Planning Request", "Query Goal State"), False)
+        drawn = shown_markers(display)
+        assert drawn["Start State/hand"]["pose"][:3] == pytest.approx([0, 0, 1.5])
+        assert "Goal State/hand" not in drawn
+        display.set_property(("Planned Path", "Trajectory Topic"), "/other")
+        assert not [name for name in shown_markers(display) if name.startswith("Planned Path")]

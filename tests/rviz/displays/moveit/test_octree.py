@@ -1,0 +1,106 @@
+"""Octrees as OctoMap writes them."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.rviz.displays.moveit.octree import BadOctreeError, read_octree
+from linkwright.rviz.displays.moveit.voxels import octomap_markers
+
+HERE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+FREE, OCCUPIED, INNER = 1, 2, 3
+
+
+def node(**children: int) -> bytes:
+    """An inner node of the binary form, of children c0 to c7."""
+    bits = sum(state << 2 * int(name[1:]) for name, state in children.items())
+    return struct.pack("<H", bits)
+
+
+def read(data: bytes, *, binary: bool = True, kind: str = "OcTree", resolution: float = 0.5):
+    return read_octree(data=data, binary=binary, kind=kind, resolution=resolution)
+
+
+def test_the_smallest_cells_have_the_resolution_and_lie_beside_the_middle():
+    # Child 7 of the root, then child 0 of all below: the corner of the first octant that is nearest to the origin.
+    data = node(c7=INNER) + node(c0=INNER) * 14 + node(c0=OCCUPIED, c1=FREE)
+    cells = read(data)
+    assert cells.sizes.tolist() == [0.5, 0.5]
+    by_place = dict(zip(map(tuple, cells.centers.tolist()), cells.probabilities.tolist(), strict=True))
+    assert by_place == pytest.approx({(0.25, 0.25, 0.25): 0.971, (0.75, 0.25, 0.25): 0.1192})
+
+
+def test_a_leaf_high_in_the_tree_is_a_large_cell():
+    cells = read(node(c0=OCCUPIED))
+    assert cells.sizes.tolist() == [0.5 * 2**15]
+    assert cells.centers.tolist() == [[-0.5 * 2**14] * 3]
+
+
+def test_the_full_form_has_a_probability_for_each_leaf():
+    inner, leaf = struct.pack("<fB", 0.0, 0b0000_0011), struct.pack("<fB", 0.0, 0)
+    sure = struct.pack("<fB", 2.0, 0)
+    cells = read(inner + leaf + sure, binary=False)
+    assert cells.probabilities.tolist() == pytest.approx([0.5, 0.8808], abs=1e-4)
+    assert cells.centers[:, 0].tolist() == [-0.5 * 2**14, 0.5 * 2**14]
+
+
+def test_a_tree_with_colours_is_read_too():
+    cells = read(struct.pack("<fBBBB", 1.0, 255, 0, 0, 0), binary=False, kind="ColorOcTree")
+    assert cells.sizes.tolist() == [0.5 * 2**16]
+
+
+def test_no_data_is_an_empty_tree():
+    assert len(read(b"").sizes) == 0
+
+
+@pytest.mark.parametrize(
+    ("data", "options", "text"),
+    [
+        (b"\x03", {}, "ends too early"),
+        (node(c0=INNER), {}, "ends too early"),
+        (node(c0=OCCUPIED) + b"rest", {}, "ends after 2 of 6 bytes"),
+        (node(c0=INNER) * 17, {}, "deeper than 16 levels"),
+        (b"\x00" * 5, {"binary": False, "kind": "MyTree"}, "Unknown octomap type: 'MyTree'"),
+        (b"\x00", {"resolution": 0.0}, "Invalid resolution"),
+        (b"\x00", {"resolution": float("nan")}, "Invalid resolution"),
+    ],
+)
+def test_what_is_no_tree_is_said(data, options, text):
+    with pytest.raises(BadOctreeError, match=text):
+        read(data, **options)
+
+
+@given(st.binary(max_size=200), st.booleans())
+def test_any_bytes_are_read_or_refused(data, binary):
+    try:
+        cells = read(data, binary=binary)
+    except BadOctreeError:
+        return
+    assert np.isfinite(cells.centers).all()
+    assert (cells.sizes > 0).all()
+
+
+def test_a_cell_that_others_hide_is_not_drawn():
+    solid = node(**{f"c{child}": OCCUPIED for child in range(8)})
+    whole = node(**{f"c{child}": INNER for child in range(8)})
+    data = node(c7=INNER) + node(c0=INNER) * 12 + whole + (whole + solid * 8) * 8
+    cells = read(data)
+    assert len(cells.sizes) == 512
+    (marker,) = octomap_markers(cells, "map", frame="base", base=HERE, alpha=0.5, by_probability=False)
+    assert len(marker.points) == 512 - 6**3
+    assert marker.scale == [0.5, 0.5, 0.5]
+    low = marker.colors[marker.points[:, 2].argmin()]
+    high = marker.colors[marker.points[:, 2].argmax()]
+    assert low[3] == high[3] == 0.5
+    assert low.tolist() != high.tolist()
+
+
+def test_colours_may_tell_how_probable_a_cell_is():
+    cells = read(node(c0=OCCUPIED))
+    (marker,) = octomap_markers(cells, "map", frame="base", base=HERE, alpha=1.0, by_probability=True)
+    assert marker.colors[0].tolist() == pytest.approx([0.029, 0.971, 0, 1])

@@ -1,0 +1,372 @@
+"""PlanningScene: the robot, what it holds, what is around it."""
+
+from __future__ import annotations
+
+import math
+import struct
+from contextlib import asynccontextmanager
+
+import numpy as np
+import pytest
+import yaml
+
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import get_message, get_service
+from tests.rviz.displays.moveit.arm import (
+    ARM,
+    ObjectColor,
+    SolidPrimitive,
+    attached,
+    config,
+    pose,
+    primitive,
+    scene,
+    signed,
+    state,
+    thing,
+)
+from tests.viewer.contents import shown_markers
+from tests.viewer.scene import world
+from tests.waiting import eventually
+
+TOPIC = "/monitored_planning_scene"
+FAST = ", Scene Geometry: {Scene Display Time: 0.0001}"
+REMOVE, APPEND, MOVE = b"\x01", b"\x02", b"\x03"
+
+
+class Talker:
+    """move_group, as far as it publishes."""
+
+    def __init__(self, w, topic: str = TOPIC) -> None:
+        self.w = w
+        self.node = w.graph.create_node("move_group")
+        self.publisher = self.node.create_publisher("moveit_msgs/msg/PlanningScene", topic, 10)
+
+    async def say(self, message) -> dict[str, dict]:
+        """Publish a scene, and give what is drawn then."""
+        self.publisher.publish(message)
+        await self.w.settle()
+        display = self.w.viewer.displays[0]
+        await eventually(lambda: display._due is None)
+        return shown_markers(display)
+
+
+@asynccontextmanager
+async def scened(extra: str = FAST, cls: str = "PlanningScene", text: str = ARM):
+    async with world(config(cls, extra)) as w:
+        if text:
+            w.describe(text)
+        talker = Talker(w)
+        await w.settle()
+        yield w, talker
+
+
+async def test_properties_are_those_of_rviz():
+    async with scened("") as (w, _):
+        rows = {row.name: row for row in w.display("PlanningScene").row().properties}
+        assert {name: row.value for name, row in rows.items() if row.kind != "group"} == {
+            "Move Group Namespace": "",
+            "Robot Description": "robot_description",
+            "Planning Scene Topic": TOPIC,
+        }
+        assert {row.name: row.value for row in rows["Scene Geometry"].children} == {
+            "Scene Name": "(noname)",
+            "Show Scene Geometry": True,
+            "Scene Alpha": 0.9,
+            "Scene Color": "#32e632",
+            "Voxel Rendering": "Occupied Voxels",
+            "Voxel Coloring": "Z-Axis",
+            "Scene Display Time": 0.01,
+        }
+        robot = {row.name: row for row in rows["Scene Robot"].children}
+        assert robot.pop("Links").children[1].name == "base"
+        assert {name: row.value for name, row in robot.items()} == {
+            "Show Robot Visual": True,
+            "Show Robot Collision": False,
+            "Robot Alpha": 1.0,
+            "Attached Body Color": "#963296",
+        }
+
+
+async def test_the_robot_stands_as_the_scene_says_and_not_as_tf_has_it():
+    async with scened() as (_, talker):
+        shown = await talker.say(scene(robot=state(shoulder=math.pi / 2, wrist=0.5)))
+        hand = shown["Scene Robot/hand"]
+        assert hand["frame"] == "base"
+        np.testing.assert_allclose(hand["pose"][:3], [1.5, 0, 0], atol=1e-9)
+        assert shown["Scene Robot/base"]["color"] == [0.5, 0.5, 0.5, 1.0]
+        assert "Scene Robot/tip" not in shown
+
+
+async def test_primitives_planes_and_meshes_are_drawn():
+    async with scened() as (w, talker):
+        many = thing(
+            "many",
+            primitive(SolidPrimitive.BOX, 1, 2, 3),
+            primitive(SolidPrimitive.SPHERE, 0.5),
+            primitive(SolidPrimitive.CYLINDER, 2, 0.5),
+            primitive(SolidPrimitive.CONE, 2, 0.5),
+            at=pose(x=5.0),
+        )
+        many.primitive_poses = [pose(), pose(y=1.0), pose(y=2.0), pose(y=3.0)]
+        mesh = get_message("shape_msgs/msg/Mesh")()
+        mesh.vertices = [
+            get_message("geometry_msgs/msg/Point")(x=float(x), y=float(y)) for x, y in ((0, 0), (1, 0), (0, 1))
+        ]
+        mesh.triangles = [get_message("shape_msgs/msg/MeshTriangle")(vertex_indices=[0, 1, 2])]
+        many.meshes = [mesh]
+        many.planes = [get_message("shape_msgs/msg/Plane")(coef=[0.0, 0.0, 2.0, -2.0])]
+        shown = await talker.say(scene(many))
+        kinds = {name: each["shape"] for name, each in shown.items()}
+        assert kinds == {
+            "Scene Geometry/many": "cube",
+            "Scene Geometry/many primitive 1": "sphere",
+            "Scene Geometry/many primitive 2": "cylinder",
+            "Scene Geometry/many primitive 3": "triangle_list",
+            "Scene Geometry/many mesh 0": "triangle_list",
+            "Scene Geometry/many plane 0": "triangle_list",
+        }
+        assert shown["Scene Geometry/many"]["scale"] == [1, 2, 3]
+        assert shown["Scene Geometry/many primitive 1"]["pose"][:3] == [5, 1, 0]
+        assert shown["Scene Geometry/many primitive 2"]["scale"] == [1, 1, 2]
+        cone = shown["Scene Geometry/many primitive 3"]["points"].reshape(-1, 3)
+        assert (cone[:, 2].min(), cone[:, 2].max()) == (-1, 1)
+        plane = shown["Scene Geometry/many plane 0"]["points"].reshape(-1, 3)
+        assert plane[:, 2].tolist() == [1] * 6
+        assert shown["Scene Geometry/many"]["color"] == pytest.approx([50 / 255, 230 / 255, 50 / 255, 0.9])
+        assert w.status("PlanningScene")["Transform"] == ("ok", "Transform OK")
+
+
+async def test_objects_come_move_grow_and_go():
+    async with scened() as (w, talker):
+        assert list(await talker.say(scene(thing("a"), thing("b")))) == ["Scene Geometry/a", "Scene Geometry/b"]
+        moved = await talker.say(scene(thing("a", at=pose(z=2.0), operation=MOVE), diff=True))
+        assert moved["Scene Geometry/a"]["pose"][:3] == [0, 0, 2]
+        grown = await talker.say(scene(thing("b", primitive(2, 1), operation=APPEND), diff=True))
+        assert "Scene Geometry/b primitive 1" in grown
+        left = await talker.say(scene(thing("b", operation=REMOVE), diff=True))
+        assert list(left) == ["Scene Geometry/a"]
+        await talker.say(scene(thing("nobody", operation=MOVE), diff=True))
+        assert w.status("PlanningScene")["nobody"] == ("error", "Object 'nobody' cannot be moved: it does not exist")
+        assert await talker.say(scene(thing("", operation=REMOVE), diff=True)) == {}
+        assert list(await talker.say(scene(thing("c")))) == ["Scene Geometry/c"]
+        assert "nobody" not in w.status("PlanningScene")
+
+
+async def test_what_the_robot_holds_moves_with_its_link():
+    async with scened() as (_, talker):
+        robot = state(shoulder=0.0, wrist=0.0)
+        robot.attached_collision_objects = [attached("hand", thing("cup", frame="hand", at=pose(x=0.1)))]
+        shown = await talker.say(scene(thing("cup"), robot=robot))
+        assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 1])
+        assert shown["Scene Robot holds/cup"]["color"] == pytest.approx([150 / 255, 50 / 255, 150 / 255, 1])
+        assert "Scene Geometry/cup" not in shown
+        shown = await talker.say(scene(robot=state(shoulder=0.0, wrist=1.0), diff=True))
+        assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 2])
+        let_go = state()
+        let_go.attached_collision_objects = [attached("hand", thing("cup", operation=REMOVE))]
+        assert "Scene Robot holds/cup" not in await talker.say(scene(robot=let_go, diff=True))
+
+
+async def test_objects_have_the_colours_that_the_scene_gives_them():
+    async with scened() as (_, talker):
+        color = ObjectColor(id="a")
+        color.color.b, color.color.a = 1.0, 0.25
+        shown = await talker.say(scene(thing("a"), thing("b"), object_colors=[color]))
+        assert shown["Scene Geometry/a"]["color"] == [0, 0, 1, 0.25]
+        assert shown["Scene Geometry/b"]["color"][3] == 0.9
+
+
+async def test_cells_of_the_octomap_are_boxes_of_those_that_are_asked_for():
+    async with scened() as (w, talker):
+        message = scene()
+        octomap = message.world.octomap
+        octomap.header.frame_id, octomap.origin = "base", pose(z=1.0)
+        octomap.octomap.id, octomap.octomap.binary, octomap.octomap.resolution = "OcTree", True, 0.1
+        octomap.octomap.data = signed(struct.pack("<H", 0b10_01_00_00_00_00_00_00))
+        shown = await talker.say(message)
+        (name,) = shown
+        assert (shown[name]["shape"], len(shown[name]["points"]) // 3) == ("cube_list", 1)
+        assert shown[name]["pose"][:3] == [0, 0, 1]
+        display = w.display("PlanningScene")
+        display.set_property(("Scene Geometry", "Voxel Rendering"), "All Voxels")
+        (cells,) = shown_markers(display).values()
+        assert len(cells["points"]) // 3 == 2
+        display.set_property(("Scene Geometry", "Show Scene Geometry"), False)
+        assert shown_markers(display) == {}
+        octomap.octomap.data = [1]
+        await talker.say(message)
+        assert w.status("PlanningScene")["<octomap>"] == (
+            "error",
+            "The data of the octomap ends too early, after 1 bytes",
+        )
+
+
+async def test_properties_change_the_look_at_once():
+    async with scened() as (w, talker):
+        await talker.say(scene(thing("a"), robot=state(shoulder=0.0)))
+        display = w.display("PlanningScene")
+        display.set_property(("Scene Geometry", "Scene Color"), "#ff0000")
+        display.set_property(("Scene Robot", "Robot Alpha"), 0.5)
+        display.set_property(("Scene Robot", "Links", "hand"), False)
+        display.set_property(("Scene Robot", "Links", "upper", "Alpha"), 0.5)
+        display.set_property(("Scene Robot", "Show Robot Collision"), True)
+        shown = shown_markers(display)
+        assert shown["Scene Geometry/a"]["color"] == [1, 0, 0, 0.9]
+        assert shown["Scene Robot/base"]["color"] == [0.5, 0.5, 0.5, 0.5]
+        assert "Scene Robot/hand" not in shown
+        assert shown["Scene Robot/upper"]["color"][3] == 0.25
+        assert shown["Scene Robot/upper 1"]["shape"] == "cube"
+        display.set_property(("Scene Robot", "Links", "All Links Enabled"), False)
+        assert [name for name in shown_markers(display) if name.startswith("Scene Robot")] == []
+
+
+async def test_the_whole_scene_is_asked_for_when_move_group_appears():
+    async with world(config("PlanningScene", FAST)) as w:
+        w.describe(ARM)
+        await w.settle()
+        node = w.graph.create_node("move_group")
+        asked = []
+
+        def give(request, response):
+            asked.append(request.components.components)
+            response.scene = scene(thing("shelf"), robot=state(shoulder=1.0), name="kitchen")
+            return response
+
+        node.create_service(get_service("moveit_msgs/srv/GetPlanningScene"), "/get_planning_scene", give)
+        display = w.display("PlanningScene")
+        await eventually(lambda: "Scene Geometry/shelf" in shown_markers(display))
+        assert "Scene Robot/hand" in shown_markers(display)
+        (components,) = asked
+        assert components & 16
+        rows = {row.name: row for row in display.row().properties}
+        assert rows["Scene Geometry"].children[0].value == "kitchen"
+
+
+async def test_a_namespace_has_a_service_and_a_description_of_its_own():
+    extra = ", Move Group Namespace: left, Planning Scene Topic: /left/scene"
+    async with world(config("PlanningScene", extra)) as w:
+        node = w.graph.create_node("left")
+        node.create_publisher("std_msgs/msg/String", "/left/robot_description", DESCRIPTION_QOS).publish(
+            get_message("std_msgs/msg/String")(data=ARM)
+        )
+        node.create_service(
+            get_service("moveit_msgs/srv/GetPlanningScene"),
+            "/left/get_planning_scene",
+            lambda _, response: response,
+        )
+        display = w.display("PlanningScene")
+        await eventually(lambda: display.scene.is_whole)
+        assert w.status("PlanningScene")["URDF"] == ("ok", "URDF parsed OK")
+
+
+async def test_bad_scenes_are_said_and_the_next_good_one_is_drawn():
+    async with scened() as (w, talker):
+        nan = thing("nan", at=pose(x=math.nan))
+        short = thing("short", primitive(SolidPrimitive.BOX, 1, 1))
+        kind = thing("kind", primitive(9, 1, 1, 1))
+        poses = thing("poses")
+        poses.primitive_poses = [pose(), pose()]
+        mesh = thing("mesh")
+        mesh.meshes = [get_message("shape_msgs/msg/Mesh")()]
+        mesh.meshes[0].triangles = [get_message("shape_msgs/msg/MeshTriangle")(vertex_indices=[0, 1, 7])]
+        plane = thing("plane")
+        plane.planes = [get_message("shape_msgs/msg/Plane")(coef=[0.0, 0.0, 0.0, 1.0])]
+        robot = state(shoulder=0.0, elbow=1.0)
+        robot.attached_collision_objects = [attached("foot", thing("ball", frame="foot")), attached("hand", thing("e"))]
+        robot.attached_collision_objects[1].object.primitives = []
+        shown = await talker.say(scene(nan, short, kind, poses, mesh, plane, thing("good"), robot=robot))
+        assert [name for name in shown if name.startswith("Scene Geometry")] == ["Scene Geometry/good"]
+        status = w.status("PlanningScene")
+        assert status["nan"] == ("error", "Contains invalid floating point values (nans or infs)")
+        assert status["short"] == ("error", "A primitive of type 1 needs 3 dimensions, but has 2")
+        assert status["kind"] == ("error", "Unknown type of primitive: 9")
+        assert status["poses"] == ("error", "1 shapes of kind primitive and 2 poses for them")
+        assert status["mesh"] == ("error", "A triangle of a mesh refers to vertex 7, but there are 0")
+        assert status["plane"] == ("error", "A plane has no normal")
+        assert status["ball"] == ("error", "The robot has no link 'foot' for the attached object 'ball'")
+        assert status["e"] == ("error", "The attached object 'e' has no shapes")
+        assert status["Joints"] == ("warn", "The robot has no joint 'elbow'")
+        await talker.say(scene(thing("good", frame="nowhere"), robot=state(shoulder=math.inf)))
+        status = w.status("PlanningScene")
+        assert status["State"] == ("error", "The position of joint 'shoulder' is inf")
+        assert status["Transform"] == ("error", "No transform from [nowhere] to [base]")
+        uneven = state(shoulder=0.0)
+        uneven.joint_state.position = []
+        await talker.say(scene(robot=uneven))
+        assert w.status("PlanningScene")["State"] == ("error", "The state has 1 joints and 0 positions")
+        await talker.say(scene(thing("good"), robot=state(shoulder=0.5)))
+        assert set(w.status("PlanningScene")) == {"Topic", "URDF", "Transform"}
+
+
+async def test_without_a_description_objects_are_drawn_and_the_robot_once_it_comes():
+    async with scened(text="") as (w, talker):
+        shown = await talker.say(scene(thing("a"), robot=state(shoulder=1.0)))
+        assert list(shown) == ["Scene Geometry/a"]
+        assert w.status("PlanningScene")["URDF"] == ("warn", "No description on topic 'robot_description' yet")
+        w.describe("<robot>")
+        await w.settle()
+        assert w.status("PlanningScene")["URDF"] == ("error", "URDF failed Model parse")
+        w.describe(ARM)
+        await w.settle()
+        assert "Scene Robot/hand" in shown_markers(w.display("PlanningScene"))
+
+
+async def test_the_root_is_where_a_virtual_joint_has_it():
+    async with scened() as (w, talker):
+        w.move({("map", "base"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        robot = state(shoulder=0.0)
+        robot.multi_dof_joint_state.header.frame_id = "map"
+        robot.multi_dof_joint_state.joint_names = ["virtual_joint"]
+        transform = get_message("geometry_msgs/msg/Transform")()
+        transform.translation.y = 3.0
+        robot.multi_dof_joint_state.transforms = [transform]
+        shown = await talker.say(scene(robot=robot))
+        assert (shown["Scene Robot/base"]["frame"], shown["Scene Robot/base"]["pose"][:3]) == ("map", [0, 3, 0])
+
+
+async def test_a_page_is_sent_only_what_is_another_now():
+    async with scened() as (w, talker):
+        await talker.say(scene(thing("a"), thing("b"), robot=state(shoulder=0.0)))
+        (store,) = w.display("PlanningScene").data()
+        _, seen = store.since(0)
+        await talker.say(scene(thing("a"), thing("b"), robot=state(shoulder=0.0)))
+        assert store.since(seen)[0] is None
+
+
+@pytest.mark.parametrize("cls", ["PlanningScene", "Trajectory", "RobotState", "MotionPlanning"])
+async def test_a_file_is_saved_as_it_was(cls):
+    text = yaml.safe_dump(
+        {
+            "Visualization Manager": {
+                "Displays": [
+                    {
+                        "Class": f"moveit_rviz_plugin/{cls}",
+                        "Enabled": True,
+                        "MoveIt_Planning_Time": 5,
+                        "Name": cls,
+                        "Planned Path": {"Links": {"All Links Enabled": True, "gone": {"Alpha": 1, "Value": True}}},
+                        "Planning Metrics": {"Payload": 1},
+                        "Planning Request": {"Planning Group": "arm"},
+                        "Robot Description": "robot_description",
+                        "Scene Robot": {"Links": {"hand": {"Alpha": 1, "Show Axes": False, "Value": True}}},
+                        "Value": True,
+                    }
+                ],
+                "Global Options": {"Fixed Frame": "base"},
+            }
+        }
+    )
+    async with world(type(config(cls)).parse(text)) as w:
+        w.describe(ARM)
+        await w.settle()
+        display = w.viewer.displays[0]
+        assert display.row().supported
+        assert w.viewer.config.text() == text
+
+
+async def test_a_link_that_is_switched_off_is_written_as_rviz_does():
+    async with scened() as (w, _):
+        w.display("PlanningScene").set_property(("Scene Robot", "Links", "hand"), False)
+        (entry,) = yaml.safe_load(w.viewer.config.text())["Visualization Manager"]["Displays"]
+        assert entry["Scene Robot"] == {"Links": {"hand": {"Value": False}}}

@@ -1,0 +1,406 @@
+"""PointCloud2, LaserScan, DepthCloud and the displays of single numbers, from the topic to what pages are sent."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from linkwright.messages import TFMessage, TransformStamped, get_message
+from linkwright.rviz import RvizConfig
+from tests.rviz.clouds.test_clouds import LaserScan, cloud, depth_image, scan, xyz
+from tests.viewer.contents import contents
+from tests.viewer.scene import page, world
+from tests.waiting import eventually
+
+Temperature = get_message("sensor_msgs/msg/Temperature")
+CameraInfo = get_message("sensor_msgs/msg/CameraInfo")
+Image = get_message("sensor_msgs/msg/Image")
+Point32 = get_message("geometry_msgs/msg/Point32")
+ChannelFloat32 = get_message("sensor_msgs/msg/ChannelFloat32")
+PointCloud = get_message("sensor_msgs/msg/PointCloud")
+PointCloud2 = get_message("sensor_msgs/msg/PointCloud2")
+
+FILE = """\
+Visualization Manager:
+  Displays:
+    - Class: rviz_default_plugins/{cls}
+      Enabled: true
+      Name: Points
+      Topic: {{Value: /points}}
+{extra}
+  Global Options:
+    Fixed Frame: base
+"""
+
+
+def config(cls: str = "PointCloud2", **properties: str) -> RvizConfig:
+    extra = "\n".join(f"      {name.replace('_', ' ')}: {value}" for name, value in properties.items())
+    return RvizConfig.parse(FILE.format(cls=cls, extra=extra))
+
+
+def coloured_cloud(count: int = 2):
+    array = xyz([(i, 0, 0) for i in range(count)], ("intensity", "f4"), ("rgb", "u4"))
+    array["intensity"], array["rgb"] = np.arange(count), 0x102030
+    return cloud(array)
+
+
+def shown(display) -> list[list[float]]:
+    return [content.fields["positions"].reshape(-1, 3).tolist() for content in contents(display)]
+
+
+def colours(display) -> list[list[int]]:
+    (content,) = contents(display)
+    return content.fields["colours"].reshape(-1, 4).tolist()
+
+
+def store_rows(display) -> dict[str, dict]:
+    return {row.name: row for row in display.properties.rows()}
+
+
+async def test_a_cloud_is_sent_with_the_pose_of_its_frame():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        w.move({("base", "lidar"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
+        publisher.publish(cloud(xyz([(1, 0, 0)]), "lidar"))
+        await w.settle()
+        (content,) = contents(w.display("PointCloud2"))
+        assert content.fields["kind"] == "cloud_points"
+        assert content.fields["positions"].tolist() == [1, 0, 0]
+        assert content.pose == [1, 2, 3, 0, 0, 0, 1]
+        assert w.status("PointCloud2") == {
+            "Topic": ("ok", "1 messages received"),
+            "Transform": ("ok", "Transform OK"),
+            "Points": ("ok", "Showing [1] points from [1] messages"),
+        }
+
+
+async def test_a_cloud_with_colours_is_shown_with_them():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        publisher.publish(coloured_cloud())
+        await w.settle()
+        display = w.display("PointCloud2")
+        assert display.properties.text("Color Transformer") == "RGB8"
+        assert colours(display) == [[0x10, 0x20, 0x30, 255]] * 2
+        assert w.viewer.config.text() == config().text()  # nobody asked for that: the file is as it was
+
+
+async def test_only_what_the_cloud_offers_can_be_chosen():
+    async with world(config()) as w, page(w.viewer) as client:
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        publisher.publish(cloud(xyz([(0, 0, 0)], ("intensity", "f4"))))
+        await w.settle()
+        message = await client.until("display_properties")
+        rows = {row["name"]: row for row in message["properties"]}
+        assert rows["Color Transformer"]["options"] == ["AxisColor", "FlatColor", "Intensity"]
+        assert rows["Channel Name"]["options"] == ["x", "y", "z", "intensity"]
+
+
+async def test_rows_come_and_go_with_the_transformer():
+    async with world(config(Color_Transformer="Intensity")) as w:
+        display = w.display("PointCloud2")
+        names = set(store_rows(display))
+        assert {"Channel Name", "Use rainbow", "Invert Rainbow", "Autocompute Intensity Bounds"} <= names
+        assert names.isdisjoint({"Min Color", "Min Intensity", "Axis", "Color"})
+        display.set_property(("Use rainbow",), False)
+        display.set_property(("Autocompute Intensity Bounds",), False)
+        names = set(store_rows(display))
+        assert {"Min Color", "Max Color", "Min Intensity", "Max Intensity"} <= names
+        assert "Invert Rainbow" not in names
+        display.set_property(("Color Transformer",), "AxisColor")
+        names = set(store_rows(display))
+        assert {"Axis", "Autocompute Value Bounds", "Use Fixed Frame"} <= names
+        assert names.isdisjoint({"Channel Name", "Min Color", "Min Intensity"})
+
+
+async def test_another_colour_is_seen_without_another_message():
+    async with world(config(Color_Transformer="Intensity")) as w:
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        publisher.publish(coloured_cloud())
+        await w.settle()
+        display = w.display("PointCloud2")
+        assert colours(display) == [[255, 0, 0, 255], [255, 0, 255, 255]]
+        display.set_property(("Invert Rainbow",), True)
+        assert colours(display) == [[255, 0, 255, 255], [255, 0, 0, 255]]
+        display.set_property(("Color Transformer",), "FlatColor")
+        assert colours(display) == []
+
+
+async def test_bounds_that_were_computed_are_where_the_users_begin():
+    async with world(config(Color_Transformer="Intensity")) as w:
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        publisher.publish(coloured_cloud(6))
+        await w.settle()
+        display = w.display("PointCloud2")
+        display.set_property(("Autocompute Intensity Bounds",), False)
+        assert (display.properties.number("Min Intensity"), display.properties.number("Max Intensity")) == (0.0, 5.0)
+
+
+async def test_malformed_messages_are_said_and_what_was_shown_stays():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        publisher.publish(coloured_cloud())
+        broken = coloured_cloud()
+        broken.width = 7
+        publisher.publish(broken)
+        await w.settle()
+        level, text = w.status("PointCloud2")["Message"]
+        assert (level, text[:20]) == ("error", "Data size (40 bytes)")
+        assert len(shown(w.display("PointCloud2"))[0]) == 2
+        publisher.publish(coloured_cloud(3))
+        await w.settle()
+        assert "Message" not in w.status("PointCloud2")
+
+
+async def test_points_stay_for_the_decay_time():
+    async with world(config(Decay_Time="0.3")) as w:
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        display = w.display("PointCloud2")
+        publisher.publish(coloured_cloud(1))
+        publisher.publish(coloured_cloud(2))
+        await w.settle()
+        assert [len(each) for each in shown(display)] == [1, 2]
+        assert w.status("PointCloud2")["Points"][1].startswith("Showing [")
+        await eventually(lambda: shown(display) == [])
+        none = ("ok", "Showing [0] points from [0] messages")
+        await eventually(lambda: w.status("PointCloud2")["Points"] == none)
+
+
+async def test_without_a_decay_time_the_newest_message_stays():
+    async with world(config(Decay_Time="60")) as w, page(w.viewer) as client:
+        await client.opened()
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        display = w.display("PointCloud2")
+        for count in (1, 2, 3):
+            publisher.publish(coloured_cloud(count))
+        await w.settle()
+        display.set_property(("Decay Time",), 0)
+        assert [len(each) for each in shown(display)] == [3]
+        publisher.publish(coloured_cloud(4))
+        await w.settle()
+        assert [len(each) for each in shown(display)] == [4]
+
+
+async def test_a_page_learns_the_fields_of_a_point():
+    async with world(config()) as w, page(w.viewer) as client:
+        await client.opened()
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        publisher.publish(coloured_cloud())
+        await w.settle()
+        identity = w.display("PointCloud2").id
+        await client.send("ask_point", display=identity, key="", index=7)
+        await client.send("ask_point", display=identity, key="", index=1)
+        answer = await client.until("point_fields")
+        assert (answer["index"], answer["fields"]) == (1, {"intensity": 1.0, "rgb": "#10203000"})
+
+
+async def test_a_scan_is_shown():
+    async with world(config("LaserScan")) as w:
+        publisher = w.graph.create_node("laser").create_publisher(LaserScan, "/points", 5)
+        message = scan([1.0, 2.0], [1.0, 2.0])
+        message.header.frame_id = "base"
+        publisher.publish(message)
+        await w.settle()
+        np.testing.assert_allclose(shown(w.display("LaserScan"))[0], [[1, 0, 0], [0, 2, 0]], atol=1e-6)
+        assert w.display("LaserScan").properties.text("Color Transformer") == "Intensity"
+
+
+@pytest.mark.parametrize(
+    ("ranges", "said"),
+    [
+        ([math.nan, math.nan], "All 2 ranges are NaN: the sensor could not measure"),
+        (
+            [0.05, 12.5],
+            "All ranges, 0.05 to 12.50 m, are outside of the message's range_min and range_max, 0.10 and 10.00 m",
+        ),
+        ([math.inf, math.inf], None),
+        ([math.nan, math.inf], None),
+        ([], None),
+        ([math.nan, 2.0], None),
+    ],
+)
+async def test_a_scan_of_which_no_ray_counts_says_why_but_for_a_wide_open_space(ranges, said):
+    async with world(config("LaserScan")) as w:
+        publisher = w.graph.create_node("laser").create_publisher(LaserScan, "/points", 5)
+        message = scan(ranges)
+        message.header.frame_id = "base"
+        publisher.publish(message)
+        await w.settle()
+        level, text = w.status("LaserScan").get("Values", (None, ""))
+        assert (level, text.partition(":")[0]) == (("warn", said.partition(":")[0]) if said else (None, ""))
+        message.ranges = [1.0, 2.0]
+        publisher.publish(message)
+        await w.settle()
+        assert "Values" not in w.status("LaserScan")
+
+
+async def test_a_cloud_of_nothing_but_nan_says_so():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        message = coloured_cloud()
+        message.data = b"\xff" * len(message.data)
+        publisher.publish(message)
+        await w.settle()
+        assert w.status("PointCloud2")["Values"] == ("warn", "All 2 points are NaN or infinite")
+
+
+async def test_a_scanner_that_moves_draws_no_skewed_picture():
+    async with world(config("LaserScan")) as w:
+        node = w.graph.create_node("laser")
+        publisher = node.create_publisher(LaserScan, "/points", 5)
+        tf = node.create_publisher(TFMessage, "/tf", 10)
+        for second, x in ((100, 0.0), (102, 4.0)):
+            transform = TransformStamped()
+            transform.header.frame_id, transform.child_frame_id = "base", "laser"
+            transform.header.stamp.sec = second
+            transform.transform.translation.x = x
+            transform.transform.rotation.w = 1.0
+            tf.publish(TFMessage(transforms=[transform]))
+        await w.settle()
+        message = scan([1.0, 1.0, 1.0], time_increment=1.0, angle_increment=0.0)
+        message.header.frame_id, message.header.stamp.sec = "laser", 100
+        publisher.publish(message)
+        await w.settle()
+        np.testing.assert_allclose(shown(w.display("LaserScan"))[0], [[1, 0, 0], [3, 0, 0], [5, 0, 0]], atol=1e-6)
+        assert contents(w.display("LaserScan"))[0].pose == [0, 0, 0, 0, 0, 0, 1]
+
+
+@pytest.mark.parametrize(
+    ("cls", "field", "value", "colour"),
+    [
+        ("FluidPressure", "fluid_pressure", 98000.0, [255, 0, 0, 255]),
+        ("Illuminance", "illuminance", 1000.0, [255, 0, 255, 255]),
+        ("RelativeHumidity", "relative_humidity", 0.0, [255, 0, 0, 255]),
+        ("Temperature", "temperature", 100.0, [255, 0, 0, 255]),
+    ],
+)
+async def test_a_number_is_a_coloured_point(cls, field, value, colour):
+    async with world(config(cls)) as w:
+        message_type = get_message(f"sensor_msgs/msg/{cls}")
+        publisher = w.graph.create_node("sensor").create_publisher(message_type, "/points", 5)
+        message = message_type(**{field: value})
+        message.header.frame_id = "base"
+        publisher.publish(message)
+        await w.settle()
+        display = w.display(cls)
+        assert shown(display) == [[[0, 0, 0]]]
+        assert colours(display) == [colour]
+        names = set(store_rows(display))
+        assert {"Use rainbow", "Min Intensity", "Max Intensity", "Decay Time"} <= names
+        assert names.isdisjoint({"Color Transformer", "Channel Name", "Autocompute Intensity Bounds"})
+
+
+async def test_hidden_properties_of_a_file_count():
+    async with world(config("Temperature", Color_Transformer="FlatColor")) as w:
+        display = w.display("Temperature")
+        assert display.properties.text("Color Transformer") == "FlatColor"
+        assert "Color Transformer" not in store_rows(display)
+
+
+def camera_info(width: int, height: int):
+    info = CameraInfo(width=width, height=height)
+    info.k = np.array([2.0, 0, 0, 0, 2.0, 0, 0, 0, 1])
+    info.p = np.array([2.0, 0, 0, 0, 0, 2.0, 0, 0, 0, 0, 1, 0])
+    return info
+
+
+def placed(message, frame: str = "base"):
+    message.header.frame_id = frame
+    return message
+
+
+async def test_a_depth_image_is_a_cloud_once_its_camera_is_known():
+    topics = {"Depth_Map_Topic": "/depth/image", "Size_(m)": "0.5"}
+    async with world(config("DepthCloud", **topics)) as w:
+        node = w.graph.create_node("camera")
+        depths = node.create_publisher(Image, "/depth/image", 5)
+        infos = node.create_publisher(CameraInfo, "/depth/camera_info", 5)
+        depths.publish(placed(depth_image([[2.0, 4.0]])))
+        await w.settle()
+        display = w.display("DepthCloud")
+        assert contents(display) == []
+        assert w.status("DepthCloud")["Depth Camera Info"] == ("warn", "No CameraInfo received on [/depth/camera_info]")
+        infos.publish(camera_info(2, 1))
+        await w.settle()
+        (content,) = contents(display)
+        assert content.fields["positions"].reshape(-1, 3).tolist() == [[0, 0, 2], [2, 0, 4]]
+        assert content.fields["pixel"] == 0.5
+        assert w.status("DepthCloud")["Depth Image Size"] == ("ok", "2 x 1")
+        display.set_property(("Auto Size", "Auto Size Factor"), 3.0)
+        assert contents(display)[0].fields["pixel"] == 1.5
+        display.set_property(("Auto Size",), False)
+        assert contents(display)[0].fields["pixel"] == 0.0
+
+
+async def test_a_depth_image_waits_for_its_colours():
+    topics = {"Depth_Map_Topic": "/depth/image", "Color_Image_Topic": "/color/image"}
+    async with world(config("DepthCloud", **topics)) as w:
+        node = w.graph.create_node("camera")
+        depths = node.create_publisher(Image, "/depth/image", 5)
+        colour = node.create_publisher(Image, "/color/image", 5)
+        node.create_publisher(CameraInfo, "/depth/camera_info", 5).publish(camera_info(2, 1))
+        depths.publish(placed(depth_image([[2.0, 4.0]])))
+        await w.settle()
+        display = w.display("DepthCloud")
+        assert contents(display) == []
+        picture = Image(width=2, height=1, step=6, encoding="rgb8", data=bytes([1, 2, 3, 4, 5, 6]))
+        colour.publish(placed(picture, "other"))
+        await w.settle()
+        assert colours(display) == [[1, 2, 3, 255], [4, 5, 6, 255]]
+        text = "Depth image frame id [base] doesn't match color image frame id [other]"
+        assert w.status("DepthCloud")["Message"] == ("warn", text)
+
+
+async def test_a_depth_image_of_another_size_than_its_camera_is_said():
+    async with world(config("DepthCloud", Depth_Map_Topic="/depth/image")) as w:
+        node = w.graph.create_node("camera")
+        node.create_publisher(CameraInfo, "/depth/camera_info", 5).publish(camera_info(5, 5))
+        node.create_publisher(Image, "/depth/image", 5).publish(placed(depth_image([[2.0, 4.0]])))
+        await w.settle()
+        level, text = w.status("DepthCloud")["Message"]
+        assert (level, text.split(":")[0]) == ("error", "Error updating depth cloud")
+
+
+def legacy_cloud(*points: tuple[float, float, float], intensity: list[float]) -> PointCloud:
+    message = PointCloud(points=[Point32(x=x, y=y, z=z) for x, y, z in points])
+    message.header.frame_id = "base"
+    message.channels = [ChannelFloat32(name="intensity", values=intensity)]
+    return message
+
+
+async def test_a_cloud_of_the_old_message_is_shown_as_the_new_one():
+    async with world(config("PointCloud", Color_Transformer="Intensity", Channel_Name="intensity")) as w:
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud, "/points", 5)
+        publisher.publish(
+            legacy_cloud((1.0, 0.0, 0.0), (float("nan"), 0.0, 0.0), (2.0, 0.0, 0.0), intensity=[0.0, 5.0, 1.0])
+        )
+        await w.settle()
+        display = w.display("PointCloud")
+        assert shown(display) == [[[1, 0, 0], [2, 0, 0]]]
+        first, second = colours(display)
+        assert first != second
+
+
+async def test_a_channel_of_another_length_is_told():
+    async with world(config("PointCloud")) as w:
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud, "/points", 5)
+        publisher.publish(legacy_cloud((1.0, 0.0, 0.0), intensity=[1.0, 2.0]))
+        await w.settle()
+        assert w.status("PointCloud")["Message"] == (
+            "error",
+            "Channel 'intensity' has 2 values for 1 points.  Dropping message.",
+        )
+
+
+async def test_depth_topics_are_offered_by_their_names_unless_that_is_switched_off():
+    async with world(config("DepthCloud")) as w:
+        display = w.display("DepthCloud")
+        rows = store_rows(display)
+        assert (rows["Depth Map Topic"].topics.words, rows["CameraInfo Topic"].topics.messages) == (
+            ["depth"],
+            ["sensor_msgs/msg/CameraInfo"],
+        )
+        display.set_property(("Topic Filter",), False)
+        assert store_rows(display)["Depth Map Topic"].topics.words == []

@@ -1,0 +1,251 @@
+"""Displays of vision_msgs: boxes in the scene, and over images."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.graph import SetParametersResult
+from linkwright.images.colour_words import PAINTS
+from linkwright.messages import Time, get_message
+from linkwright.rviz import RvizConfig
+from linkwright.rviz.displays.class_colors import class_color, read_class_colors
+from tests.viewer.contents import contents
+from tests.viewer.scene import world
+from tests.waiting import eventually
+
+HYPOTHESIS = get_message("vision_msgs/msg/ObjectHypothesisWithPose")
+PLUGINS = "vision_msgs_rviz_plugins"
+
+
+def config(cls: str, extra: str = "") -> RvizConfig:
+    return RvizConfig.parse(
+        "Visualization Manager:\n  Global Options: {Fixed Frame: base}\n  Displays:\n"
+        f"    - {{Class: {cls}, Enabled: true, Topic: {{Value: /topic}}{extra}}}\n"
+    )
+
+
+def publish(w, topic: str, *messages) -> None:
+    publisher = w.graph.create_node("talker").create_publisher(type(messages[0]), topic, 10)
+    for message in messages:
+        publisher.publish(message)
+
+
+def box(x: float = 1.0):
+    made = get_message("vision_msgs/msg/BoundingBox3D")()
+    made.center.position.x = x
+    made.size.x, made.size.y, made.size.z = 0.5, 1.0, 2.0
+    return made
+
+
+def result(name: str, score: float):
+    made = HYPOTHESIS()
+    made.hypothesis.class_id, made.hypothesis.score = name, score
+    return made
+
+
+def detection(*results, frame: str = "tip"):
+    made = get_message("vision_msgs/msg/Detection3D")(bbox=box(), results=list(results))
+    made.header.frame_id = frame
+    return made
+
+
+def array(*detections):
+    made = get_message("vision_msgs/msg/Detection3DArray")(detections=list(detections))
+    made.header.frame_id = "tip"
+    return made
+
+
+async def shown(cls: str, message, extra: str = "") -> dict:
+    async with world(config(f"{PLUGINS}/{cls}", extra)) as w:
+        w.move_arm()
+        publish(w, "/topic", message)
+        await w.settle()
+        (content,) = contents(w.display(cls))
+        return content.fields | {"frame": content.frame}
+
+
+@pytest.mark.parametrize(("cls", "wrap"), [("Detection3DArray", array), ("Detection3D", lambda each: each)])
+async def test_detections_are_boxes_with_the_class_and_score_of_the_likeliest(cls, wrap):
+    fields = await shown(cls, wrap(detection(result("ball", 0.25), result("person", 0.75))))
+    assert fields["poses"].tolist() == [1, 0, 0, 0, 0, 0, 1]
+    assert fields["sizes"].tolist() == [0.5, 1, 2]
+    assert fields["colors"].tolist() == [0, 0, 255]
+    assert (fields["names"], fields["scores"].tolist(), fields["frame"]) == (["person"], [0.75], "tip")
+
+
+async def test_a_detection_without_results_is_a_box_without_class():
+    fields = await shown("Detection3DArray", array(detection()))
+    assert (fields["names"], fields["scores"].tolist(), fields["colors"].tolist()) == ([""], [-1], [255, 22, 80])
+
+
+async def test_boxes_without_header_are_in_the_fixed_frame():
+    fields = await shown("BoundingBox3D", box(3.0))
+    assert (fields["frame"], fields["poses"].tolist()) == ("base", [3, 0, 0, 0, 0, 0, 1])
+
+
+async def test_an_array_of_boxes_has_no_classes():
+    message = get_message("vision_msgs/msg/BoundingBox3DArray")(boxes=[box(1.0), box(2.0)])
+    message.header.frame_id = "tip"
+    fields = await shown("BoundingBox3DArray", message)
+    assert (fields["sizes"].shape, fields["names"]) == ((6,), ["", ""])
+
+
+async def test_boxes_that_are_no_numbers_are_refused():
+    async with world(config(f"{PLUGINS}/BoundingBox3D")) as w:
+        publish(w, "/topic", box(float("nan")))
+        await w.settle()
+        assert contents(w.display("BoundingBox3D")) == []
+        assert "invalid floating point" in " ".join(text for _, text in w.status("BoundingBox3D").values())
+
+
+async def test_colours_of_classes_come_from_a_file(tmp_path):
+    path = tmp_path / "colours.yaml"
+    path.write_text("Ball: {r: 1, g: 2, b: 3}\n")
+    fields = await shown("Detection3DArray", array(detection(result("ball", 1.0))), f", ConfigPath: {path}")
+    assert fields["colors"].tolist() == [1, 2, 3]
+
+
+@pytest.mark.parametrize("text", ["- 1", "ball: red", "ball: {r: 1, g: 2}", "ball: {r: 256, g: 0, b: 0}", "{"])
+async def test_a_file_without_colours_is_told_of(tmp_path, text):
+    path = tmp_path / "colours.yaml"
+    path.write_text(text)
+    async with world(config(f"{PLUGINS}/Detection3DArray", f", ConfigPath: {path}")) as w:
+        level, told = w.status("Detection3DArray")["ConfigPath"]
+        assert level == "error"
+        assert str(path) in told
+    with pytest.raises(ValueError, match=r"cannot read"):
+        read_class_colors(str(tmp_path / "none.yaml"))
+
+
+def test_a_class_has_the_same_colour_everywhere():
+    assert class_color("ball", {}) == class_color("ball", {})
+    assert class_color("Person", {}) == (0, 0, 255)
+    assert len({class_color(name, {}) for name in ("ball", "crate", "cone", "can")}) > 2
+
+
+def test_a_class_named_for_a_colour_has_it_unless_the_file_says_another():
+    assert class_color("red", {}) == class_color("Red_cube", {}) == PAINTS["red"]
+    assert class_color("ball-gray", {}) == PAINTS["grey"]
+    assert class_color("infrared lamp", {}) != PAINTS["red"]
+    assert class_color("red", {"red": (1, 2, 3)}) == (1, 2, 3)
+
+
+# --- over images -------------------------------------------------------------------------------------------------
+
+
+def image(seconds: int):
+    made = get_message("sensor_msgs/msg/Image")(height=1, width=1, encoding="mono8", step=1, data=[seconds])
+    made.header.stamp = Time(seconds, 0)
+    return made
+
+
+def found(seconds: int, *results):
+    one = get_message("vision_msgs/msg/Detection2D")(results=list(results))
+    one.bbox.center.position.x, one.bbox.center.position.y = 10.0, 20.0
+    one.bbox.size_x, one.bbox.size_y = 4.0, 6.0
+    made = get_message("vision_msgs/msg/Detection2DArray")(detections=[one])
+    made.header.stamp = Time(seconds, 0)
+    return made
+
+
+async def test_an_image_is_shown_with_what_was_found_in_it(monkeypatch):
+    monkeypatch.setattr("linkwright.rviz.displays.detection_pictures._PATIENCE", 1e9)
+    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
+        node = w.graph.create_node("camera")
+        camera = node.create_publisher("sensor_msgs/msg/Image", "/topic", 10)
+        detector = node.create_publisher("vision_msgs/msg/Detection2DArray", "/found", 10)
+
+        async def now() -> list:
+            await w.settle()
+            told = {content.fields["kind"]: content for content in contents(w.display("Detections"))}
+            picture, boxes = told.get("image_frame"), told.get("picture_boxes")
+            return [picture and picture.stamp, boxes and boxes.stamp, boxes and boxes.fields["of_image"]]
+
+        camera.publish(image(1))
+        assert await now() == [1.0, None, None]
+        detector.publish(found(1, result("ball", 0.5)))  # its image is gone: it was not known that any would come
+        assert await now() == [1.0, 1.0, False]
+        camera.publish(image(2))
+        camera.publish(image(3))
+        assert await now() == [1.0, 1.0, False]
+        detector.publish(found(2, result("ball", 0.5)))
+        assert await now() == [2.0, 2.0, True]
+        (boxes,) = [
+            content for content in contents(w.display("Detections")) if content.fields["kind"] == "picture_boxes"
+        ]
+        assert boxes.fields["boxes"].tolist() == [10, 20, 4, 6, 0]
+        assert (boxes.fields["names"], boxes.fields["scores"].tolist()) == (["ball"], [0.5])
+        assert np.array_equal(boxes.fields["colors"], class_color("ball", {}))
+
+
+async def test_images_are_shown_as_they_come_when_nothing_detects(monkeypatch):
+    monkeypatch.setattr("linkwright.rviz.displays.detection_pictures._PATIENCE", -1.0)
+    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
+        publish(w, "/found", found(1, result("ball", 0.5)))
+        publish(w, "/topic", image(5))
+        await w.settle()
+        assert [content.fields["kind"] for content in contents(w.display("Detections"))] == ["image_frame"]
+
+
+# --- the threshold -----------------------------------------------------------------------------------------------
+
+
+async def threshold_told(w) -> tuple[str, str]:
+    """What the display says of its threshold, once it does."""
+    await eventually(lambda: "Threshold" in w.status("Detections"))
+    return w.status("Detections")["Threshold"]
+
+
+def detecting(w, **parameters):
+    node = w.graph.create_node("yolo_node", namespace="/yolo")
+    for name, value in parameters.items():
+        node.declare_parameter(name.replace("__", "."), value)
+    node.create_publisher("vision_msgs/msg/Detection2DArray", "/found", 10)
+    return node
+
+
+@pytest.mark.parametrize("name", ["threshold", "confidence_threshold", "detection__threshold"])
+async def test_the_threshold_is_that_of_the_node_that_detects(name):
+    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
+        node = detecting(w, **{name: 0.5})
+        w.display("Detections").set_property(("Threshold",), 0.7)
+        shown = name.replace("__", ".")
+        assert await threshold_told(w) == ("ok", f"Parameter '{shown}' of /yolo/yolo_node")
+        assert node.get_parameter(shown).value == pytest.approx(0.7)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "level", "words"),
+    [({}, "ok", "has no parameter 'threshold'"), ({"threshold": "much"}, "warn", "refuses 'threshold'")],
+)
+async def test_other_nodes_detections_are_filtered_in_the_page_and_that_is_told(parameters, level, words):
+    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
+        detecting(w, **parameters)
+        w.display("Detections").set_property(("Threshold",), 0.7)
+        told, text = await threshold_told(w)
+        assert (told, words in text) == (level, True)
+
+
+async def test_a_threshold_that_the_node_refuses_and_one_without_a_node():
+    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
+        display = w.display("Detections")
+        display.set_property(("Threshold",), 0.7)
+        assert "0 nodes publish /found" in (await threshold_told(w))[1]
+        node = detecting(w, threshold=0.5)
+        node.add_on_set_parameters_callback(lambda _: SetParametersResult(False, "never"))
+        display.set_property(("Threshold",), 0.6)
+        await eventually(lambda: "refuses 'threshold': never" in w.status("Detections")["Threshold"][1])
+        assert node.get_parameter("threshold").value == 0.5
+
+
+async def test_of_many_thresholds_the_last_one_counts():
+    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
+        node = detecting(w, threshold=0.5)
+        values: list[float] = []
+        node.add_post_set_parameters_callback(lambda given: values.append(given[0].value))
+        for value in (0.1, 0.2, 0.3, 0.9):
+            w.display("Detections").set_property(("Threshold",), value)
+        assert (await threshold_told(w))[0] == "ok"
+        assert values[-1] == pytest.approx(0.9)
+        assert len(values) < 4

@@ -1,0 +1,236 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from linkwright.rviz import RvizConfig
+from linkwright.rviz.displays.catalogue import display_classes, has_display
+from tests.viewer.scene import ARM, IDENTITY, page, rows_by_id, world
+
+
+def config(displays: str, fixed_frame: str = "base") -> RvizConfig:
+    return RvizConfig.parse(
+        f"Visualization Manager:\n  Global Options: {{Fixed Frame: {fixed_frame}}}\n  Displays:\n{displays}"
+    )
+
+
+GRID = "    - {Class: rviz_default_plugins/Grid, Enabled: true}\n"
+
+
+async def opened(made):
+    async with page(made.viewer) as client:
+        return await client.opened()
+
+
+async def rows_with(client, identity: str) -> dict[str, dict]:
+    """The rows of a display once there is one with this id: frames are heard of one after the other."""
+    while True:
+        rows = rows_by_id((await client.until("display_properties"))["properties"])
+        if identity in rows:
+            return rows
+
+
+# --- which there are -----------------------------------------------------------------------------------------------
+
+
+def test_each_class_of_display_has_the_name_under_which_it_is_found():
+    for cls in display_classes():
+        assert has_display(cls.CLASS)
+    assert len({cls.CLASS for cls in display_classes()}) == len(display_classes())
+
+
+def test_displays_of_data_are_imported_when_there_are_some():
+    """The program answers a browser sooner without them."""
+    code = "import sys, linkwright.viewer.viewer; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    rooms = ("clouds", "image_compression", "markers", "displays.base.topic_display")
+    assert not {f"linkwright.rviz.{room}" for room in rooms} & set(done.stdout.split())
+    assert not {"PIL", "cyclonedds", "rosbags", "linkwright.inertia"} & set(done.stdout.split())
+
+
+# --- Grid ----------------------------------------------------------------------------------------------------------
+
+
+async def test_grid_has_the_properties_of_rviz_with_their_defaults():
+    async with world(config(GRID)) as made:
+        (grid,) = (await opened(made))["tree"]["displays"]
+    assert (grid["id"], grid["name"], grid["enabled"], grid["supported"]) == ("display-1", "Grid", True, True)
+    values = {row["name"]: row["value"] for row in grid["properties"]}
+    assert values == {
+        "Reference Frame": "<Fixed Frame>",
+        "Plane Cell Count": 10,
+        "Normal Cell Count": 0,
+        "Cell Size": 1.0,
+        "Line Style": "Lines",
+        "Color": "#a0a0a4",
+        "Alpha": 0.5,
+        "Plane": "XY",
+        "Offset": None,
+    }
+    offset = next(row for row in grid["properties"] if row["name"] == "Offset")
+    assert [(row["name"], row["value"]) for row in offset["children"]] == [("X", 0.0), ("Y", 0.0), ("Z", 0.0)]
+    assert grid["status"] == [{"name": "Transform", "level": "ok", "text": "Transform OK"}]
+
+
+async def test_line_width_is_there_for_billboards_only():
+    async with world(config(GRID)) as made, page(made.viewer) as client:
+        opening = await client.opened()
+        assert "display-1/Line Style/Line Width" not in rows_by_id(opening["tree"]["displays"][0]["properties"])
+        await client.set("display-1/Line Style", "Billboards")
+        rows = rows_by_id((await client.until("display_properties"))["properties"])
+        assert rows["display-1/Line Style/Line Width"]["value"] == 0.03
+
+
+async def test_a_grid_in_an_unknown_frame_says_so():
+    async with world(config(GRID)) as made, page(made.viewer) as client:
+        await client.opened()
+        await client.set("display-1/Reference Frame", "/tip")
+        status = await client.until("display_status", display="display-1")
+        assert (status["level"], status["status"][0]["text"]) == ("error", "Could not transform from [tip] to [base]")
+        made.move_arm()
+        status = await client.until("display_status", display="display-1")
+        assert (status["level"], status["status"][0]["text"]) == ("ok", "Transform OK")
+
+
+# --- TF ------------------------------------------------------------------------------------------------------------
+
+
+def tf(more: str = "") -> str:
+    return f"    - {{Class: rviz_default_plugins/TF, Enabled: true{more}}}\n"
+
+
+async def test_tf_lists_the_frames_it_hears_of():
+    async with world(config(tf(", Frames: {All Enabled: false, tip: {Value: false}, gone: {Value: false}}"))) as made:
+        made.move_arm()
+        await made.settle()
+        display = (await opened(made))["tree"]["displays"][0]
+    rows = {row["name"]: row for row in display["properties"]}
+    assert rows["Frame Timeout"]["value"] == 15.0
+    frames = {row["name"]: row["value"] for row in rows["Frames"]["children"]}
+    assert list(frames.items()) == [("All Enabled", False), ("base", True), ("mark", True), ("tip", False)]
+    (base,) = rows["Tree"]["children"]
+    (tip,) = base["children"]
+    (mark,) = tip["children"]
+    assert [row["name"] for row in (base, tip, mark)] == ["base", "tip", "mark"]
+    assert [(row["name"], row["text"]) for row in display["status"]] == [
+        (name, "Transform OK") for name in ("base", "mark", "tip")
+    ]
+
+
+async def test_tf_boxes_are_kept_in_the_file():
+    async with world(config(tf())) as made, page(made.viewer) as client:
+        made.move_arm()
+        await rows_with(client, "display-1/Frames/mark")
+        await client.set("display-1/Frames/tip", False)
+        assert (await client.until("property_changed", id="display-1/Frames/tip"))["value"] is False
+        await client.set("display-1/Frames/All Enabled", False)
+        rows = rows_by_id((await client.until("display_properties"))["properties"])
+        assert [rows[f"display-1/Frames/{name}"]["value"] for name in ("base", "mark", "tip")] == [False] * 3
+        section = made.viewer.config.displays[0].section
+        assert section.scalar("Frames", "base").text == "false"
+        assert section.section("Frames", "base").keys() == ["Value"]
+
+
+async def test_a_frame_that_is_off_takes_the_box_over_all_along():
+    async with world(config(tf())) as made, page(made.viewer) as client:
+        made.move_arm()
+        properties = (await client.until("display_properties", display="display-1"))["properties"]
+        rows = rows_by_id(properties)
+        assert rows["display-1/Frames/tip"]["details"] == "frame"
+        assert rows["display-1/Frames/All Enabled"]["details"] is None
+        await client.set("display-1/Frames/tip", False)
+        assert (await client.until("property_changed", id="display-1/Frames/All Enabled"))["value"] is False
+        await client.until("property_changed", id="display-1/Frames/tip")
+        assert made.display("TF").properties.get("Frames", "base") is True
+
+
+async def test_tf_frames_that_cannot_be_placed_are_warned_of():
+    async with world(config(tf(), fixed_frame="map")) as made:
+        made.move_arm()
+        await made.settle()
+        display = (await opened(made))["tree"]["displays"][0]
+    assert display["level"] == "warn"
+    assert {row["text"] for row in display["status"]} == {
+        f"No transform from [{name}] to [map]" for name in ("base", "mark", "tip")
+    }
+
+
+async def test_tf_filters_choose_frames():
+    async with world(config(tf())) as made, page(made.viewer) as client:
+        made.move_arm()
+        await rows_with(client, "display-1/Frames/mark")
+
+        async def frames_with(name: str, text: str) -> list[str]:
+            await client.set(f"display-1/{name}", text)
+            frames = next(
+                row for row in (await client.until("display_properties"))["properties"] if row["name"] == "Frames"
+            )
+            return [row["name"] for row in frames["children"][1:]]
+
+        assert await frames_with("Filter (whitelist)", "^(tip|mark)$") == ["mark", "tip"]
+        assert await frames_with("Filter (blacklist)", "ar") == ["tip"]
+        assert await frames_with("Filter (whitelist)", "") == ["base", "tip"]
+        await client.set("display-1/Filter (whitelist)", "(")
+        status = await client.until("display_status", display="display-1", level="error")
+        text = "This expression is not used: missing ) at position 1"
+        assert status["status"][0] == {"name": "Filter (whitelist)", "level": "error", "text": text}
+
+
+async def test_a_filter_that_takes_too_long_is_not_used_and_says_so():
+    long = "a" * 200 + "!"
+    async with world(config(tf(", Filter (whitelist): (a|aa)+$"))) as made:
+        made.move({("base", long): IDENTITY})
+        await made.settle()
+        (display,) = (await opened(made))["tree"]["displays"]
+        text = "This expression is not used: it takes too long to match the names of the frames"
+        assert display["status"][0] == {"name": "Filter (whitelist)", "level": "error", "text": text}
+        assert {row["name"] for row in display["status"][1:]} == {"base", long}
+        made.display("TF").set_property(("Filter (whitelist)",), "^b")
+        assert set(made.status("TF")) == {"base"}
+
+
+async def test_a_chain_of_frames_may_be_long():
+    poses = {(f"f{number}", f"f{number + 1}"): IDENTITY for number in range(400)}
+    async with world(config(tf(), fixed_frame="f0")) as made:
+        made.move(poses)
+        await made.settle()
+        display = (await opened(made))["tree"]["displays"][0]
+    assert len(display["status"]) == 401
+    tree = display["properties"][-1]
+    depth = 0
+    while tree["children"]:
+        (tree,) = tree["children"]
+        depth += 1
+    assert (tree["name"], depth) == ("...", 61)
+
+
+# --- others --------------------------------------------------------------------------------------------------------
+
+
+async def test_displays_of_other_classes_are_shown_and_kept():
+    text = "    - {Class: my_plugins/Radar, Enabled: true, Name: Radar, Size (m): 0.05}\n"
+    async with world(config(text)) as made:
+        (radar,) = (await opened(made))["tree"]["displays"]
+        assert (radar["supported"], radar["level"], radar["properties"]) == (False, "warn", [])
+        assert "my_plugins/Radar" in radar["status"][0]["text"]
+        assert "Size (m): 0.05" in made.viewer.config.text()
+
+
+@pytest.mark.parametrize("cls", ["Grid", "TF", "RobotModel", "LaserScan"])
+async def test_a_display_that_is_off_has_no_status_and_comes_back(cls):
+    async with world(config(f"    - {{Class: rviz_default_plugins/{cls}, Value: true}}\n")) as made:
+        made.describe(ARM)
+        made.move_arm()
+        await made.settle()
+        async with page(made.viewer) as client:
+            before = (await client.opened())["tree"]["displays"][0]["status"]
+            assert before
+            await client.set("display-1/Enabled", False)
+            assert (await client.until("property_changed", id="display-1/Enabled"))["value"] is False
+            assert (await client.until("display_status", display="display-1"))["status"] == []
+            await client.set("display-1/Enabled", True)
+            assert (await client.until("display_status", display="display-1"))["status"] == before
+            await client.set("display-1/Enabled", "on")
+            assert await client.until("property_changed", id="display-1/Enabled", value=True)

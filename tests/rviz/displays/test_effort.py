@@ -1,0 +1,120 @@
+"""Effort: rings about the joints."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.rviz import RvizConfig
+from tests.viewer.contents import contents
+from tests.viewer.scene import world
+
+JointState = get_message("sensor_msgs/msg/JointState")
+
+CRANE = """\
+<robot name="crane">
+  <link name="base"/><link name="arm"/><link name="hook"/><link name="sledge"/>
+  <joint name="lift" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
+    <limit lower="0" upper="1" effort="10" velocity="1"/></joint>
+  <joint name="spin" type="continuous"><parent link="arm"/><child link="hook"/></joint>
+  <joint name="slide" type="prismatic"><parent link="arm"/><child link="sledge"/>
+    <limit lower="0" upper="1" effort="10" velocity="1"/></joint>
+</robot>
+"""
+
+
+def config(extra: str = "") -> RvizConfig:
+    return RvizConfig.parse(
+        "Visualization Manager:\n  Global Options: {Fixed Frame: base}\n  Displays:\n"
+        f"    - {{Class: rviz_default_plugins/Effort, Enabled: true, Topic: {{Value: /joint_states}}{extra}}}\n"
+    )
+
+
+def state(**efforts: float):
+    return JointState(name=list(efforts), position=[0.0] * len(efforts), effort=list(efforts.values()))
+
+
+async def described(w):
+    w.describe(CRANE)
+    w.move({("base", "arm"): (0, 0, 1, 0, 0, 0, 1), ("arm", "hook"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+    await w.settle()
+    return w.graph.create_node("talker").create_publisher(JointState, "/joint_states", 10)
+
+
+async def test_properties_are_those_of_rviz():
+    async with world(config()) as w:
+        await described(w)
+        rows = {row.name: row for row in w.display("Effort").row().properties}
+        assert {name: row.value for name, row in rows.items()} == {
+            "Topic": "/joint_states",
+            "Alpha": 1.0,
+            "Width": 0.02,
+            "Scale": 1.0,
+            "History Length": 1,
+            "Robot Description": "/robot_description",
+            "TF Prefix": "",
+            "Joints": None,
+        }
+        (lift,) = rows["Joints"].children
+        assert (lift.name, lift.value, lift.details) == ("lift", True, "effort")
+        assert w.status("Effort")["URDF"] == ("ok", "Robot model parsed Ok")
+
+
+async def test_a_ring_stands_across_the_axis_of_its_joint():
+    async with world(config()) as w:
+        out = await described(w)
+        out.publish(state(lift=-5.0, spin=1.0, slide=2.0))
+        await w.settle()
+        (content,) = contents(w.display("Effort"))
+        assert (content.frame, content.pose) == ("", None)
+        assert content.fields["joints"] == ["lift"]
+        assert (content.fields["efforts"].tolist(), content.fields["limits"].tolist()) == ([-5], [10])
+        x, y, z, *turn = content.fields["poses"]
+        assert (x, y, z) == (0, 0, 1)
+        half = math.sqrt(0.5)
+        np.testing.assert_allclose(turn, [-half, 0, 0, half], atol=1e-6)
+        assert w.status("Effort")["lift"] == ("ok", "OK")
+
+
+@pytest.mark.parametrize(
+    ("message", "row", "text"),
+    [
+        (JointState(name=["lift"]), "Message", "different joint names and efforts size"),
+        (state(lift=math.nan), "lift", "Invalid effort: nan"),
+    ],
+)
+async def test_what_is_wrong_is_told(message, row, text):
+    async with world(config()) as w:
+        out = await described(w)
+        out.publish(message)
+        await w.settle()
+        level, said = w.status("Effort")[row]
+        assert (level, text in said) == ("error", True)
+
+
+async def test_without_a_robot_there_are_no_rings():
+    async with world(config()) as w:
+        out = w.graph.create_node("talker").create_publisher(JointState, "/joint_states", 10)
+        out.publish(state(lift=1.0))
+        await w.settle()
+        assert w.status("Effort")["Message"] == ("error", "Robot model might not be loaded yet")
+        w.describe("<robot name='broken'/>")
+        await w.settle()
+        assert w.status("Effort")["URDF"] == ("error", "Unable to parse robot model description!")
+
+
+async def test_a_frame_without_a_place_is_waited_for():
+    async with world(config(", TF Prefix: one")) as w:
+        out = await described(w)
+        out.publish(state(lift=1.0))
+        await w.settle()
+        assert contents(w.display("Effort")) == []
+        level, text = w.status("Effort")["Transform"]
+        assert (level, "[one/arm]" in text) == ("error", True)
+        w.display("Effort").set_property(("TF Prefix",), "")
+        out.publish(state(lift=1.0))
+        await w.settle()
+        assert len(contents(w.display("Effort"))) == 1

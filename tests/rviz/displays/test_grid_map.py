@@ -1,0 +1,178 @@
+"""GridMap: surfaces of layers."""
+
+from __future__ import annotations
+
+from contextlib import asynccontextmanager
+from typing import Any
+
+import numpy as np
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.rviz import RvizConfig
+from tests.viewer.contents import contents
+from tests.viewer.scene import world
+
+GridMap = get_message("grid_map_msgs/msg/GridMap")
+Layer = get_message("std_msgs/msg/Float32MultiArray")
+Dimension = get_message("std_msgs/msg/MultiArrayDimension")
+NAN = float("nan")
+
+
+def config(extra: str = "") -> RvizConfig:
+    return RvizConfig.parse(
+        "Visualization Manager:\n  Global Options: {Fixed Frame: base}\n  Displays:\n"
+        f"    - {{Class: grid_map_rviz_plugin/GridMap, Enabled: true, Topic: /grid_map, Name: Map{extra}}}\n"
+    )
+
+
+def grid(resolution: float = 1.0, **layers: list[list[float]]) -> Any:
+    """A map of layers; rows go along -x, columns along -y, as in grid_map."""
+    (rows, columns) = np.shape(next(iter(layers.values())))
+    made = GridMap(layers=list(layers))
+    made.header.frame_id = "base"
+    made.info.resolution = resolution
+    made.info.length_x, made.info.length_y = rows * resolution, columns * resolution
+    for cells in layers.values():
+        numbers = np.asarray(cells, dtype=np.float32).T.reshape(-1)
+        layer = Layer(data=numbers.tolist())
+        layer.layout.dim = [Dimension(label="column_index", size=columns), Dimension(label="row_index", size=rows)]
+        made.data.append(layer)
+    return made
+
+
+@asynccontextmanager
+async def shown(extra: str = ""):
+    """A display, and a function that publishes a map and gives the content sent."""
+    async with world(config(extra)) as w:
+        w.move_arm()
+        publisher = w.graph.create_node("mapper").create_publisher(GridMap, "/grid_map", 10)
+        await w.settle()
+
+        async def say(message: Any) -> dict[str, Any] | None:
+            publisher.publish(message)
+            await w.settle()
+            found = contents(w.display("GridMap"))
+            return found[-1].fields if found else None
+
+        yield w, say
+
+
+async def test_properties_are_those_of_rviz():
+    async with shown() as (w, _):
+        rows = {row.name: row.value for row in w.display("GridMap").row().properties}
+        assert rows == {
+            "Topic": "/grid_map",
+            "Alpha": 1.0,
+            "History Length": 1,
+            "Show Grid Lines": True,
+            "Height Transformer": "GridMapLayer",
+            "Height Layer": "elevation",
+            "Color Transformer": "GridMapLayer",
+            "Color Layer": "elevation",
+            "Use Rainbow": True,
+            "Invert Rainbow": False,
+            "Autocompute Intensity Bounds": True,
+        }
+    async with shown(", Use ColorMap: false") as (w, _):
+        assert {"Use ColorMap", "Min Color"} <= {row.name for row in w.display("GridMap").row().properties}
+
+
+async def test_the_first_cell_has_the_largest_x_and_y():
+    async with shown() as (w, say):
+        made = grid(0.5, elevation=[[1, 2, 3], [4, 5, 6]])
+        made.info.pose.position.x = 10.0
+        content = await say(made)
+        assert (content["rows"], content["columns"]) == (2, 3)
+        points = content["points"].reshape(2, 3, 3)
+        np.testing.assert_allclose(points[0, 0], [10.25, 0.5, 1])
+        np.testing.assert_allclose(points[1, 2], [9.75, -0.5, 6])
+        assert w.status("GridMap")["Transform"] == ("ok", "Transform OK")
+
+
+async def test_a_buffer_that_begins_elsewhere_is_turned_back():
+    async with shown() as (_, say):
+        made = grid(elevation=[[4, 3], [2, 1]])
+        made.outer_start_index = made.inner_start_index = 1
+        content = await say(made)
+        assert content["points"].reshape(-1, 3)[:, 2].tolist() == [1, 2, 3, 4]
+
+
+async def test_cells_without_a_number_are_not_there():
+    async with shown() as (_, say):
+        made = grid(elevation=[[1, NAN], [2, 3]], certain=[[1, 1], [1, NAN]])
+        content = await say(made)
+        assert content["colors"].reshape(-1, 4)[:, 3].tolist() == [255, 0, 255, 255]
+        assert np.isfinite(content["points"]).all()
+        made.basic_layers = ["certain"]
+        content = await say(made)
+        assert content["colors"].reshape(-1, 4)[:, 3].tolist() == [255, 0, 255, 0]
+
+
+async def test_colours_of_a_rainbow_between_two_and_one_for_all():
+    async with shown() as (w, say):
+        content = await say(grid(elevation=[[0, 10]], other=[[5, 0]]))
+        first, last = content["colors"].reshape(-1, 4)[:, :3].tolist()
+        assert (first, last) == ([204, 0, 255], [255, 0, 0])
+        display = w.display("GridMap")
+
+        def colors() -> list[list[int]]:
+            return contents(display)[-1].fields["colors"].reshape(-1, 4)[:, :3].tolist()
+
+        display.set_property(("Invert Rainbow",), True)
+        assert colors() == [last, first]
+        display.set_property(("Color Layer",), "other")
+        assert colors() == [first, last]
+        display.set_property(("Use Rainbow",), False)
+        assert colors() == [[255, 255, 255], [0, 0, 0]]
+        display.set_property(("Autocompute Intensity Bounds",), False)
+        assert colors() == [[128, 128, 128], [0, 0, 0]]
+        display.set_property(("Color Transformer",), "FlatColor")
+        assert colors() == [[200, 200, 200]] * 2
+        display.set_property(("Height Transformer",), "Flat")
+        assert contents(display)[-1].fields["points"].reshape(-1, 3)[:, 2].tolist() == [0, 0]
+        display.set_property(("Color Transformer",), "None")
+        assert contents(display)[-1].fields["filled"] is False
+
+
+async def test_a_layer_may_have_colours_in_it():
+    packed = np.array([0x00FF8000, 0x000000FF], dtype=np.uint32).view(np.float32).tolist()
+    async with shown(", Color Transformer: ColorLayer, Color Layer: color") as (_, say):
+        content = await say(grid(elevation=[[0, 0]], color=[packed]))
+        assert content["colors"].reshape(-1, 4)[:, :3].tolist() == [[255, 128, 0], [0, 0, 255]]
+
+
+async def test_a_large_map_is_thinned_and_said_so():
+    async with shown() as (w, say):
+        content = await say(grid(elevation=np.zeros((900, 900)).tolist()))
+        assert (content["rows"], content["columns"]) == (450, 450)
+        assert w.status("GridMap")["Size"] == ("warn", "The map is large: one of 2 rows and columns is drawn")
+
+
+@pytest.mark.parametrize(
+    ("broken", "text"),
+    [
+        ({"layers": ["a"]}, "The map has no layer 'elevation'; its layers: 'a'"),
+        ({"layers": []}, "The map has 0 layers, but data for 1"),
+        ({"resolution": 0.0}, "The resolution, lengths or pose of the map are not valid"),
+        ({"length_x": NAN}, "The resolution, lengths or pose of the map are not valid"),
+        ({"length_y": 0.0}, "The map has 2 x 0 cells"),
+        ({"length_y": 9.0}, "Layer 'elevation' has 4 numbers for 2 x 9 cells"),
+    ],
+)
+async def test_a_map_that_cannot_be_drawn_is_said(broken, text):
+    async with shown() as (w, say):
+        made = grid(elevation=[[1, 2], [3, 4]])
+        for name, value in broken.items():
+            setattr(made if name == "layers" else made.info, name, value)
+        assert await say(made) is None
+        assert w.status("GridMap")["Message"] == ("error", text)
+        assert await say(grid(elevation=[[1, 2], [3, 4]])) is not None
+        assert "Message" not in w.status("GridMap")
+
+
+async def test_a_file_of_the_demos_is_saved_as_it_was():
+    text = config(", Unreliable: false, Use Rainbow: true, Min Intensity: 0, Color: 200; 200; 200").text()
+    async with world(RvizConfig.parse(text)) as w:
+        assert w.viewer.displays[0].row().supported
+        assert w.viewer.config.text() == text

@@ -1,0 +1,298 @@
+"""Image and Camera, from the topic to what pages are sent."""
+
+from __future__ import annotations
+
+import math
+from io import BytesIO
+
+import numpy as np
+import PIL.Image
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.page.protocol.images import PictureSize
+from linkwright.rviz import RvizConfig
+from tests.images.test_images import Image, image
+from tests.viewer.contents import contents
+from tests.viewer.scene import page, world
+from tests.waiting import eventually
+
+CameraInfo = get_message("sensor_msgs/msg/CameraInfo")
+CompressedImage = get_message("sensor_msgs/msg/CompressedImage")
+
+FILE = """\
+Visualization Manager:
+  Displays:
+    - Class: rviz_default_plugins/Grid
+      Name: Floor
+      Enabled: true
+    - Class: rviz_common/Group
+      Name: Sensors
+      Enabled: true
+      Displays:
+        - {Class: rviz_default_plugins/Grid, Name: Wall, Enabled: true}
+    - Class: rviz_default_plugins/CLS
+      Enabled: true
+      Name: Eye
+      Topic: {Value: TOPIC}
+  Global Options:
+    Fixed Frame: base
+"""
+
+
+def config(cls: str, topic: str = "/camera/image") -> RvizConfig:
+    return RvizConfig.parse(FILE.replace("CLS", cls).replace("TOPIC", topic))
+
+
+def picture(*values: int, frame: str = "base"):
+    message = image("mono8", len(values), 1, bytes(values))
+    message.header.frame_id = frame
+    return message
+
+
+def names(display) -> set[str]:
+    return {row.name for row in display.properties.rows()}
+
+
+async def test_an_image_is_sent():
+    async with world(config("Image")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher.publish(picture(1, 2, 3))
+        await w.settle()
+        (content,) = contents(w.display("Image"))
+        fields = content.fields
+        assert (fields["kind"], fields["encoding"], fields["width"], fields["height"]) == ("image_frame", "grey", 3, 1)
+        assert fields["data"].tolist() == [1, 2, 3]
+        assert fields["camera"] is None
+        assert w.status("Image") == {"Topic": ("ok", "1 messages received")}
+
+
+async def test_no_more_pixels_are_sent_than_the_panel_has():
+    async with world(config("Image")) as w:
+        display = w.display("Image")
+
+        async def sizes() -> list[tuple[int, int]]:
+            await w.settle()
+            return [(content.fields["columns"], content.fields["rows"]) for content in contents(display)]
+
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher.publish(image("mono8", 64, 48, bytes(64 * 48)))
+        assert await sizes() == [(64, 48)]
+        display.receive(PictureSize(display.id, 30, 18))
+        publisher.publish(image("mono8", 64, 48, bytes(64 * 48)))
+        assert await sizes() == [(32, 24)]
+        display.receive(PictureSize(display.id, 40, 48))  # the last image is shown again, with more of it
+        assert await sizes() == [(64, 48)]
+
+
+async def test_nothing_is_sent_while_no_panel_is_seen():
+    async with world(config("Image")) as w:
+        display = w.display("Image")
+        display.receive(PictureSize(display.id, 0, 0))
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher.publish(picture(1, 2, 3))
+        await w.settle()
+        assert contents(display) == []
+        display.receive(PictureSize(display.id, 3, 1))
+        (content,) = contents(display)
+        assert content.fields["data"].tolist() == [1, 2, 3]
+
+
+async def test_while_no_panel_is_seen_nobody_listens_after_one_image():
+    async with world(config("Image")) as w:
+        display = w.display("Image")
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        assert publisher.get_subscription_count() == 1
+        display.receive(PictureSize(display.id, 0, 0))
+        publisher.publish(picture(1, 2, 3))
+        await w.settle()
+        assert publisher.get_subscription_count() == 0
+        display.receive(PictureSize(display.id, 3, 1))
+        assert publisher.get_subscription_count() == 1
+        assert w.status("Image")["Topic"] == ("ok", "1 messages received"), "what came before is still shown"
+        publisher.publish(picture(4, 5, 6))
+        await w.settle()
+        (content,) = contents(display)
+        assert content.fields["data"].tolist() == [4, 5, 6]
+        display.receive(PictureSize(display.id, 0, 0))
+        assert publisher.get_subscription_count() == 0
+        display.set_checked(False)
+        display.enabled_changed()
+        display.receive(PictureSize(display.id, 3, 1))
+        assert publisher.get_subscription_count() == 0
+
+
+async def test_the_panel_of_a_page_that_is_gone_is_not_seen():
+    async with world(config("Image")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher.publish(picture(1, 2, 3))
+        async with page(w.viewer) as only:
+            await only.send("picture_size", display=w.display("Image").id, width=30, height=18)
+            await eventually(lambda: w.display("Image")._panel)
+            assert publisher.get_subscription_count() == 1
+        await eventually(lambda: publisher.get_subscription_count() == 0)
+
+
+async def test_of_all_panels_the_largest_counts(monkeypatch):
+    async with world(config("Image")) as w, page(w.viewer) as first:
+        display = w.display("Image")
+        told: list[PictureSize] = []
+        monkeypatch.setattr(display, "receive", told.append)
+
+        async def heard(width: int, height: int) -> None:
+            await eventually(lambda: told and told[-1] == PictureSize(display.id, width, height))
+
+        await first.send("picture_size", display=display.id, width=30, height=18)
+        await heard(30, 18)
+        async with page(w.viewer) as second:
+            await second.send("picture_size", display=display.id, width=20, height=50)
+            await heard(30, 50)
+        await heard(30, 18)
+
+
+async def test_an_encoding_that_is_not_known_is_said():
+    async with world(config("Image")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher.publish(image("64FC1", 1, 1, bytes(8)))
+        await w.settle()
+        assert w.status("Image")["Image"] == ("error", "Unsupported image encoding [64FC1]")
+        publisher.publish(picture(1))
+        await w.settle()
+        assert "Image" not in w.status("Image")
+
+
+async def test_the_range_is_asked_for_when_images_have_one():
+    async with world(config("Image")) as w:
+        display = w.display("Image")
+        assert names(display) == {"Topic"}
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher.publish(image("16UC1", 2, 1, np.array([0, 1000], "<u2").tobytes()))
+        await w.settle()
+        assert names(display) == {"Topic", "Normalize Range", "Median window"}
+        assert contents(display)[0].fields["data"].tolist() == [0, 255]
+        display.set_property(("Normalize Range",), False)
+        assert names(display) == {"Topic", "Normalize Range", "Min Value", "Max Value"}
+        display.set_property(("Max Value",), 2000.0)
+        assert contents(display)[0].fields["data"].tolist() == [0, 127]
+
+
+async def test_a_compressed_image_goes_to_the_page_as_it_is():
+    async with world(config("Image", "/camera/image/compressed")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/image/compressed", 5)
+        data = b"\xff\xd8\xff\xe0" + bytes(30)
+        publisher.publish(CompressedImage(format="jpeg", data=data))
+        await w.settle()
+        (content,) = contents(w.display("Image"))
+        assert content.fields["encoding"] == "file"
+        assert content.fields["data"].tobytes() == data
+        assert w.status("Image")["Image"] == ("error", "The image's file is truncated")
+        publisher.publish(CompressedImage(format="jpeg", data=data + b"\xff\xd9"))
+        await w.settle()
+        assert "Image" not in w.status("Image")
+        publisher.publish(CompressedImage(format="h264", data=b"0000"))
+        await w.settle()
+        text = "Browsers do not support the image's format: 'h264'"
+        assert w.status("Image")["Image"] == ("error", text)
+
+
+@pytest.mark.parametrize("comes_first", ["publisher", "display"])
+async def test_compressed_images_may_be_on_a_topic_of_any_name(comes_first):
+    data = b"\xff\xd8\xff\xe0\xff\xd9"
+    async with world(config("Image", "" if comes_first == "publisher" else "/front/jpeg")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/front/jpeg", 5)
+        display = w.display("Image")
+        if comes_first == "publisher":
+            display.set_property(("Topic",), "/front/jpeg")
+        await eventually(lambda: publisher.get_subscription_count() == 1)
+        publisher.publish(CompressedImage(format="jpeg", data=data))
+        await w.settle()
+        assert contents(display)[0].fields["data"].tobytes() == data
+        assert w.status("Image")["Topic"] == ("ok", "1 messages received")
+
+
+async def test_depths_may_be_on_a_topic_of_any_name():
+    async with world(config("Image", "/front/depths")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/front/depths", 5)
+        await eventually(lambda: publisher.get_subscription_count() == 1)
+        file = BytesIO()
+        PIL.Image.fromarray(np.array([[0, 1000]], np.uint16)).save(file, "png")
+        publisher.publish(CompressedImage(format="16UC1; compressedDepth png", data=bytes(12) + file.getvalue()))
+        await w.settle()
+        assert contents(w.display("Image"))[0].fields["data"].tolist() == [0, 255]
+
+
+def info(width: int = 4, height: int = 2, **fields):
+    message = CameraInfo(width=width, height=height)
+    message.p = np.array([100.0, 0, 2, -10, 0, 50, 1, 0, 0, 0, 1, 0])
+    for name, value in fields.items():
+        setattr(message, name, value)
+    return message
+
+
+async def test_a_camera_waits_for_its_camera_info():
+    async with world(config("Camera")) as w:
+        node = w.graph.create_node("camera")
+        images = node.create_publisher(Image, "/camera/image", 5)
+        infos = node.create_publisher(CameraInfo, "/camera/camera_info", 5)
+        w.move({("base", "eye"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
+        images.publish(picture(1, 2, frame="eye"))
+        await w.settle()
+        text = "No CameraInfo received on [/camera/camera_info]. Topic may not exist."
+        assert w.status("Camera")["Camera Info"] == ("warn", text)
+        infos.publish(info())
+        await w.settle()
+        (content,) = contents(w.display("Camera"))
+        assert content.pose == [1, 2, 3, 0, 0, 0, 1]
+        assert content.fields["camera"] == {
+            "width": 4.0,
+            "height": 2.0,
+            "focal_x": 100.0,
+            "focal_y": 50.0,
+            "centre_x": 2.0,
+            "centre_y": 1.0,
+            "offset_x": 0.1,
+            "offset_y": 0.0,
+        }
+        assert w.status("Camera")["Camera Info"] == ("ok", "OK")
+
+
+async def test_malformed_camera_infos_are_said():
+    async with world(config("Camera")) as w:
+        node = w.graph.create_node("camera")
+        images = node.create_publisher(Image, "/camera/image", 5)
+        infos = node.create_publisher(CameraInfo, "/camera/camera_info", 5)
+
+        async def said(message) -> tuple[str, str]:
+            infos.publish(message)
+            images.publish(picture(1, 2))
+            await w.settle()
+            assert contents(w.display("Camera"))[0].fields["camera"] is None
+            return w.status("Camera")["Camera Info"]
+
+        bad = info()
+        bad.p[0] = math.nan
+        assert await said(bad) == ("error", "Contains invalid floating point values (nans or infs)")
+        bad = info()
+        bad.p[0] = 0.0
+        assert (await said(bad))[0] == "error"
+        empty = info(0, 0)
+        infos.publish(empty)
+        images.publish(picture())
+        await w.settle()
+        assert w.status("Camera")["Camera Info"][1].startswith("Could not determine width/height of image")
+
+
+async def test_each_other_display_can_be_hidden_from_the_camera():
+    async with world(config("Camera")) as w, page(w.viewer) as client:
+        await client.opened()
+        display = w.display("Camera")
+
+        def boxes() -> list:
+            (row,) = (row for row in display.properties.rows() if row.name == "Visibility")
+            return [(child.name, [below.name for below in child.children]) for child in row.children]
+
+        assert boxes() == [("Floor", []), ("Sensors", ["Wall"])]
+        display.set_property(("Visibility", "Sensors", "Wall"), False)
+        assert not display.properties.flag("Visibility", "Sensors", "Wall")
+        w.viewer.manager.tree.rename(w.viewer.displays[0], "Ground")
+        assert boxes()[0] == ("Ground", [])

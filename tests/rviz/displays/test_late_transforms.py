@@ -1,0 +1,102 @@
+"""Displays of healthy sensors whose transforms come after their messages: how often their status changes."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.rviz import RvizConfig
+from linkwright.rviz.displays.base.display import ViewerDisplay
+from tests.rviz.clouds.test_clouds import cloud, scan, xyz
+from tests.skipping import skipping
+from tests.viewer.scene import World, world
+
+SECONDS = 10.0
+TF_PERIOD = 1 / 20
+
+SENSORS = {"LaserScan": 1 / 10, "PointCloud2": 1 / 15, "Odometry": 1 / 50}
+"""Displays with the period of their messages, in seconds."""
+
+_DISPLAY = """
+    - Class: rviz_default_plugins/{cls}
+      Enabled: true
+      Name: {cls}
+      Topic: {{Value: /{cls}}}"""
+FILE = f"""\
+Visualization Manager:
+  Displays:{"".join(_DISPLAY.format(cls=cls) for cls in SENSORS)}
+  Global Options:
+    Fixed Frame: odom
+"""
+
+
+def message(cls: str, stamp_ns: int) -> Any:
+    """What a driver publishes: stamped now, in a frame that moves."""
+    if cls == "LaserScan":
+        made = scan([1.0, 2.0, 3.0])
+    elif cls == "PointCloud2":
+        made = cloud(xyz([(1, 0, 0), (0, 1, 0)]))
+    else:
+        made = get_message("nav_msgs/msg/Odometry")()
+        made.pose.pose.orientation.w = 1.0
+    made.header.frame_id = "base"
+    made.header.stamp.sec, made.header.stamp.nanosec = divmod(stamp_ns, 1_000_000_000)
+    return made
+
+
+def levels_of(display: ViewerDisplay, monkeypatch: pytest.MonkeyPatch) -> dict[str, list[str]]:
+    """Of each row the levels that it had, one after the other."""
+    told: dict[str, list[str]] = {}
+    set_status = display.set_status
+
+    def record(rows: list[Any]) -> None:
+        for row in rows:
+            levels = told.setdefault(row.name, [])
+            if levels[-1:] != [row.level]:
+                levels.append(row.level)
+        set_status(rows)
+
+    monkeypatch.setattr(display, "set_status", record)
+    return told
+
+
+async def every(period: float, call: Callable[[], object]) -> None:
+    for _ in range(round(SECONDS / period)):
+        call()
+        await asyncio.sleep(period)
+
+
+async def drive(w: World, tf_delay: float) -> None:
+    """A robot whose transforms come at 20 Hz, later than the messages of its sensors."""
+    driver, now_ns = w.graph.create_node("driver"), w.graph.timebase.now_ns
+    publishers = {cls: driver.create_publisher(type(message(cls, 0)), f"/{cls}", 10) for cls in SENSORS}
+    here = {("odom", "base"): (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)}
+    w.move(here)
+    await w.settle()
+
+    def sense(cls: str) -> None:
+        publishers[cls].publish(message(cls, now_ns()))
+
+    def move_later() -> None:
+        asyncio.get_running_loop().call_later(tf_delay, w.move, here)
+
+    sensing = (every(period, partial(sense, cls)) for cls, period in SENSORS.items())
+    await asyncio.gather(*sensing, every(TF_PERIOD, move_later))
+
+
+@skipping
+@pytest.mark.parametrize("tf_delay", [0.03, 0.2])
+async def test_sensors_whose_transforms_come_late_are_green_from_the_first_message_on(tf_delay, monkeypatch):
+    async with world(RvizConfig.parse(FILE)) as w:
+        told = {cls: levels_of(w.display(cls), monkeypatch) for cls in SENSORS}
+        await drive(w, tf_delay)
+        await w.settle()
+        for cls, rows in told.items():
+            assert {"Topic", "Transform"} <= rows.keys(), cls
+            assert {name: levels for name, levels in rows.items() if levels != ["ok"]} == {}, cls
+            assert w.display(cls).data()

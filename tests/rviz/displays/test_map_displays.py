@@ -1,0 +1,259 @@
+"""Map and GridCells, from the topic to what pages are sent."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+
+import numpy as np
+
+from linkwright.graph import DurabilityPolicy, QoSProfile
+from linkwright.messages import get_message
+from linkwright.rviz import RvizConfig
+from tests.skipping import skipping
+from tests.viewer.contents import contents
+from tests.viewer.scene import page, world
+from tests.waiting import eventually
+
+OccupancyGrid = get_message("nav_msgs/msg/OccupancyGrid")
+OccupancyGridUpdate = get_message("map_msgs/msg/OccupancyGridUpdate")
+GridCells = get_message("nav_msgs/msg/GridCells")
+Point = get_message("geometry_msgs/msg/Point")
+
+FILE = """\
+Visualization Manager:
+  Displays:
+    - Class: rviz_default_plugins/CLS
+      Enabled: true
+      Name: Map
+      Topic: {Value: /map}
+  Global Options:
+    Fixed Frame: base
+"""
+
+
+def config(cls: str = "Map") -> RvizConfig:
+    return RvizConfig.parse(FILE.replace("CLS", cls))
+
+
+def grid(width: int = 3, height: int = 2, frame: str = "base", data=None):
+    message = OccupancyGrid()
+    message.header.frame_id = frame
+    message.info.width, message.info.height, message.info.resolution = width, height, 0.5
+    message.info.origin.position.x = -1.0
+    message.info.origin.orientation.w = 1.0
+    message.data = list(range(width * height)) if data is None else data
+    return message
+
+
+def update(x: int, y: int, width: int, height: int, data):
+    return OccupancyGridUpdate(x=x, y=y, width=width, height=height, data=data)
+
+
+def cells(display) -> list[list[int]]:
+    (content,) = contents(display)
+    fields = content.fields
+    return fields["cells"].view(np.int8).reshape(fields["height"], fields["width"]).tolist()
+
+
+async def test_a_map_is_sent_and_follows_its_frame():
+    async with world(config()) as w, page(w.viewer) as client:
+        await client.opened()
+        publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
+        assert w.status("Map")["Message"] == ("warn", "No map received")
+        publisher.publish(grid(data=[0, 100, -1, 50, -128, 127]))
+        await w.settle()
+        (content,) = contents(w.display("Map"))
+        assert (content.frame, content.pose) == ("base", None)
+        assert content.fields["kind"] == "occupancy_map"
+        assert content.fields["origin"] == [-1, 0, 0, 0, 0, 0, 1]
+        assert cells(w.display("Map")) == [[0, 100, -1], [50, -128, 127]]
+        assert w.status("Map") == {
+            "Topic": ("ok", "1 messages received"),
+            "Message": ("ok", "Map received"),
+            "Update Topic": ("ok", "OK"),
+            "Transform": ("ok", "Transform OK"),
+            "Map": ("ok", "Map OK"),
+        }
+
+
+async def test_what_the_map_is_stands_in_rows_that_are_not_for_editing():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
+        publisher.publish(grid())
+        await w.settle()
+        rows = {row.name: row for row in w.display("Map").properties.rows()}
+        assert [(rows[name].value, rows[name].read_only) for name in ("Resolution", "Width", "Height")] == [
+            (0.5, True),
+            (3, True),
+            (2, True),
+        ]
+        assert [child.value for child in rows["Position"].children] == [-1.0, 0.0, 0.0]
+        assert [child.value for child in rows["Orientation"].children] == [0.0, 0.0, 0.0, 1.0]
+        assert "Resolution" not in w.viewer.manager.config.text()
+
+
+async def test_updates_change_a_part_of_the_map():
+    async with world(config()) as w:
+        node = w.graph.create_node("map")
+        publisher = node.create_publisher(OccupancyGrid, "/map", 1)
+        updates = node.create_publisher(OccupancyGridUpdate, "/map_updates", 5)
+        updates.publish(update(0, 0, 1, 1, [7]))  # before there is a map
+        original = grid()
+        publisher.publish(original)
+        await w.settle()
+        updates.publish(update(1, 0, 2, 2, [10, 20, 30, 40]))
+        await eventually(lambda: cells(w.display("Map")) == [[0, 10, 20], [3, 30, 40]])
+        assert w.status("Map")["Update"] == ("ok", "Update OK")
+        assert list(original.data) == [0, 1, 2, 3, 4, 5]
+        updates.publish(update(2, 0, 2, 1, [1, 1]))
+        await w.settle()
+        assert w.status("Map")["Update"] == ("error", "Update area outside of original map area.")
+        updates.publish(update(0, 0, 2, 2, [1, 1]))
+        await w.settle()
+        assert w.status("Map")["Update"][1].startswith("Data size doesn't match width*height")
+        assert cells(w.display("Map")) == [[0, 10, 20], [3, 30, 40]]
+
+
+@skipping
+async def test_updates_wait_while_time_is_paused():
+    async with world(config()) as w:
+        node = w.graph.create_node("map")
+        maps, updates = (
+            node.create_publisher(OccupancyGrid, "/map", 1),
+            node.create_publisher(OccupancyGridUpdate, "/map_updates", 5),
+        )
+        maps.publish(grid(data=[0] * 6))
+        await w.settle()
+        w.viewer.manager.set_time(paused=True, mode="Off", source="")
+        updates.publish(update(0, 0, 1, 1, [99]))
+        await asyncio.sleep(0.2)
+        assert cells(w.display("Map")) == [[0, 0, 0], [0, 0, 0]]
+        w.viewer.manager.set_time(paused=False, mode="Off", source="")
+        await eventually(lambda: cells(w.display("Map")) == [[99, 0, 0], [0, 0, 0]])
+
+
+async def test_an_updated_map_survives_another_fixed_frame():
+    async with world(config()) as w:
+        node = w.graph.create_node("map")
+        w.move({("base", "other"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        node.create_publisher(OccupancyGrid, "/map", 1).publish(grid())
+        await w.settle()
+        node.create_publisher(OccupancyGridUpdate, "/map_updates", 5).publish(update(0, 0, 1, 1, [99]))
+        await eventually(lambda: cells(w.display("Map"))[0] == [99, 1, 2])
+        w.viewer.manager.set_fixed_frame("other")
+        await w.settle()
+        assert cells(w.display("Map"))[0] == [99, 1, 2]
+
+
+async def test_maps_that_are_none_are_said_in_rvizs_words():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
+
+        async def said(message) -> tuple[str, str]:
+            publisher.publish(message)
+            await w.settle()
+            assert contents(w.display("Map")) == []
+            return w.status("Map")["Map"]
+
+        assert await said(grid(0, 4)) == ("error", "Map is zero-sized (0x4)")
+        text = "Data size doesn't match width*height: width = 3, height = 2, data size = 1"
+        assert await said(grid(data=[0])) == ("error", text)
+        bad = grid()
+        bad.info.resolution = math.nan
+        assert await said(bad) == ("error", "Message contained invalid floating point values (nans or infs)")
+
+
+async def test_the_topic_of_updates_goes_with_the_maps():
+    async with world(config()) as w:
+        display = w.display("Map")
+        display.set_property(("Topic",), "/other")
+        assert display.properties.text("Update Topic") == "/other_updates"
+        display.set_property(("Update Topic",), "/mine")
+        node = w.graph.create_node("map")
+        node.create_publisher(OccupancyGrid, "/other", 1).publish(grid())
+        await w.settle()
+        node.create_publisher(OccupancyGridUpdate, "/mine", 5).publish(update(0, 0, 1, 1, [55]))
+        await eventually(lambda: cells(display)[0][0] == 55)
+
+
+async def test_a_file_that_names_no_topic_of_updates_gets_none():
+    async with world(config()) as w, page(w.viewer) as client:
+        await client.opened()
+        manager, display = w.viewer.manager, w.display("Map")
+        text = manager.config.text()
+        assert display.properties.text("Update Topic") == "/map_updates"
+        await client.send("set_property", id=f"{display.id}/Topic", value="/other")
+        await client.until("property_changed", id=f"{display.id}/Update Topic", value="/other_updates")
+        assert manager.config.text() == text.replace("/map", "/other")
+        await client.send("set_property", id=f"{display.id}/Update Topic", value="/mine")
+        await client.until("property_changed", id=f"{display.id}/Update Topic", value="/mine")
+        manager.history.undo()
+        assert display.properties.text("Update Topic") == "/other_updates"
+        manager.history.undo()
+        assert display.properties.text("Update Topic") == "/map_updates"
+        assert manager.config.text() == text
+
+
+async def test_a_map_with_its_timestamp_stays_where_it_was():
+    async with world(config()) as w:
+        node = w.graph.create_node("map")
+        publisher = node.create_publisher(
+            OccupancyGrid, "/map", QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        )
+        w.move({("base", "map"): (1, 2, 0, 0, 0, 0, 1)}, static=True)
+        display = w.display("Map")
+        publisher.publish(grid(frame="map"))
+        await w.settle()
+        assert contents(display)[0].pose is None
+        display.set_property(("Use Timestamp",), True)
+        assert contents(display)[0].pose == [1, 2, 0, 0, 0, 0, 1]
+
+
+async def test_a_map_without_a_frame_is_in_map():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
+        publisher.publish(grid(frame=""))
+        await w.settle()
+        assert w.status("Map")["Transform"][1].startswith("Could not transform from [map] to [base]")
+        w.move({("base", "map"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
+        await w.settle()
+        assert contents(w.display("Map"))[0].frame == "map"
+
+
+# --- GridCells -------------------------------------------------------------------------------------------------------
+
+
+def cell_grid(*positions: float, width: float = 0.5, height: float = 0.25):
+    message = GridCells(cell_width=width, cell_height=height, cells=[Point(x=x) for x in positions])
+    message.header.frame_id = "base"
+    return message
+
+
+async def test_cells_are_sent():
+    async with world(config("GridCells")) as w:
+        publisher = w.graph.create_node("map").create_publisher(GridCells, "/map", 1)
+        publisher.publish(cell_grid(1.0, 2.0))
+        await w.settle()
+        (content,) = contents(w.display("GridCells"))
+        fields = content.fields
+        assert fields["positions"].tolist() == [1, 0, 0, 2, 0, 0]
+        assert (fields["kind"], fields["width"], fields["height"]) == ("cell_grid", 0.5, 0.25)
+
+
+async def test_cells_that_cannot_be_shown_are_said_in_rvizs_words():
+    async with world(config("GridCells")) as w:
+        publisher = w.graph.create_node("map").create_publisher(GridCells, "/map", 1)
+
+        async def said(message) -> tuple[str, str]:
+            publisher.publish(cell_grid(1.0))
+            publisher.publish(message)
+            await w.settle()
+            assert contents(w.display("GridCells")) == []
+            return w.status("GridCells")["Topic"]
+
+        text = "Message contained invalid floating point values (nans or infs)"
+        assert await said(cell_grid(math.nan)) == ("error", text)
+        text = "One of the Cell's dimension is zero, cells will be invisible."
+        assert await said(cell_grid(1.0, height=0.0)) == ("error", text)
+        assert await said(cell_grid()) == ("warn", "Message is empty: there are no cells to be shown.")

@@ -1,0 +1,300 @@
+"""The Marker and MarkerArray displays."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.packages import PackageFinder
+from linkwright.page.files import MeshIndex
+from linkwright.rviz import RvizConfig
+from linkwright.rviz.markers import BadMarkerError, MarkerStore, read_marker
+from tests.viewer.contents import unpack
+from tests.viewer.scene import world
+from tests.waiting import eventually
+
+Marker = get_message("visualization_msgs/msg/Marker")
+MarkerArray = get_message("visualization_msgs/msg/MarkerArray")
+Point = get_message("geometry_msgs/msg/Point")
+ColorRGBA = get_message("std_msgs/msg/ColorRGBA")
+
+FILE = """\
+Visualization Manager:
+  Displays:
+    - Class: rviz_default_plugins/{cls}
+      Enabled: true
+      Name: Marks
+      Namespaces:
+        hidden: false
+      Topic:
+        Value: /marks
+  Global Options:
+    Fixed Frame: base
+"""
+
+
+def marker(number: int = 0, *, ns: str = "a", kind: int = Marker.CUBE, frame: str = "base", **fields) -> Marker:
+    message = Marker(ns=ns, id=number, type=kind)
+    message.header.frame_id = frame
+    message.scale.x = message.scale.y = message.scale.z = 1.0
+    message.color.a = 1.0
+    message.points = [Point(x=float(x), y=float(y), z=float(z)) for x, y, z in fields.pop("points", ())]
+    message.pose.position.x = float(fields.pop("x", 0.0))
+    for name, value in fields.items():
+        setattr(message, name, value)
+    return message
+
+
+class Watcher:
+    """A page that has seen what the store had when it looked last."""
+
+    def __init__(self, store: MarkerStore) -> None:
+        self.store = store
+        self.seen = 0
+        self.markers: dict[str, dict] = {}
+
+    def look(self) -> dict | None:
+        frame, self.seen = self.store.since(self.seen)
+        if frame is None:
+            return None
+        content = unpack(frame).fields
+        if content["everything"]:
+            self.markers.clear()
+        for identity in content["gone"]:
+            self.markers.pop(identity, None)
+        self.markers.update({each["id"]: each for each in content["markers"]})
+        return content
+
+
+def publisher_and_watcher(w, message_type=Marker):
+    publisher = w.graph.create_node("marks").create_publisher(message_type, "/marks", 10)
+    (display,) = w.viewer.displays
+    (store,) = display.data()
+    return publisher, Watcher(store), display
+
+
+def status(display) -> dict[str, tuple[str, str]]:
+    return {row.name: (row.level, row.text) for row in display.status}
+
+
+async def test_a_marker_is_placed_where_its_frame_was():
+    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
+        publisher, page, _ = publisher_and_watcher(w)
+        w.move({("base", "tip"): (1, 2, 3, 0, 0, 2**-0.5, 2**-0.5)}, static=True)
+        publisher.publish(marker(7, frame="tip", x=1))
+        await w.settle()
+        page.look()
+        (shown,) = page.markers.values()
+        assert (shown["id"], shown["shape"], shown["frame"]) == ("a/7", "cube", "")
+        np.testing.assert_allclose(shown["pose"], [1, 3, 3, 0, 0, 2**-0.5, 2**-0.5], atol=1e-6)
+
+
+async def test_a_marker_locked_to_its_frame_follows_it():
+    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
+        publisher, page, _ = publisher_and_watcher(w)
+        w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        publisher.publish(marker(frame="tip", x=1, frame_locked=True))
+        await w.settle()
+        page.look()
+        assert page.markers["a/0"]["frame"] == "tip"
+        assert page.markers["a/0"]["pose"] == [1, 0, 0, 0, 0, 0, 1]
+
+
+async def test_a_marker_appears_once_its_frame_is_known():
+    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
+        publisher, page, display = publisher_and_watcher(w)
+        publisher.publish(marker(frame="tip"))
+        await w.settle()
+        page.look()
+        assert page.markers == {}
+        level, text = status(display)["a/0"]
+        assert level == "error"
+        assert text.startswith("For frame [tip]: No transform to fixed frame [base].  TF error: [")
+        w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        await w.settle()
+        page.look()
+        assert list(page.markers) == ["a/0"]
+        assert "a/0" not in status(display)
+
+
+async def test_so_many_markers_wait_for_their_frames_as_the_filter_size_says():
+    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
+        publisher, page, display = publisher_and_watcher(w)
+        display.set_property(("Topic", "Filter size"), 2)
+        publisher.publish(marker(0))
+        for number in (1, 2, 3, 1, 4):
+            publisher.publish(marker(number, frame="later"))
+            await w.settle()
+        assert set(status(display)) >= {"a/1", "a/4"}
+        assert not {"a/2", "a/3"} & set(status(display))
+        w.move({("base", "later"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        await w.settle()
+        page.look()
+        assert sorted(page.markers) == ["a/0", "a/1", "a/4"]
+
+
+async def test_deleting_one_of_a_namespace_and_all():
+    async with world(RvizConfig.parse(FILE.format(cls="MarkerArray"))) as w:
+        publisher, page, _ = publisher_and_watcher(w, MarkerArray)
+        publisher.publish(MarkerArray(markers=[marker(n, ns=ns) for ns in "ab" for n in range(3)]))
+        await w.settle()
+        assert page.look()["everything"] is True
+        assert len(page.markers) == 6
+        publisher.publish(MarkerArray(markers=[marker(1, action=Marker.DELETE)]))
+        await w.settle()
+        change = page.look()
+        assert (change["everything"], change["gone"], change["markers"]) == (False, ["a/1"], [])
+        publisher.publish(MarkerArray(markers=[marker(0, ns="b", action=Marker.DELETEALL)]))
+        await w.settle()
+        page.look()
+        assert sorted(page.markers) == ["a/0", "a/2"]
+        publisher.publish(MarkerArray(markers=[marker(0, ns="", action=Marker.DELETEALL), marker(9)]))
+        await w.settle()
+        page.look()
+        assert list(page.markers) == ["a/9"]
+
+
+async def test_a_lifetime_ends():
+    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
+        publisher, page, _ = publisher_and_watcher(w)
+        mortal = marker(1)
+        mortal.lifetime.nanosec = 1_000_000
+        publisher.publish(mortal)
+        publisher.publish(marker(2))
+        await w.settle()
+        page.look()
+        assert sorted(page.markers) == ["a/1", "a/2"]
+
+        def left() -> list[str]:
+            page.look()
+            return list(page.markers)
+
+        await eventually(lambda: left() == ["a/2"])
+
+
+async def test_namespaces_have_boxes_that_the_file_may_have_cleared():
+    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
+        publisher, _, display = publisher_and_watcher(w)
+        publisher.publish(marker(ns="seen"))
+        publisher.publish(marker(ns="hidden"))
+        await w.settle()
+        (row,) = [row for row in display.properties.rows() if row.name == "Namespaces"]
+        assert {child.name: child.value for child in row.children} == {"seen": True, "hidden": False}
+        display.set_property(("Namespaces",), False)
+        (row,) = [row for row in display.properties.rows() if row.name == "Namespaces"]
+        assert {child.value for child in row.children} == {False}
+
+
+async def test_two_markers_with_one_name_in_a_message_are_told():
+    async with world(RvizConfig.parse(FILE.format(cls="MarkerArray"))) as w:
+        publisher, page, display = publisher_and_watcher(w, MarkerArray)
+        publisher.publish(MarkerArray(markers=[marker(1, x=1), marker(1, x=2)]))
+        await w.settle()
+        assert status(display)["Duplicate Marker Check"] == (
+            "error",
+            "Multiple Markers in the same MarkerArray message had the same ns and id: (a, 1)",
+        )
+        page.look()
+        assert page.markers["a/1"]["pose"][0] == 2
+
+
+async def test_a_page_that_opens_later_is_sent_all_markers():
+    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
+        publisher, page, display = publisher_and_watcher(w)
+        for number in range(3):
+            publisher.publish(marker(number))
+            await w.settle()
+            page.look()
+        late = Watcher(display.data()[0])
+        late.look()
+        assert sorted(late.markers) == sorted(page.markers) == ["a/0", "a/1", "a/2"]
+        assert late.look() is None
+
+
+def test_a_page_that_missed_more_than_is_remembered_is_sent_everything(monkeypatch):
+    monkeypatch.setattr("linkwright.rviz.markers.shapes._MOST_GONE", 2)
+    store = MarkerStore("d")
+    page = Watcher(store)
+    shapes = [read_marker(marker(number), index()).shape for number in range(5)]
+    for shape in shapes:
+        store.put(shape)
+    page.look()
+    for shape in shapes[:4]:
+        store.remove(shape.id)
+    assert page.look()["everything"] is True
+    assert list(page.markers) == ["a/4"]
+
+
+def index() -> MeshIndex:
+    from pathlib import Path
+
+    return MeshIndex(PackageFinder(start=Path("/nonexistent"), environment={}))
+
+
+SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0)]
+
+
+@pytest.mark.parametrize(
+    ("message", "text"),
+    [
+        (marker(kind=Marker.ARROW, points=SQUARE[:1]), "only specified one point of a point to point arrow."),
+        (marker(kind=Marker.LINE_LIST, points=SQUARE), "Line list marker [a/0] has an odd number of points."),
+        (marker(kind=Marker.TRIANGLE_LIST), "TriMesh marker [a/0] has no points."),
+        (marker(kind=Marker.TRIANGLE_LIST, points=SQUARE[:2]), "not divisible by 3 [2]"),
+        (marker(kind=99), "Unknown marker type: 99"),
+        (marker(x=math.nan), "Contains invalid floating point values (nans or infs)"),
+        (
+            marker(kind=Marker.POINTS, points=[(math.inf, 0, 0)]),
+            "Contains invalid floating point values (nans or infs)",
+        ),
+        (
+            marker(kind=Marker.MESH_RESOURCE, mesh_resource="package://none/a.stl"),
+            "could not load [package://none/a.stl]",
+        ),
+    ],
+)
+def test_what_cannot_be_drawn_is_told_in_the_words_of_rviz(message, text):
+    with pytest.raises(BadMarkerError) as raised:
+        read_marker(message, index())
+    assert text in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("message", "warning"),
+    [
+        (marker(), None),
+        (marker(scale=get_message("geometry_msgs/msg/Vector3")(x=1.0, y=0.0, z=1.0)), "Scale of 0 in one of x/y/z"),
+        (
+            marker(kind=Marker.POINTS, points=SQUARE, colors=[ColorRGBA(r=1.0)] * 3),
+            "All points have a zero alpha value.",
+        ),
+    ],
+)
+def test_what_may_not_have_been_meant_is_pointed_out(message, warning):
+    assert read_marker(message, index()).warning == warning
+
+
+def test_an_orientation_that_nobody_set_is_none():
+    message = marker()
+    message.pose.orientation.w = 0.0
+    assert read_marker(message, index()).shape.pose == [0, 0, 0, 0, 0, 0, 1]
+
+
+def test_every_type_has_its_shape():
+    kinds = []
+    for kind in range(13):
+        points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 0, 0), (1, 0, 0), (1, 1, 0)] if kind > 3 else []
+        if kind != Marker.MESH_RESOURCE:
+            kinds.append(read_marker(marker(kind=kind, points=points), index()).shape.shape)
+    assert len(set(kinds)) == 12
+
+
+def test_a_mesh_may_come_with_the_message():
+    message = marker(kind=Marker.MESH_RESOURCE, mesh_use_embedded_materials=True)
+    message.mesh_file.filename = "part.STL"
+    message.mesh_file.data = b"solid"
+    mesh = read_marker(message, index()).shape.mesh
+    assert (mesh.format, mesh.url, bytes(mesh.data), mesh.embedded) == ("stl", None, b"solid", True)

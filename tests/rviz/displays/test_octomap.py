@@ -1,0 +1,90 @@
+"""The octomap of a topic."""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+from linkwright.messages import get_message
+from linkwright.rviz import RvizConfig
+from tests.rviz.displays.moveit.arm import signed
+from tests.viewer.contents import shown_markers
+from tests.viewer.scene import world
+
+Octomap = get_message("octomap_msgs/msg/Octomap")
+FILE = """\
+Visualization Manager:
+  Displays:
+    - Class: octomap_rviz_plugins/OccupancyGrid
+      Enabled: true
+      Max. Height Display: inf
+      Max. Octree Depth: 16
+      Min. Height Display: -inf
+      Name: OccupancyGrid
+      Octomap Topic: /octomap
+      Queue Size: 5
+      Value: true
+      Voxel Alpha: 1
+      Voxel Coloring: Z-Axis
+      Voxel Rendering: Occupied Voxels
+  Global Options:
+    Fixed Frame: base
+"""
+OCCUPIED, FREE, INNER = 2, 1, 3
+
+
+def octomap(last: list[int], frame: str = "base") -> Any:
+    """A map of half a metre with the eight smallest cells at the corner of the middle, in the first octant."""
+    inner = [struct.pack("<H", INNER << 14), *[struct.pack("<H", INNER)] * 14]
+    leaves = struct.pack("<H", sum(state << 2 * child for child, state in enumerate(last)))
+    made = Octomap(binary=True, id="OcTree", resolution=0.5, data=signed(b"".join([*inner, leaves])))
+    made.header.frame_id = frame
+    return made
+
+
+async def test_cells_are_drawn_as_properties_ask():
+    async with world(RvizConfig.parse(FILE)) as w:
+        w.move_arm()
+        publisher = w.graph.create_node("mapper").create_publisher(Octomap, "/octomap", 10)
+        await w.settle()
+        publisher.publish(octomap([OCCUPIED, FREE, 0, 0, OCCUPIED, 0, 0, 0]))
+        await w.settle()
+        (display,) = w.viewer.displays
+        (marker,) = shown_markers(display).values()
+        assert (marker["frame"], marker["scale"]) == ("base", [0.5, 0.5, 0.5])
+        assert sorted(marker["points"].reshape(-1, 3).tolist()) == [[0.25, 0.25, 0.25], [0.25, 0.25, 0.75]]
+        assert w.status("OccupancyGrid")["Transform"] == ("ok", "Transform OK")
+
+        def cells() -> int:
+            return sum(len(shown_marker["points"]) // 3 for shown_marker in shown_markers(display).values())
+
+        display.set_property(("Voxel Rendering",), "All Voxels")
+        assert cells() == 3
+        display.set_property(("Max. Height Display",), 0.5)
+        assert cells() == 2
+        display.set_property(("Max. Octree Depth",), 15)
+        (marker,) = shown_markers(display).values()
+        assert (marker["scale"], marker["points"].tolist()) == ([1, 1, 1], [0.5, 0.5, 0.5])
+
+
+async def test_bad_maps_and_frames_are_said():
+    async with world(RvizConfig.parse(FILE)) as w:
+        w.move_arm()
+        publisher = w.graph.create_node("mapper").create_publisher(Octomap, "/octomap", 10)
+        await w.settle()
+        publisher.publish(Octomap(binary=True, id="OcTree", resolution=0.5, data=[1]))
+        await w.settle()
+        status = w.status("OccupancyGrid")
+        assert status["Octomap"] == ("error", "The data of the octomap ends too early, after 1 bytes")
+        publisher.publish(octomap([OCCUPIED] * 8, frame="nowhere"))
+        await w.settle()
+        status = w.status("OccupancyGrid")
+        assert "Octomap" not in status
+        assert status["Transform"] == ("error", "No transform from [nowhere] to [base]")
+
+
+async def test_a_file_is_saved_as_it_was():
+    async with world(RvizConfig.parse(FILE)) as w:
+        assert w.viewer.displays[0].row().supported
+        assert w.viewer.config.warnings == []
+        assert w.viewer.config.text() == FILE

@@ -1,0 +1,450 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import String
+from linkwright.rviz import RvizConfig
+from tests.page.test_files import package, write
+from tests.viewer.scene import ARM, World, page, rows_by_id, world
+
+MESHED = ARM.replace('<box size="1 2 3"/>', '<mesh filename="package://robot/meshes/arm.stl"/>')
+
+
+def config(extra: str = "") -> RvizConfig:
+    return RvizConfig.parse(
+        "Visualization Manager:\n"
+        "  Global Options: {Fixed Frame: base}\n"
+        "  Displays:\n"
+        f"    - {{Class: rviz_default_plugins/RobotModel, Name: Robot, Enabled: true{extra}}}\n"
+    )
+
+
+async def opened(made):
+    async with page(made.viewer) as client:
+        return await client.opened()
+
+
+async def test_without_a_description_it_waits():
+    async with world(config()) as made:
+        opening = await opened(made)
+    assert opening["robot_scene"]["links"] == []
+    assert made.status("RobotModel") == {"Topic": ("warn", "No messages received")}
+
+
+async def test_a_description_is_a_scene_with_rows_and_status():
+    async with world(config()) as made:
+        made.describe(ARM)
+        await made.settle()
+        opening = await opened(made)
+        scene = opening["robot_scene"]
+        assert (scene["display"], scene["name"], scene["revision"]) == ("display-1", "arm", 1)
+        assert [link["name"] for link in scene["links"]] == ["base", "tip", "mark"]
+        assert made.status("RobotModel") == {
+            "Topic": ("ok", "OK"),
+            "URDF": ("ok", "URDF parsed OK"),
+            "base": ("ok", "Transform OK"),
+            "mark": ("error", "No transform from [mark] to [base]"),
+            "tip": ("error", "No transform from [tip] to [base]"),
+        }
+        made.move_arm()
+        await made.settle()
+        await opened(made)
+        assert {text for _, text in made.status("RobotModel").values()} == {"OK", "URDF parsed OK", "Transform OK"}
+
+
+async def test_properties_are_those_of_rviz():
+    async with world(config()) as made:
+        made.describe(ARM)
+        await made.settle()
+        properties = (await opened(made))["tree"]["displays"][0]["properties"]
+    values = {row["name"]: row["value"] for row in properties}
+    assert values == {
+        "Visual Enabled": True,
+        "Collision Enabled": False,
+        "Update Interval": 0.0,
+        "Alpha": 1.0,
+        "Description Source": "Topic",
+        "Description Topic": "/robot_description",
+        "TF Prefix": "",
+        "Mass Properties": None,
+        "Links": None,
+        "Joints": None,
+    }
+    rows = rows_by_id(properties)
+    masses = {row["name"]: row["value"] for row in rows["display-1/Mass Properties"]["children"]}
+    assert masses == {"Mass": False, "Inertia": False}
+    options = {row["name"]: row["value"] for row in rows["display-1/Links"]["children"][:5]}
+    assert options == {
+        "Link Tree Style": "Links in Alphabetic Order",
+        "Expand Tree": False,
+        "Expand Link Details": False,
+        "Expand Joint Details": False,
+        "All Links Enabled": True,
+    }
+    assert (rows["display-1/Joints/turn"]["kind"], rows["display-1/Joints/fix"]["kind"]) == ("bool", "group")
+    assert [row["name"] for row in rows["display-1/Joints/turn"]["children"]] == ["Show Axes", "Show Joint Axis"]
+    assert [row["name"] for row in rows["display-1/Joints/fix"]["children"]] == ["Show Axes"]
+    details = [rows[f"display-1/{name}"]["details"] for name in ("Links/base", "Links/mark", "Joints/fix", "Links")]
+    assert details == ["link", "link", "joint", None]
+    assert rows["display-1/Links/All Links Enabled"]["value"] is True
+    assert (rows["display-1/Links/base"]["kind"], rows["display-1/Links/mark"]["kind"]) == ("bool", "group")
+    assert [row["name"] for row in rows["display-1/Links/base"]["children"]] == ["Alpha", "Show Trail", "Show Axes"]
+    assert rows["display-1/Links/tip/Alpha"]["maximum"] == 1.0
+
+
+async def test_a_file_says_how_links_look():
+    async with world(config(", Alpha: 0.8, Links: {tip: {Alpha: 0.25, Value: false}}")) as made:
+        made.describe(ARM)
+        await made.settle()
+        rows = rows_by_id((await opened(made))["tree"]["displays"][0]["properties"])
+    assert rows["display-1/Alpha"]["value"] == 0.8
+    assert rows["display-1/Links/tip"]["value"] is False
+    assert rows["display-1/Links/tip/Alpha"]["value"] == 0.25
+    assert rows["display-1/Links/base"]["value"] is True
+
+
+async def test_the_box_over_all_links_sets_them_all():
+    async with world(config()) as made:
+        made.describe(ARM)
+        await made.settle()
+        async with page(made.viewer) as client:
+            await client.opened()
+            await client.set("display-1/Links/All Links Enabled", False)
+            for name in ("Links/base", "Links/tip", "Joints/turn"):
+                assert (await client.until("property_changed", id=f"display-1/{name}"))["value"] is False
+            assert made.viewer.config.displays[0].section.scalar("Links", "tip").text == "false"
+
+
+async def test_a_joint_sets_the_links_below_it_and_follows_them():
+    async with world(config(", Links: {Link Tree Style: Tree of links and joints}")) as made:
+        made.describe(
+            ARM.replace(
+                '<link name="mark"/>',
+                '<link name="mark"><visual><geometry><sphere radius="1"/></geometry></visual></link>',
+            )
+        )
+        await made.settle()
+        display = made.display("RobotModel")
+
+        def boxes() -> dict[str, object]:
+            paths = (("Links", "base"), ("Links", "tip"), ("Links", "mark"), ("Joints", "turn"), ("Joints", "fix"))
+            found = {path[1]: display.properties.get(*path) for path in paths}
+            return {**found, "all": display.properties.get("Links", "All Links Enabled")}
+
+        on = dict.fromkeys(boxes(), True)
+        assert boxes() == on
+        display.set_property(("Joints", "turn"), False)
+        assert boxes() == {**dict.fromkeys(on, False), "base": True}
+        display.set_property(("Links", "mark"), True)
+        assert boxes() == {**on, "tip": False, "turn": False, "all": False}
+        display.set_property(("Links", "tip"), True)
+        assert boxes() == on
+        display.set_property(("Links", "Link Tree Style"), "Joints in Alphabetic Order")
+        display.set_property(("Joints", "turn"), False)
+        assert boxes() == {**on, "tip": False, "turn": False, "all": False}
+
+
+@pytest.mark.parametrize("box", ["Joints/turn", "Links/All Links Enabled", "Links/base"])
+async def test_undo_takes_back_all_that_a_box_set(box):
+    async with world(config(", Links: {tip: {Value: false}}")) as made:
+        made.describe(ARM)
+        await made.settle()
+        display = made.display("RobotModel")
+        paths = (("Links", "base"), ("Links", "tip"), ("Joints", "turn"), ("Links", "All Links Enabled"))
+
+        def boxes() -> list[object]:
+            return [display.properties.get(*path) for path in paths]
+
+        before, text = boxes(), made.viewer.config.text()
+        assert before == [True, False, False, False]
+        async with page(made.viewer) as client:
+            await client.opened()
+            value = not display.properties.get(*box.split("/"))
+            await client.set(f"display-1/{box}", value)
+            await client.until("property_changed", id=f"display-1/{box}")
+            assert boxes() != before
+            await client.send("undo")
+            await client.until("display_properties", display="display-1")
+            assert boxes() == before
+            assert made.viewer.config.text() == text
+
+
+async def test_boxes_of_the_file_are_left_to_the_user():
+    text = ", Links: {All Links Enabled: true, tip: {Value: false}}"
+    async with world(config(text)) as made:
+        before = made.viewer.config.text()
+        made.describe(ARM)
+        await made.settle()
+        display = made.display("RobotModel")
+        assert display.properties.get("Joints", "turn") is False
+        assert display.properties.get("Links", "All Links Enabled") is False
+        assert made.viewer.config.text() == before
+
+
+async def test_joints_and_masses_are_drawn_from_the_description():
+    heavy = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    limited = '<axis xyz="0 0 1"/><origin xyz="0 0 1"/><limit lower="-1" upper="2" effort="1" velocity="1"/>'
+    async with world(config()) as made:
+        text = ARM.replace('type="continuous"', 'type="revolute"').replace('<axis xyz="0 0 1"/>', limited)
+        made.describe(text.replace('<link name="mark"/>', f'<link name="mark">{heavy}</link>'))
+        await made.settle()
+        scene = (await opened(made))["robot_scene"]
+    turn, fix = scene["joints"]
+    assert turn == {
+        "name": "turn",
+        "kind": "revolute",
+        "parent": "base",
+        "child": "tip",
+        "position": [0.0, 0.0, 1.0],
+        "quaternion": [0.0, 0.0, 0.0, 1.0],
+        "axis": [0.0, 0.0, 1.0],
+        "lower": -1.0,
+        "upper": 2.0,
+    }
+    assert (fix["kind"], fix["lower"]) == ("fixed", None)
+    base, _, mark = scene["links"]
+    assert base["inertia"] is None
+    assert mark["inertia"]["mass"] == 2.0
+    assert mark["inertia"]["box"] == pytest.approx([3**0.5] * 3)
+
+
+async def test_a_new_description_replaces_the_robot_and_its_frames():
+    async with world(config()) as made, page(made.viewer) as client:
+        made.describe(ARM)
+        made.move_arm()
+        await client.until("robot_scene", revision=1)
+        made.describe(ARM.replace('"mark"', '"point"'))
+        scene = await client.until("robot_scene", revision=2)
+        assert [link["name"] for link in scene["links"]] == ["base", "tip", "point"]
+        await client.drain()  # the table of frames may come before or after
+        tables = [
+            message for message in client.messages if isinstance(message, dict) and message["type"] == "frame_table"
+        ]
+        assert sorted(tables[-1]["names"]) == ["base", "tip"]
+
+
+async def test_a_new_description_waits_while_time_is_paused():
+    async with world(config()) as made:
+        made.describe(ARM)
+        await made.settle()
+        made.viewer.manager.set_time(paused=True, mode="Off", source="")
+        made.describe(ARM.replace('"mark"', '"point"'))
+        await made.settle()
+        assert "mark" in made.display("RobotModel").robot.links
+        made.viewer.manager.set_time(paused=False, mode="Off", source="")
+        assert "point" in made.display("RobotModel").robot.links
+
+
+async def test_the_same_description_again_changes_nothing():
+    async with world(config()) as made:
+        made.describe(ARM)
+        await made.settle()
+        async with page(made.viewer) as client:
+            await client.opened()
+            made.describe(ARM)
+            assert [each for each in await client.drain() if isinstance(each, dict)] == []
+
+
+@pytest.mark.parametrize(
+    ("text", "rows"),
+    [
+        ("", {"URDF": ("error", "URDF is empty")}),
+        ("<robot", {"URDF": ("error", "URDF failed XML parse")}),
+        ('<robot name="r"/>', {"URDF": ("error", "URDF failed Model parse")}),
+    ],
+)
+async def test_a_bad_description_leaves_the_last_robot_standing(text, rows):
+    async with world(config()) as made:
+        made.describe(ARM)
+        await made.settle()
+        made.describe(text)
+        await made.settle()
+        status = made.status("RobotModel")
+        assert rows.items() <= status.items()
+        assert "base" in status
+        assert len((await opened(made))["robot_scene"]["links"]) == 3
+        made.describe(ARM)
+        await made.settle()
+        assert made.status("RobotModel")["URDF"] == ("ok", "URDF parsed OK")
+
+
+async def test_a_prefix_stands_before_the_frames():
+    async with world(config(", TF Prefix: one")) as made:
+        made.describe(ARM)
+        await made.settle()
+        assert made.status("RobotModel")["tip"][1] == "No transform from [one/tip] to [base]"
+        async with page(made.viewer) as client:
+            await client.opened()
+            await client.set("display-1/TF Prefix", "")
+            scene = await client.until("robot_scene")
+            assert [link["frame"] for link in scene["links"]] == ["base", "tip", "mark"]
+
+
+@pytest.mark.parametrize(
+    "topic", ["Value: /robot_description, Durability Policy: Volatile", "Value: robot_description"]
+)
+async def test_a_description_published_before_is_seen_whatever_the_file_says(topic):
+    made = World(config(f", Description Topic: {{{topic}}}"))
+    made.describe(ARM)
+    await made.settle()
+    await made.viewer.start()
+    await made.settle()
+    assert "base" in made.status("RobotModel")
+    await made.viewer.close()
+    await made.graph.close()
+
+
+async def test_another_topic_is_followed():
+    async with world(config()) as made, page(made.viewer) as client:
+        await client.opened()
+        await client.set("display-1/Description Topic", "/other")
+        await client.until("property_changed", id="display-1/Description Topic")
+        assert made.graph.count_subscribers("/robot_description") == 0
+        assert made.graph.count_subscribers("/other") == 1
+        for topic, text in (("", "Empty topic name"), ("a b", "'a b' is not a valid topic name")):
+            await client.set("display-1/Description Topic", topic)
+            await client.until("property_changed", id="display-1/Description Topic")
+            level, said = made.status("RobotModel")["Topic"]
+            assert (level, text in said) == ("error", True)
+            assert said.startswith("Error subscribing: ")
+
+
+async def test_a_description_may_come_from_a_xacro_file(tmp_path):
+    path = write(
+        tmp_path / "r.xacro",
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n  <link name="${\'ba\' + \'se\'}"/>\n</robot>\n',
+    )
+    async with (
+        world(config(f", Description Source: File, Description File: {path}")) as made,
+        page(made.viewer) as client,
+    ):
+        scene = await client.until("robot_scene", revision=1)
+        (link,) = scene["links"]
+        assert (link["name"], link["place"]["file"], link["place"]["line"]) == ("base", str(path), 2)
+        await client.set("display-1/Description File", str(tmp_path / "gone.urdf"))
+        await client.until("display_status", level="error")
+        rows = made.status("RobotModel")
+        assert rows["URDF"][0] == "error"
+        assert any("gone.urdf" in text for _, text in rows.values())
+        await client.set("display-1/Description File", "")
+        await client.until("property_changed", id="display-1/Description File")
+        assert made.status("RobotModel")["Description File"] == ("error", "No description file is named")
+        await client.set("display-1/Description Source", "Topic")
+        rows = {row["name"] for row in (await client.until("display_properties"))["properties"]}
+        assert "Description Topic" in rows
+        assert "Description File" not in rows
+
+
+async def test_a_missing_mesh_is_told_in_its_row_and_in_the_terminal_once(tmp_path: Path):
+    share = package(tmp_path / "robot", "robot")
+    async with world(config(), packages={"robot": share}) as made:
+        made.describe(MESHED)
+        await made.settle()
+        made.describe(MESHED + "<!-- saved again -->")
+        await made.settle()
+        level, text = made.status("RobotModel")["base"]
+        assert level == "error"
+        assert "'package://robot/meshes/arm.stl'" in text
+        assert str(share / "meshes" / "arm.stl") in text
+        assert made.logged().count(str(share / "meshes" / "arm.stl")) == 1
+        write(share / "meshes" / "arm.stl")
+        made.describe(MESHED)
+        await made.settle()
+        assert made.status("RobotModel")["base"] == ("ok", "Transform OK")
+
+
+async def test_pages_tell_which_meshes_they_cannot_read(tmp_path):
+    share = package(tmp_path / "robot", "robot")
+    write(share / "meshes" / "arm.stl")
+    async with world(config(), packages={"robot": share}) as made:
+        made.describe(MESHED)
+        await made.settle()
+        async with page(made.viewer) as client:
+            url = (await client.opened())["robot_scene"]["links"][0]["visuals"][0]["url"]
+
+            async def tell(error, address=url, link="base"):
+                await client.send("mesh_status", display="display-1", link=link, url=address, error=error)
+
+            await tell("not an STL file")
+            status = await client.until("display_status")
+            row = next(row for row in status["status"] if row["name"] == "base")
+            assert row == {"name": "base", "level": "error", "text": "Could not load mesh 'arm.stl': not an STL file"}
+            await tell("not an STL file")
+            await tell("stale", address="/mesh/other")
+            await tell("stale", link="tip")
+            await tell(None)
+            status = await client.until("display_status")
+            assert next(row for row in status["status"] if row["name"] == "base")["level"] == "ok"
+            assert made.logged().count("not an STL file") == 1
+            assert "stale" not in made.logged()
+
+
+def published(made: World, node: str, text: str):
+    """A node that publishes a description."""
+    publisher = made.graph.create_node(node)
+    publisher.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(text))
+    return publisher
+
+
+async def test_whose_description_is_shown_is_told_where_two_nodes_publish_one():
+    other = ARM.replace('name="arm"', 'name="other"')
+    async with world(config()) as made:
+        first = published(made, "first", ARM)
+        await made.settle()
+        assert made.status("RobotModel")["Topic"] == ("ok", "OK")
+        second = published(made, "second", ARM)
+        await made.settle()
+        level, text = made.status("RobotModel")["Topic"]
+        assert (level, "of /second is shown; /first" in text) == ("ok", True)
+        assert "replaces that of" not in made.logged()
+        published(made, "third", other)
+        await made.settle()
+        level, text = made.status("RobotModel")["Topic"]
+        assert (level, "of /third is shown; /first, /second publish" in text) == ("warn", True)
+        assert "The description of /third replaces that of /second" in made.logged()
+        for node in (first, second):
+            node.destroy_node()
+
+
+async def test_a_description_changes_hands_with_a_word_after_this_process_has_joined_a_network():
+    """Then publishers have other GIDs than when their first messages came."""
+    async with world(config()) as made:
+        first = made.graph.create_node("first")
+        publisher = first.create_publisher(String, "robot_description", DESCRIPTION_QOS)
+        publisher.publish(String(ARM))
+        await made.settle()
+        publisher.gid = bytes(range(16))
+        second = published(made, "second", ARM.replace('name="arm"', 'name="other"'))
+        await made.settle()
+        level, text = made.status("RobotModel")["Topic"]
+        assert (level, "of /second is shown; /first publish" in text) == ("warn", True)
+        publisher.publish(String(ARM))
+        await made.settle()
+        assert "of /first is shown; /second publish" in made.status("RobotModel")["Topic"][1]
+        second.destroy_node()
+
+
+async def test_a_description_of_a_node_that_left_at_once_is_told_of():
+    async with world(config()) as made:
+        published(made, "first", ARM)
+        await made.settle()
+        second = published(made, "second", ARM.replace('name="arm"', 'name="other"'))
+        second.destroy_node()
+        await made.settle()
+        assert made.display("RobotModel").robot.name == "other"
+        level, text = made.status("RobotModel")["Topic"]
+        assert (level, "of an unknown node is shown; /first publish" in text) == ("warn", True)
+
+
+async def test_a_description_of_a_node_that_was_started_again_takes_its_place_without_a_word():
+    async with world(config()) as made:
+        first = published(made, "first", ARM)
+        await made.settle()
+        first.destroy_node()
+        published(made, "first", ARM.replace('name="arm"', 'name="other"'))
+        await made.settle()
+        assert made.display("RobotModel").robot.name == "other"
+        assert "replaces that of" not in made.logged()

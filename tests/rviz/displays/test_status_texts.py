@@ -1,0 +1,72 @@
+"""What displays say in their status rows: phrases, so that each page is told in its language."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import linkwright.rviz
+from linkwright.diagnostics import Diagnostic, phrase
+from tests.rviz.displays.test_topic_display import config
+from tests.viewer.scene import page, world
+
+RVIZ = Path(linkwright.rviz.__file__).parent
+_TEXT_OF = {"set_status_row": 2, "refuse": 0, "_refuse": 1, "StatusRow": 2}
+"""Calls that give a status its text -> which argument that is."""
+
+
+def _is_plain(text: ast.expr) -> bool:
+    """Whether the source has a text here that is no phrase; the catalogues are checked for phrases."""
+    if isinstance(text, ast.IfExp):
+        return _is_plain(text.body) or _is_plain(text.orelse)
+    if isinstance(text, ast.BoolOp):
+        return any(map(_is_plain, text.values))
+    if isinstance(text, ast.Call):
+        return ast.unparse(text.func) == "str" or ast.unparse(text.func).endswith(".join")
+    return isinstance(text, (ast.Constant, ast.JoinedStr, ast.BinOp))
+
+
+def _statuses(folder: Path) -> list[tuple[str, ast.expr]]:
+    found = []
+    for path in sorted(folder.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call):
+                place = _TEXT_OF.get(node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func))
+                if place is not None and len(node.args) > place:
+                    found.append((f"{path.relative_to(RVIZ)}:{node.lineno}", node.args[place]))
+    return found
+
+
+def test_every_status_is_a_phrase_and_so_in_the_catalogues():
+    statuses = [status for room in ("displays", "frames", "visualization") for status in _statuses(RVIZ / room)]
+    assert len(statuses) > 100
+    assert [place for place, text in statuses if _is_plain(text)] == []
+
+
+async def test_each_page_reads_statuses_in_its_language():
+    silent = {
+        "zh": "没有收到消息：没有节点发布这个话题",
+        "en": "No messages received: the topic has no publisher",
+    }
+    wrong = {"zh": "订阅出错：话题名为空", "en": "Error subscribing: Empty topic name"}
+    async with world(config()) as w:
+        for language, text in silent.items():
+            async with page(w.viewer, f"&language={language}") as client:
+                (display,) = (await client.opened())["tree"]["displays"]
+                assert [row["text"] for row in display["status"]] == [text]
+        async with page(w.viewer, "&language=zh-CN") as chinese, page(w.viewer) as other:
+            await chinese.opened()
+            await other.opened()
+            await other.set(f"{display['id']}/Topic", "")
+            for client, language in ((chinese, "zh"), (other, "en")):
+                told = await client.until("display_status", display=display["id"], level="error")
+                assert [(row["name"], row["text"]) for row in told["status"]] == [("Topic", wrong[language])]
+
+
+async def test_findings_are_told_in_the_language_of_each_page_too():
+    async with world(config()) as w, page(w.viewer, "&language=zh") as chinese, page(w.viewer) as other:
+        await chinese.opened()
+        await other.opened()
+        w.viewer.show_diagnostics([Diagnostic("URDF101", phrase("URDF is empty"))])
+        texts = [(await client.until("diagnostics"))["items"][0]["message"] for client in (chinese, other)]
+        assert texts == ["URDF 是空的", "URDF is empty"]

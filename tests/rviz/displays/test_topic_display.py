@@ -1,0 +1,320 @@
+"""Displays of messages, by the example of PointStamped."""
+
+from __future__ import annotations
+
+import asyncio
+
+import numpy as np
+import pytest
+
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.graph.endpoints.base import Endpoint
+from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.messages import get_message
+from linkwright.rviz import RvizConfig
+from tests.skipping import skipping
+from tests.viewer.contents import contents
+from tests.viewer.scene import world
+from tests.waiting import eventually
+
+PointStamped = get_message("geometry_msgs/msg/PointStamped")
+
+FILE = """\
+Visualization Manager:
+  Displays:
+    - Class: rviz_default_plugins/PointStamped
+      Enabled: true
+      Name: Clicks
+      Topic:
+        Value: /clicked_point
+  Global Options:
+    Fixed Frame: base
+"""
+
+
+def config(extra: str = "") -> RvizConfig:
+    return RvizConfig.parse(FILE.replace("      Topic:\n", extra + "      Topic:\n"))
+
+
+def point(x: float, frame: str = "base", stamp: int = 0) -> PointStamped:
+    message = PointStamped()
+    message.header.frame_id = frame
+    message.header.stamp.sec = stamp
+    message.point.x = x
+    return message
+
+
+def point_at(stamp_ns: int, frame: str) -> PointStamped:
+    message = point(1.0, frame, stamp_ns // 1_000_000_000)
+    message.header.stamp.nanosec = stamp_ns % 1_000_000_000
+    return message
+
+
+def points(world) -> list[list[float]]:
+    """Of the frames that a page would be sent, in the fixed frame, oldest first."""
+    shown = sorted(contents(world.display("PointStamped")), key=lambda content: content.key)
+    assert all(each.fields["kind"] == "point_marks" for each in shown)
+    return [(each.fields["positions"] @ rotation_matrix(each.pose[3:]).T + each.pose[:3]).tolist() for each in shown]
+
+
+async def test_a_point_is_drawn_where_it_was_in_the_fixed_frame():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        assert w.status("PointStamped") == {"Topic": ("warn", "No messages received: the topic has no publisher")}
+        w.move({("base", "tip"): (1, 2, 3, 0, 0, 2**-0.5, 2**-0.5)}, static=True)
+        publisher.publish(point(1.0, "tip"))
+        await w.settle()
+        np.testing.assert_allclose(points(w), [[1, 3, 3]], atol=1e-6)
+        assert w.status("PointStamped") == {
+            "Topic": ("ok", "1 messages received"),
+            "Transform": ("ok", "Transform OK"),
+        }
+
+
+async def test_a_message_waits_for_its_transform():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        publisher.publish(point(1.0, "tip"))
+        await w.settle()
+        assert w.display("PointStamped").data() == []
+        level, text = w.status("PointStamped")["Transform"]
+        assert (level, text.split(":")[0]) == ("error", "Could not transform from [tip] to [base]")
+        w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        await w.settle()
+        assert points(w) == [[2, 0, 0]]
+        assert w.status("PointStamped")["Transform"] == ("ok", "Transform OK")
+
+
+@skipping
+async def test_transforms_that_come_a_little_later_than_messages_are_no_error():
+    """Drivers publish their data before tf has the pose of that moment: that is how it is, not a fault."""
+    async with world(config()) as w:
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        w.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
+        for _ in range(30):
+            publisher.publish(point_at(w.graph.timebase.now_ns() + 50_000_000, "tip"))
+            await w.settle()
+            assert w.status("PointStamped").get("Transform") in (None, ("ok", "Transform OK"))
+            await asyncio.sleep(0.1)
+            assert w.status("PointStamped").get("Transform") in (None, ("ok", "Transform OK"))
+            w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)})
+            await w.settle()
+            assert w.status("PointStamped")["Transform"] == ("ok", "Transform OK")
+        assert len(points(w)) == 1
+
+
+@skipping
+async def test_transforms_that_do_not_come_are_an_error():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        w.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
+        publisher.publish(point_at(w.graph.timebase.now_ns() + 50_000_000, "tip"))
+        await w.settle()
+        assert "Transform" not in w.status("PointStamped")
+        await asyncio.sleep(2.0)
+        level, text = w.status("PointStamped")["Transform"]
+        assert level == "error"
+        assert "extrapolation" in text
+        w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)})
+        await w.settle()
+        assert w.status("PointStamped")["Transform"] == ("ok", "Transform OK")
+        await asyncio.sleep(2.0)
+        assert w.status("PointStamped")["Transform"] == ("ok", "Transform OK")
+
+
+async def test_another_fixed_frame_places_the_last_message_anew():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        publisher.publish(point(1.0))
+        await w.settle()
+        assert points(w) == [[1, 0, 0]]
+        w.viewer.manager.set_fixed_frame("tip")
+        await w.settle()
+        assert points(w) == [[0, 0, 0]]
+
+
+@pytest.mark.parametrize(("length", "expected"), [(1, [[3, 0, 0]]), (3, [[1, 0, 0], [2, 0, 0], [3, 0, 0]])])
+async def test_the_history_is_as_long_as_asked_for(length, expected):
+    async with world(config(f"      History Length: {length}\n")) as w:
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        for x in (1.0, 2.0, 3.0):
+            publisher.publish(point(x))
+        await w.settle()
+        assert points(w) == expected
+
+
+async def test_a_point_that_is_none_is_told():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        publisher.publish(point(float("nan")))
+        await w.settle()
+        assert w.status("PointStamped")["Message"][0] == "error"
+        assert w.display("PointStamped").data() == []
+
+
+async def test_a_disabled_display_leaves_the_topic():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        display = w.display("PointStamped")
+        assert publisher.get_subscription_count() == 1
+        w.viewer.manager.tree.check(display, False)
+        assert publisher.get_subscription_count() == 0
+        assert display.data() == []
+        w.viewer.manager.tree.check(display, True)
+        assert publisher.get_subscription_count() == 1
+
+
+async def test_quality_of_service_that_does_not_fit_is_told():
+    async with world(config()) as w:
+        best_effort = QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT)
+        w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", best_effort)
+        await w.settle()
+        level, text = w.status("PointStamped")["Topic"]
+        assert level == "warn"
+        assert "RELIABILITY" in text
+
+
+async def test_the_file_says_how_to_listen():
+    text = FILE + "\n"
+    text = text.replace(
+        "        Value: /clicked_point\n", "        Durability Policy: Transient Local\n        Value: /p\n"
+    )
+    async with world(RvizConfig.parse(text)) as w:
+        lasting = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/p", lasting)
+        publisher.publish(point(4.0))
+        await w.settle()
+        assert points(w) == [[4, 0, 0]]
+
+
+async def test_a_message_that_a_display_fails_at_is_told_and_is_not_in_the_way(monkeypatch):
+    def fail(self, message, pose):
+        if message.point.x < 0:
+            raise ZeroDivisionError("no such point")
+        self.send_marks(message, pose)
+
+    async with world(config()) as w:
+        display = w.display("PointStamped")
+        kind = type(display)
+        monkeypatch.setattr(kind, "send_marks", kind.process_message, raising=False)
+        monkeypatch.setattr(kind, "process_message", fail)
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        for x in (-1.0, -2.0):
+            publisher.publish(point(x, "tip"))
+        publisher.publish(point(-3.0))
+        w.move({("base", "tip"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
+        await w.settle()
+        assert w.status("PointStamped")["Failure"] == ("error", "The message could not be shown: no such point")
+        assert w.logged().count("'Clicks' failed") == 1
+        publisher.publish(point(3.0))
+        await w.settle()
+        assert "Failure" not in w.status("PointStamped")
+        assert points(w) == [[3.0, 0.0, 0.0]]
+
+
+async def test_the_last_count_of_messages_is_told_when_no_more_come(monkeypatch):
+    monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
+    async with world(config()) as w:
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 10)
+        for x in range(4):
+            publisher.publish(point(float(x)))
+
+        def said() -> tuple[str, str]:
+            level, text = w.status("PointStamped")["Topic"]
+            return level, text.split(" at ")[0]
+
+        await eventually(lambda: said() == ("ok", "4 messages received"))
+
+
+async def test_a_silent_topic_says_who_is_silent_and_where_such_messages_are(monkeypatch):
+    monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
+    async with world(config()) as w:
+
+        def said() -> str:
+            return w.status("PointStamped")["Topic"][1].removeprefix("No messages received: ")
+
+        assert said() == "the topic has no publisher"
+        node = w.graph.create_node("clicks")
+        node.create_publisher(PointStamped, "/other", 5)
+        there = "the topic has no publisher; there is geometry_msgs/msg/PointStamped on /other"
+        await eventually(lambda: said() == there, what=said)
+        for name in ("/a", "/b", "/clicked_points", "/c"):
+            node.create_publisher(PointStamped, name, 5)
+        await eventually(lambda: said().startswith(there.replace("/other", "/clicked_points, ")), what=said)
+        node.create_publisher(PointStamped, "/clicked_point", 5)
+        await eventually(lambda: said() == "no message arrived yet from clicks", what=said)
+
+
+async def test_a_topic_of_another_type_is_told(monkeypatch):
+    monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
+    async with world(RvizConfig.parse(FILE.replace("/clicked_point", "/words"))) as w:
+        w.graph.create_node("speaker").create_publisher(get_message("std_msgs/msg/String"), "/words", 1)
+        told = (
+            "warn",
+            "No messages received: the topic carries std_msgs/msg/String, not geometry_msgs/msg/PointStamped",
+        )
+        await eventually(lambda: w.status("PointStamped")["Topic"] == told)
+
+
+@skipping
+async def test_stamps_of_another_clock_are_told_of():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        w.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
+        publisher.publish(point_at(w.graph.timebase.now_ns() + 60_000_000_000, "tip"))
+        await w.settle()
+        await asyncio.sleep(2)
+        level, text = w.status("PointStamped")["Transform"]
+        assert level == "error"
+        assert text.startswith("The message's stamp is 60 s after the local time: check the clocks of both computers")
+
+
+@pytest.mark.parametrize(
+    ("policy", "remedy"),
+    [
+        (QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT), "Choose Best Effort for Reliability Policy"),
+        (QoSProfile(depth=5, durability=DurabilityPolicy.VOLATILE), "Choose Volatile for Durability Policy"),
+    ],
+)
+async def test_a_publisher_that_offers_less_is_told_of_with_the_row_to_change(policy, remedy):
+    wanted = {"Reliability Policy": "Reliable", "Durability Policy": "Transient Local"}
+    async with world(config()) as w:
+        display = w.display("PointStamped")
+        for row, value in wanted.items():
+            if row.split()[0] in remedy:
+                display.set_property(("Topic", row), value)
+        w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", policy)
+        await w.settle()
+        level, text = w.status("PointStamped")["Topic"]
+        assert (level, f"{remedy} below Topic" in text) == ("warn", True), text
+
+
+async def test_many_displays_that_wait_describe_no_endpoints_but_publishers(monkeypatch):
+    described: list[str] = []
+    info = Endpoint.info
+    monkeypatch.setattr(Endpoint, "info", lambda self: (described.append(self.kind), info(self))[1])
+    entry = FILE[FILE.index("    - Class") : FILE.index("  Global")]
+    many = "".join(entry.replace("/clicked_point", f"/point{i}") for i in range(40))
+    async with world(RvizConfig.parse(FILE.replace(entry, many))) as w:
+        other = w.graph.create_node("other").create_publisher(PointStamped, "/point7x", 10)
+        shown = [display for display in w.viewer.displays if display.CLASS.endswith("PointStamped")]
+        assert len(shown) == 40
+        await eventually(lambda: "/point7x" in shown[7].status[0].text)
+        assert described.count(EndpointKind.SUBSCRIPTION) == 0
+        before = len(described)
+        for display in shown:
+            display._report_count()  # as each does every second
+        assert len(described) == before
+        other.destroy()
+        await eventually(lambda: "there is" not in shown[7].status[0].text)
+
+
+async def test_a_path_is_no_warning_before_the_first_plan_once_somebody_plans():
+    path = RvizConfig.parse(FILE.replace("PointStamped", "Path").replace("/clicked_point", "/plan"))
+    async with world(path) as w:
+        assert w.status("Path")["Topic"][0] == "warn", "the topic has no publisher"
+        w.graph.create_node("planner").create_publisher("nav_msgs/msg/Path", "/plan", 5)
+        awaited = ("ok", "No messages received: no message arrived yet from planner")
+        await eventually(lambda: w.status("Path")["Topic"] == awaited)

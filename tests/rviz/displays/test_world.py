@@ -1,0 +1,408 @@
+"""linkwright/World: the models of a simulated world, where the simulation has them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS
+from linkwright.messages import Header, String, TFMessage, TransformBatch, get_message
+from linkwright.rviz import RvizConfig
+from tests.viewer.contents import contents
+from tests.viewer.scene import IDENTITY, page, world
+from tests.waiting import eventually
+
+SCAN = get_message("sensor_msgs/msg/LaserScan")
+CONFIG = """\
+Visualization Manager:
+  Global Options: {Fixed Frame: FIXED}
+  Displays:
+    - {Class: linkwright/World, Enabled: true}
+"""
+
+WORLD = """\
+<sdf version="1.9"><world name="yard">
+  <model name="ground"><static>true</static><link name="link">
+    <visual name="v"><geometry><plane><normal>0 0 1</normal><size>10 20</size></plane></geometry></visual>
+  </link></model>
+  <model name="robot"><pose>1 2 0 0 0 0</pose>
+    <link name="base"><pose>0 0 0.5 0 0 0</pose>
+      <visual name="body"><pose>0 0 1 0 0 0</pose><transparency>0.5</transparency>
+        <geometry><box><size>1 2 3</size></box></geometry>
+        <material><diffuse>1 0 0 1</diffuse></material></visual>
+      <visual name="ear"><pose relative_to="__model__">0 0 2 0 0 0</pose>
+        <geometry><cone><radius>0.1</radius><length>0.3</length></cone></geometry></visual>
+      <collision name="hull"><geometry><ellipsoid><radii>1 2 3</radii></ellipsoid></geometry></collision>
+    </link>
+    <model name="arm"><pose>0 1 0 0 0 0</pose><link name="tip"/></model>
+  </model>
+</world></sdf>
+"""
+
+
+def config(fixed: str) -> RvizConfig:
+    return RvizConfig.parse(CONFIG.replace("FIXED", fixed))
+
+
+class Simulation:
+    """Says a world, and where its links are."""
+
+    def __init__(self, made) -> None:
+        self.made = made
+        node = made.graph.create_node("simulation")
+        self.description = node.create_publisher(String, "/world_description", DESCRIPTION_QOS)
+        self.poses = node.create_publisher(TFMessage, "/world_poses", TF_QOS)
+
+    async def describe(self, text: str, links: int = 3) -> None:
+        self.description.publish(String(text))
+        await eventually(lambda: links_of(self.made) == links)
+
+    async def move(self, **poses: tuple[float, ...]) -> None:
+        names = tuple(name.replace("__", "::") for name in poses)
+        array = np.array(list(poses.values()), dtype=np.float64).reshape(-1, 7)
+        stamp = self.made.graph.timebase.now_ns()
+        batch = TransformBatch(("world",) * len(names), names, stamp, array)
+        self.poses.publish(TFMessage(batch=batch))
+        await self.made.settle()
+
+
+def sent(made, kind: str):
+    return next((content for content in contents(made.display("World")) if content.fields["kind"] == kind), None)
+
+
+def links_of(made) -> int:
+    scene = sent(made, "world_scene")
+    return len(scene.fields["links"]) if scene else 0
+
+
+def positions(made) -> list[list[float]]:
+    return sent(made, "world_poses").fields["poses"].reshape(-1, 7)[:, :3].round(6).tolist()
+
+
+async def test_links_are_sent_with_their_shapes_in_their_frames_and_where_they_stand():
+    async with world(config("world")) as made:
+        await Simulation(made).describe(WORLD)
+        ground, base, tip = sent(made, "world_scene").fields["links"]
+        assert [each["name"] for each in (ground, base, tip)] == ["ground::link", "robot::base", "robot::arm::tip"]
+        (plane,) = ground["visuals"]
+        assert (plane["kind"], plane["size"], plane["color"]) == ("plane", [10.0, 20.0], [0.7, 0.7, 0.7, 1.0])
+        body, ear = base["visuals"]
+        assert (body["kind"], body["position"], body["color"]) == ("box", [0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.5])
+        assert body["repaints"]
+        assert (ear["kind"], ear["size"]) == ("cone", [0.1, 0.3])
+        assert ear["position"] == pytest.approx([0, 0, 1.5])
+        assert [(each["kind"], each["size"]) for each in base["collisions"]] == [("ellipsoid", [1.0, 2.0, 3.0])]
+        assert positions(made) == [[0, 0, 0], [1, 2, 0.5], [1, 3, 0]]
+        assert made.status("World")["World"] == ("ok", "2 models, 3 links")
+
+
+async def test_links_move_by_their_names_and_stay_when_the_world_is_described_anew():
+    async with world(config("world")) as made:
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        await simulation.move(robot__base=(5, 5, 5, 0, 0, 0, 1), nobody__link=(9, 9, 9, 0, 0, 0, 1))
+        assert positions(made) == [[0, 0, 0], [5, 5, 5], [1, 3, 0]]
+        more = WORLD.replace("</world>", '<model name="ball"><link name="link"/></model></world>')
+        await simulation.describe(more, links=4)
+        await eventually(lambda: len(positions(made)) == 4)
+        assert positions(made) == [[0, 0, 0], [5, 5, 5], [1, 3, 0], [0, 0, 0]]
+        assert sent(made, "world_poses").fields["revision"] == sent(made, "world_scene").fields["revision"] == 2
+
+
+async def test_what_nothing_moves_goes_where_a_new_description_has_it():
+    async with world(config("world")) as made:
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        await simulation.move(robot__base=(5, 5, 5, 0, 0, 0, 1))
+        lower = WORLD.replace("<static>true</static>", "<static>true</static><pose>0 0 -1 0 0 0</pose>")
+        await simulation.describe(lower)
+        await eventually(lambda: positions(made) == [[0, 0, -1], [5, 5, 5], [1, 3, 0]])
+        await simulation.describe(lower.replace("<pose>1 2 0 0 0 0</pose>", "<static>true</static>"))
+        await eventually(lambda: positions(made) == [[0, 0, -1], [0, 0, 0.5], [0, 1, 0]])
+
+
+async def test_without_a_frame_world_the_world_is_placed_by_a_frame_of_its_robot():
+    async with world(config("odom")) as made:
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        assert made.status("World")["Frame"][0] == "warn"
+        made.move({("odom", "base"): (0, 0, 0.5, *IDENTITY[3:])})
+        await eventually(lambda: sent(made, "world_poses").pose is not None)
+        assert sent(made, "world_poses").pose == pytest.approx([-1, -2, 0, 0, 0, 0, 1])
+        half = math.sqrt(0.5)
+        made.move({("odom", "base"): (3, 0, 0.5, 0, 0, half, half)})
+        await made.settle()
+        await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))  # where it was when tf had it there
+        assert made.status("World")["Frame"] == (
+            "ok",
+            "tf has no 'world': the world is placed so that 'base' coincides in both",
+        )
+
+
+async def test_a_world_without_transforms_is_at_its_own_frame_and_nothing_warns():
+    async with world(config("world")) as made, page(made.viewer) as opened:
+        await Simulation(made).describe(WORLD)
+        await opened.until("display_status", display="global", level="ok")
+        assert made.status("World")["Frame"] == ("ok", "The world is at the frame 'world'")
+        made.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
+        own = made.viewer.context.transforms.own
+        await eventually(lambda: (frame := own("world")) is not None and frame.parent == "odom")
+
+
+async def test_with_the_fixed_frame_world_the_frames_of_tf_are_placed_in_the_world_that_stands_still():
+    async with world(config("world")) as made, page(made.viewer):
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        made.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
+        await made.settle()
+        await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
+        await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
+        assert sent(made, "world_poses").frame == "world"
+        told = "tf has no 'world': its frames are placed so that 'base' coincides in both"
+        await eventually(lambda: made.status("World")["Frame"] == ("ok", told))
+        transforms = made.viewer.context.transforms
+        await eventually(lambda: transforms.own("world").parent == "odom")
+        assert transforms.pose("world", "base", 0) == pytest.approx([1, 2, 0.5, 0, 0, 0, 1])
+        assert transforms.pose("world", "odom", 0) == pytest.approx([-2, 2, 0, 0, 0, 0, 1])
+        frame, known = transforms.known("world", IDENTITY)
+        assert (frame, known) == ("odom", pytest.approx([2, -2, 0, 0, 0, 0, 1]))
+        await eventually(lambda: "base" in made.viewer.manager.frames.placed)
+
+        made.move({("map", "world"): IDENTITY}, static=True)
+        await eventually(lambda: made.status("World")["Frame"] == ("ok", "The world is at the frame 'world'"))
+        assert transforms.own("world") is None
+
+
+async def test_a_frame_world_of_tf_is_the_world():
+    async with world(config("map")) as made:
+        made.move({("map", "world"): (1, 0, 0, *IDENTITY[3:])}, static=True)
+        await Simulation(made).describe(WORLD)
+        await eventually(lambda: sent(made, "world_poses").frame == "world")
+        assert sent(made, "world_poses").pose is None
+
+
+async def test_what_nothing_moves_is_sent_once():
+    async with world(config("world")) as made:
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        await simulation.move(robot__base=(1, 1, 1, 0, 0, 0, 1))
+        display = made.display("World")
+        before = display.data()[-1]
+        await simulation.move(robot__base=(1, 1, 1, 0, 0, 0, 1))
+        assert display.data()[-1] is before
+
+
+LOST = "<link name='l'><pose relative_to='x'/></link>"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("<sdf", "<world>:1:1: this tag is never finished"),
+        ("<robot name='r'/>", "the root element is <robot>, not <sdf>"),
+        ("<sdf version='1.6'/>", "<sdf> has neither a world nor a model in it"),
+        (f"<sdf version='1.6'><model name='m'>{LOST}</model></sdf>", "'x' cannot be placed"),
+    ],
+)
+async def test_a_text_that_says_no_world_is_told_of_and_the_world_before_stays(text, told):
+    async with world(config("world")) as made:
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        simulation.description.publish(String(text))
+        await eventually(lambda: made.status("World")["World"][0] == "error")
+        assert told in made.status("World")["World"][1]
+        assert links_of(made) == 3
+
+
+async def test_files_of_a_model_are_served_with_its_textures_and_those_that_are_missing_told_of(tmp_path):
+    model = tmp_path / "crate"
+    for name in ("model.config", "meshes/crate.stl", "materials/textures/wood.png", "secret.txt"):
+        (model / name).parent.mkdir(parents=True, exist_ok=True)
+        (model / name).write_bytes(b"x")
+    visual = "<visual name='{}'><geometry><mesh><uri>{}</uri></mesh></geometry></visual>"
+    shapes = visual.format("a", (model / "meshes/crate.stl").as_uri()) + visual.format("b", "file:///nowhere.stl")
+    text = f"<sdf version='1.9'><model name='crate'><link name='link'>{shapes}</link></model></sdf>"
+    async with world(config("world")) as made:
+        await Simulation(made).describe(text, links=1)
+        (link,) = sent(made, "world_scene").fields["links"]
+        (shape,) = link["visuals"]
+        key, relative = shape["url"].partition("?")[0].removeprefix("/mesh/").split("/", 1)
+        meshes = made.viewer.context.meshes
+        assert relative == "meshes/crate.stl"
+        assert meshes.file(key, "materials/textures/wood.png") == model / "materials/textures/wood.png"
+        assert meshes.file(key, "meshes/wood.png") == model / "materials/textures/wood.png"  # as Gazebo looks for it
+        with pytest.raises(Exception, match="only meshes and images"):
+            meshes.file(key, "secret.txt")
+        level, told = made.status("World")["Files"]
+        assert level == "error"
+        assert "crate::link: Could not load 'file:///nowhere.stl'" in told
+
+
+async def test_the_heights_of_a_ground_are_sent_as_the_simulation_has_them_and_not_too_many(tmp_path):
+    steps = np.tile(np.linspace(0, 65535, 600).astype(np.uint16), (2, 1))
+    Image.fromarray(steps).save(tmp_path / "hill.png")
+    ground = "<heightmap><uri>{}</uri><size>10 10 2</size></heightmap>"
+    visual = f"<visual name='v'><geometry>{ground.format((tmp_path / 'hill.png').as_uri())}</geometry></visual>"
+    visual += f"<visual name='w'><geometry>{ground.format('file:///nowhere.png')}</geometry></visual>"
+    text = f"<sdf version='1.9'><model name='hill'><link name='l'>{visual}</link></model></sdf>"
+    async with world(config("world")) as made:
+        await Simulation(made).describe(text, links=1)
+        (link,) = sent(made, "world_scene").fields["links"]
+        (hill,) = link["visuals"]
+        assert (hill["kind"], hill["columns"], hill["url"]) == ("heightmap", 257, None)
+        heights = hill["heights"].reshape(2, 257)
+        assert heights[1, [0, 128, 256]].tolist() == pytest.approx([0.0, 0.5, 1.0], abs=2e-3)
+        assert "file:///nowhere.png" in made.status("World")["Files"][1]
+
+
+async def test_how_a_surface_reflects_is_sent_where_its_material_says_so(tmp_path):
+    Image.new("RGB", (2, 2)).save(tmp_path / "bumps.png")
+    bumps = (tmp_path / "bumps.png").as_uri()
+    ball = "<geometry><sphere><radius>1</radius></sphere></geometry>"
+    visual = "<visual name='{}'>" + ball + "<material><pbr><metal>{}</metal></pbr></material></visual>"
+    albedo = f"<albedo_map>{bumps}</albedo_map>"
+    metal = f"<metalness>1</metalness><roughness>0.2</roughness><normal_map>{bumps}</normal_map>"
+    lamp = f"<emissive_map>{bumps}</emissive_map><ambient_occlusion_map>{bumps}</ambient_occlusion_map>"
+    said = {"plain": albedo, "metal": albedo + metal, "lamp": albedo + lamp}
+    visuals = "".join(visual.format(name, each) for name, each in said.items())
+    text = f"<sdf version='1.9'><model name='ball'><link name='l'>{visuals}</link></model></sdf>"
+    async with world(config("world")) as made:
+        await Simulation(made).describe(text, links=1)
+        (link,) = sent(made, "world_scene").fields["links"]
+        plain, shining, lamp = link["visuals"]
+        assert lamp["surface"]["emissive_map"] == lamp["surface"]["occlusion_map"] == plain["texture"]
+        assert plain["surface"] is None
+        surface = shining["surface"]
+        assert (surface["roughness"], surface["metalness"], surface["roughness_map"]) == (0.2, 1.0, None)
+        assert surface["normal_map"] == shining["texture"] == plain["texture"]
+
+
+async def test_materials_of_gazebo_are_known_by_their_names():
+    script = "<material><script><name>Gazebo/Red</name></script></material>"
+    visual = f"<visual name='v'><geometry><sphere><radius>1</radius></sphere></geometry>{script}</visual>"
+    text = f"<sdf version='1.9'><model name='ball'><link name='l'>{visual}</link></model></sdf>"
+    async with world(config("world")) as made:
+        await Simulation(made).describe(text, links=1)
+        (link,) = sent(made, "world_scene").fields["links"]
+        assert link["visuals"][0]["color"] == [1.0, 0.0, 0.0, 1.0]
+
+
+LIGHTS = """\
+<sdf version="1.9"><world name="yard"><scene><ambient>0.1 0.2 0.3 1</ambient><shadows>false</shadows></scene>
+  <light name="sun" type="directional">
+    <direction>0 0 -2</direction><diffuse>1 0.5 0 1</diffuse><intensity>2</intensity></light>
+  <light name="off" type="point"><light_on>false</light_on></light>
+  <light name="lost" type="point"><pose relative_to="nowhere"/></light>
+  <model name="lamp"><static>true</static><link name="link"><pose>0 0 5 0 0 0</pose>
+    <light name="bulb" type="spot"><pose>0 0 1 0 1.5707963267948966 0</pose>
+      <attenuation><range>20</range><constant>0.5</constant><linear>0.1</linear><quadratic>0.01</quadratic></attenuation>
+      <spot><inner_angle>0.5</inner_angle><outer_angle>1</outer_angle></spot></light></link></model>
+</world></sdf>
+"""
+
+
+async def test_the_lights_of_a_world_are_sent_with_where_they_are_and_how_they_shine():
+    async with world(config("world")) as made:
+        await Simulation(made).describe(LIGHTS, links=1)
+        scene = sent(made, "world_scene").fields
+        assert (scene["ambient"], scene["background"], scene["shadows"]) == ([0.1, 0.2, 0.3], [0.7, 0.7, 0.7], False)
+        sun, bulb = scene["lights"]
+        assert (sun["kind"], sun["link"], sun["direction"], sun["color"]) == (
+            "directional",
+            None,
+            [0, 0, -1],
+            [2, 1, 0],
+        )
+        assert (bulb["kind"], bulb["link"], bulb["position"]) == ("spot", "lamp::link", [0, 0, 1])
+        assert bulb["direction"] == pytest.approx([-1, 0, 0])
+        assert (bulb["range"], bulb["fading"], bulb["cone"]) == (20, [0.5, 0.1, 0.01], [0.5, 1])
+
+
+SKY = """<world name="yard"><scene><sky><time>{}</time><clouds/></sky>
+<fog><type>{}</type><color>0.5 0.6 0.7 1</color><start>2</start><end>30</end><density>0.1</density></fog></scene>"""
+
+
+@pytest.mark.parametrize(
+    ("time", "type_", "daylight", "fog"),
+    [
+        (12, "none", 1.0, None),
+        (6, "linear", 0.5, {"color": [0.5, 0.6, 0.7], "start": 2.0, "end": 30.0, "density": None}),
+        (23, "quadratic", 0.0, {"color": [0.5, 0.6, 0.7], "start": 2.0, "end": 30.0, "density": 0.1}),
+    ],
+)
+async def test_sky_and_fog_are_sent(time, type_, daylight, fog):
+    async with world(config("world")) as made:
+        await Simulation(made).describe(WORLD)
+        scene = sent(made, "world_scene").fields
+        assert (scene["daylight"], scene["fog"]) == (None, None)
+        await Simulation(made).describe(WORLD.replace('<world name="yard">', SKY.format(time, type_)))
+        await eventually(lambda: sent(made, "world_scene").fields["revision"] == 2)
+        scene = sent(made, "world_scene").fields
+        assert (scene["daylight"], scene["fog"]) == (daylight, fog)
+
+
+SEEING = """
+  <model name="scout"><link name="head"><pose>0 0 1 0 0 0</pose>
+    <sensor name="laser" type="gpu_lidar"><pose>0.1 0 0 0 0 0</pose><visualize>true</visualize>
+      <lidar><scan><horizontal><samples>1000</samples><min_angle>-1</min_angle><max_angle>0.998</max_angle></horizontal>
+        <vertical><samples>32</samples><min_angle>-0.31</min_angle><max_angle>0.31</max_angle></vertical></scan>
+        <range><min>0.2</min><max>20</max></range></lidar></sensor>
+    <sensor name="spare" type="ray"><ray><scan><horizontal><samples>3</samples></horizontal></scan></ray></sensor>
+    <sensor name="eye" type="camera"><camera><horizontal_fov>1.5707963267948966</horizontal_fov>
+      <image><width>200</width><height>100</height></image><clip><near>0.5</near><far>8</far></clip></camera></sensor>
+  </link></model>
+</world>"""
+
+
+def listened(made) -> set[str]:
+    names = ("/world_rays", "/world_rays/others")
+    return {name for name in names if made.graph.create_node("asking").count_subscribers(name)}
+
+
+async def test_the_rays_of_lidars_are_listened_to_while_they_are_drawn():
+    async with world(config("world")) as made:
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        assert listened(made) == set()
+        await simulation.describe(WORLD.replace("</world>", SEEING), links=4)
+        laser, spare = sent(made, "world_scene").fields["lidars"]
+        assert (laser["name"], laser["link"], laser["visualized"]) == ("scout::head::laser", "scout::head", True)
+        assert (laser["position"], laser["nearest"], laser["farthest"]) == ([0.1, 0.0, 0.0], 0.2, 20.0)
+        assert (laser["vertical"]["count"], laser["vertical"]["step"]) == (16, pytest.approx(0.04))
+        assert (laser["horizontal"]["count"], laser["horizontal"]["step"]) == (44, pytest.approx(0.046))
+        assert (spare["visualized"], spare["farthest"]) == (False, 30.0)
+        assert listened(made) == {"/world_rays"}
+        rays = made.graph.create_node("rays").create_publisher(SCAN, "/world_rays", SENSOR_DATA_QOS)
+        ranges = np.arange(32_000, dtype=np.float32)
+        rays.publish(SCAN(header=Header(frame_id="scout::head::laser"), ranges=ranges))
+        rays.publish(SCAN(header=Header(frame_id="scout::head::laser"), ranges=ranges[:7]))
+        rays.publish(SCAN(header=Header(frame_id="nobody"), ranges=ranges))
+        await made.settle()
+        shown = sent(made, "world_rays").fields
+        assert shown["lidar"] == "scout::head::laser"
+        assert shown["ranges"].reshape(16, 44)[1, :3].tolist() == [2000.0, 2023.0, 2046.0]
+
+        revision = sent(made, "world_scene").fields["revision"]  # of a recording the world is told again
+        simulation.description.publish(String(WORLD.replace("</world>", SEEING)))
+        await eventually(lambda: sent(made, "world_scene").fields["revision"] > revision)
+        assert sent(made, "world_rays") is not None
+        made.display("World").time_reset()
+        assert sent(made, "world_rays") is None
+
+        made.display("World").set_property(("Lidar Rays",), "All")
+        assert listened(made) == {"/world_rays", "/world_rays/others"}
+        made.display("World").set_property(("Lidar Rays",), "None")
+        assert listened(made) == set()
+        assert sent(made, "world_rays") is None
+
+
+async def test_cameras_are_sent_with_what_they_see():
+    async with world(config("world")) as made:
+        await Simulation(made).describe(WORLD.replace("</world>", SEEING), links=4)
+        (camera,) = sent(made, "world_scene").fields["cameras"]
+        assert (camera["name"], camera["visualized"]) == ("scout::head::eye", False)
+        assert [camera[side] for side in ("left", "right", "up", "down")] == pytest.approx([1, 1, 0.5, 0.5])
+        assert (camera["near"], camera["far"]) == (0.5, 8.0)

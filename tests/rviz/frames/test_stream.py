@@ -1,0 +1,281 @@
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import numpy as np
+
+from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
+from linkwright.messages import TFMessage, TransformBatch
+from linkwright.rviz.frames.history import FrameHistory, OwnFrame
+from linkwright.rviz.frames.stream import FrameStream, TimeControl
+from tests.skipping import LoopClock, skipping
+from tests.viewer.scene import IDENTITY, unpack
+from tests.waiting import eventually
+
+
+class Rig:
+    """A stream, and everything it says."""
+
+    def __init__(self) -> None:
+        self.graph = Graph(clock=LoopClock())
+        node = self.graph.create_node("rig")
+        self._tf = node.create_publisher(TFMessage, "/tf", TF_QOS)
+        self._tf_static = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
+        self.own_frames: frozenset[str] = frozenset()
+        self.fade_time: float | None = 15.0
+        self.watched = True
+        self.said: list = []
+        viewer = self.graph.create_node("viewer")
+        self.history = FrameHistory(viewer)
+        self.stream = FrameStream(
+            viewer,
+            self,
+            TimeControl(viewer.get_clock()),
+            self.history,
+            on_frames=self.said.append,
+            fade_time=lambda: self.fade_time,
+            own_frames=lambda: self.own_frames,
+        )
+        self.stream.fixed_frame = "base"
+        self.stream.start()
+
+    def __len__(self):
+        return int(self.watched)
+
+    def publish(self, table):
+        self.said.append(table)
+
+    def send_transforms(self, frame):
+        self.said.append(unpack(frame))
+
+    def send(self, poses, *, static=False, stamp_ns=None):
+        batch = TransformBatch(
+            tuple(parent for parent, _ in poses),
+            tuple(child for _, child in poses),
+            self.graph.timebase.now_ns() if stamp_ns is None else stamp_ns,
+            np.array(list(poses.values()), dtype=np.float64),
+        )
+        (self._tf_static if static else self._tf).publish(TFMessage(batch=batch))
+
+    def move(self, x: float, **options):
+        self.send({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)}, **options)
+
+    async def settle(self):
+        await self.graph.settle()
+        await asyncio.sleep(0)
+        await asyncio.sleep(0)
+
+    def pose(self, name: str) -> list[float]:
+        """The pose of a frame in the last transforms sent."""
+        return self.sent()[-1].poses[self.stream.opening[0].names.index(name)].tolist()
+
+    def ages(self, name: str) -> list[float]:
+        """The ages of a frame in all transforms sent with the last table."""
+        table = self.stream.opening[0]
+        return [each.ages[table.names.index(name)] for each in self.sent() if each.revision == table.revision]
+
+    def kinds(self) -> list[str]:
+        kinds = [type(each).__name__ for each in self.said]
+        self.said.clear()
+        return kinds
+
+    def sent(self) -> list:
+        return [each for each in self.said if type(each).__name__ == "Transforms"]
+
+
+@asynccontextmanager
+async def running() -> AsyncIterator[Rig]:
+    made = Rig()
+    try:
+        yield made
+    finally:
+        made.stream.close()
+        await made.graph.close()
+
+
+def streaming(test):
+    """Run a test with a rig, in time that is skipped."""
+
+    @skipping
+    async def run():
+        async with running() as rig:
+            await test(rig)
+
+    run.__name__ = test.__name__
+    return run
+
+
+@streaming
+async def test_the_table_comes_before_the_transforms_and_then_the_displays_hear(rig):
+    rig.move(1.0)
+    await rig.settle()
+    table, transforms, frames = rig.said
+    tip, base = table.names.index("tip"), table.names.index("base")
+    assert (table.parents[tip], table.parents[base]) == (base, -1)
+    assert transforms.revision == table.revision
+    assert transforms.poses[tip].tolist() == [1, 0, 0, 0, 0, 0, 1]
+    assert frames.names == tuple(table.names)
+    assert frames.placed == {"tip", "base"}
+
+
+@streaming
+async def test_after_quiet_a_change_goes_out_at_once(rig):
+    rig.move(1.0)
+    await asyncio.sleep(0.1)
+    rig.said.clear()
+    rig.move(2.0)
+    await rig.settle()
+    assert rig.kinds() == ["Transforms"]
+
+
+@streaming
+async def test_no_more_than_the_frame_rate_and_the_last_change_is_never_lost(rig):
+    for x in range(500):
+        rig.move(float(x))
+        await asyncio.sleep(0.001)
+    await asyncio.sleep(0.1)
+    assert 15 <= len(rig.sent()) <= 18  # half a second at 30 Hz, the first at once
+    assert rig.pose("tip")[0] == x
+
+
+@streaming
+async def test_what_comes_at_the_frame_rate_hardly_waits_though_updates_were_due_at_other_moments(rig):
+    rig.move(-2.0)
+    await rig.settle()
+    rig.move(-1.0)
+    await asyncio.sleep(0.6 / 30)
+    at_once = []
+    for number in range(36):
+        rig.said.clear()
+        rig.move(float(number))
+        await asyncio.sleep(0.01)
+        at_once.append(len(rig.sent()) > 0)
+        await asyncio.sleep(1 / 30 - 0.01)
+    assert all(at_once[18:])
+
+
+@streaming
+async def test_the_fixed_frame_may_be_one_that_a_display_places(rig):
+    rig.stream.fixed_frame = "world"
+    rig.move(1.0)
+    await rig.settle()
+    assert rig.said[-1].placed == {"world"}
+    rig.history.place("display", OwnFrame("world", "base", np.array([0.0, 2.0, *IDENTITY[2:]])))
+    await asyncio.sleep(0.1)
+    assert rig.pose("tip") == [1, 2, 0, 0, 0, 0, 1]
+    assert rig.said[-1].placed == {"world", "base", "tip"}
+    rig.send({("base", "world"): IDENTITY})
+    await asyncio.sleep(0.1)
+    assert rig.pose("tip") == [1, 0, 0, 0, 0, 0, 1]
+
+
+@streaming
+async def test_equal_transforms_are_not_sent_again(rig):
+    rig.move(1.0)
+    await rig.settle()
+    rig.kinds()
+    for _ in range(5):
+        rig.move(1.0)
+        await asyncio.sleep(0.02)
+    assert rig.kinds() == []
+
+
+@streaming
+async def test_frames_that_are_heard_of_no_more_age_on_the_page(rig):
+    rig.fade_time = 0.6
+    rig.send({("base", "fix"): IDENTITY}, static=True)
+    rig.move(1.0)
+    await asyncio.sleep(1.2)
+    ages = rig.ages("tip")
+    assert ages[0] < 0.1
+    assert ages == sorted(ages)
+    assert ages[-1] > 0.6
+    count = len(ages)
+    await asyncio.sleep(0.6)
+    assert len(rig.ages("tip")) == count  # gone is gone
+    assert set(rig.ages("fix")) == {0.0}  # static frames never age
+    rig.move(1.0)
+    await rig.settle()
+    assert rig.ages("tip")[-1] < 0.1  # heard of again, though it did not move
+
+
+@streaming
+async def test_ages_are_nothing_where_no_display_shows_them(rig):
+    rig.fade_time = None
+    rig.move(1.0)
+    await asyncio.sleep(0.6)
+    assert len(rig.sent()) == 1
+
+
+@streaming
+async def test_nobody_watching_costs_nothing_until_a_page_opens(rig):
+    rig.watched = False
+    rig.move(1.0)
+    await rig.settle()
+    assert rig.said == []
+    rig.stream.refresh()
+    table, frame = rig.stream.opening
+    assert unpack(frame).revision == table.revision
+    assert rig.kinds() == ["FrameTable", "Transforms", "FrameView"]
+
+
+@streaming
+async def test_another_fixed_frame_shows_everything_from_there(rig):
+    rig.move(1.0)
+    await rig.settle()
+    rig.said.clear()
+    rig.stream.fixed_frame = "tip"
+    rig.stream.refresh()
+    transforms, frames = rig.said
+    assert rig.pose("base")[0] == -1.0
+    assert transforms is rig.sent()[-1]
+    assert frames.fixed_frame == "tip"
+
+
+@streaming
+async def test_an_unknown_fixed_frame_places_nothing(rig):
+    rig.stream.fixed_frame = "map"
+    rig.move(1.0)
+    await rig.settle()
+    _, transforms, frames = rig.said
+    assert np.isnan(transforms.poses).all()
+    assert frames.placed == {"map"}
+    assert frames.problem("tip") == "No transform from [tip] to [map]"
+
+
+@streaming
+async def test_a_robot_of_one_link_has_its_frame_though_tf_does_not_know_it(rig):
+    rig.own_frames = frozenset({"base"})
+    rig.stream.robot_changed(set())
+    await rig.settle()
+    table, transforms, frames = rig.said
+    assert (table.names, table.parents) == (["base"], [-1])
+    assert transforms.poses.tolist() == [list(IDENTITY)]
+    assert frames.names == ()  # tf does not know it
+    rig.said.clear()
+    rig.move(1.0)
+    await eventually(lambda: rig.said)
+    assert sorted(rig.said[0].names) == ["base", "tip"]
+
+
+@streaming
+async def test_frames_of_a_robot_that_went_are_gone(rig):
+    rig.send({("base", "tip"): IDENTITY, ("base", "old"): IDENTITY})
+    await rig.settle()
+    rig.said.clear()
+    rig.stream.robot_changed({"old", "never there"})
+    await eventually(lambda: len(rig.said) == 3)
+    table, transforms, frames = rig.said
+    assert sorted(table.names) == ["base", "tip"]
+    assert len(transforms.poses) == 2
+    assert "old" not in frames.names
+
+
+@streaming
+async def test_the_stamp_is_that_of_the_newest_transform(rig):
+    rig.move(1.0, stamp_ns=2_500_000_000)
+    rig.send({("base", "b"): IDENTITY}, stamp_ns=1_000_000_000)
+    await eventually(rig.sent)
+    assert rig.sent()[-1].stamp == 2.5

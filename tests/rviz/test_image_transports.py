@@ -1,0 +1,299 @@
+"""Images of image_transport's `compressed` and `compressedDepth`: unpacking, and the displays that show them."""
+
+from __future__ import annotations
+
+import struct
+from contextlib import suppress
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from linkwright.images import BadImageError, ImageSource, Unpacker
+from linkwright.images.compressed_depth import BadRvlError, decoded
+from linkwright.messages import get_message
+from linkwright.page.protocol.images import ImageFrame
+from linkwright.rviz.image_compression import ImageCompressor
+from tests.rviz.displays import test_cloud_displays as clouds
+from tests.rviz.displays import test_image_displays as images
+from tests.viewer.contents import contents
+from tests.viewer.packed_images import (
+    CompressedImage,
+    depth_message,
+    header,
+    jpeg,
+    packed,
+    png,
+    rvl,
+    sized_rvl,
+)
+from tests.viewer.scene import world
+
+CameraInfo = get_message("sensor_msgs/msg/CameraInfo")
+MILLIMETRES = np.array([[0, 1000, 1001], [65535, 0, 1]], np.uint16)
+
+
+def unpacked(message, transport: str = "compressedDepth"):
+    return Unpacker().image(message, transport)
+
+
+def values(image, kind: str) -> list:
+    return image.data.view(kind).reshape(image.height, image.width).tolist()
+
+
+# --- topics ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("topic", "hint", "expected"),
+    [
+        ("/depth/image", "raw", ("/depth/image", "raw", "/depth/image")),
+        ("/depth/image", "compressedDepth", ("/depth/image", "compressedDepth", "/depth/image/compressedDepth")),
+        ("/depth/image/compressedDepth", "raw", ("/depth/image", "compressedDepth", "/depth/image/compressedDepth")),
+        (" /color/compressed ", "theora", ("/color", "compressed", "/color/compressed")),
+        ("/compressed_air", "", ("/compressed_air", "raw", "/compressed_air")),
+        ("", "compressed", ("", "raw", "")),
+    ],
+)
+def test_a_transport_has_a_topic_below_the_images(topic, hint, expected):
+    source = ImageSource.of(topic, hint)
+    assert (source.base, source.transport, source.topic) == expected
+    assert source.message_type.endswith("/Image") == (source.transport == "raw")
+
+
+# --- unpacking -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("packing", ["png", "rvl"])
+def test_whole_depths_are_what_they_were(packing):
+    image = unpacked(depth_message(MILLIMETRES, packing))
+    assert (image.encoding, image.width, image.height, image.step) == ("16UC1", 3, 2, 6)
+    assert values(image, "<u2") == MILLIMETRES.tolist()
+    assert image.header.frame_id == "base"
+
+
+@pytest.mark.parametrize("packing", ["png", "rvl"])
+def test_depths_in_metres_are_nearly_what_they_were(packing):
+    metres = np.array([[0.5, 1.0, 4.0, 9.0], [np.nan, np.inf, 11.0, 2.0]])
+    image = unpacked(depth_message(metres, packing))
+    assert image.encoding == "32FC1"
+    expected = np.where(metres < 10.0, metres, np.nan)
+    assert np.allclose(image.data.view("<f4").reshape(2, 4), expected, rtol=0.002, equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    "form", ["16UC1", "16UC1; compressedDepth", "mono16; compressedDepth png", "16UC1;compressedDepth"]
+)
+def test_formats_of_older_publishers_are_read(form):
+    assert values(unpacked(packed(form, header() + png(MILLIMETRES))), "<u2") == MILLIMETRES.tolist()
+
+
+def test_colours_and_greys_come_out_of_files():
+    image = unpacked(packed("rgb8; jpeg compressed bgr8", jpeg((200, 100, 50), 16, 8)), "compressed")
+    assert (image.encoding, image.width, image.height) == ("rgb8", 16, 8)
+    assert np.allclose(image.data.reshape(-1, 3), [200, 100, 50], atol=3)
+    image = unpacked(packed("mono8; jpeg compressed ", jpeg(90, 4, 4)), "compressed")
+    assert (image.encoding, image.data.tolist()) == ("mono8", [90] * 16)
+    image = unpacked(packed("png", png(MILLIMETRES)), "compressed")
+    assert (image.encoding, values(image, "<u2")) == ("mono16", MILLIMETRES.tolist())
+
+
+def test_depths_may_come_as_files_too():
+    image = unpacked(packed("16UC1; png compressed ", png(MILLIMETRES)), "compressed")
+    assert (image.encoding, values(image, "<u2")) == ("16UC1", MILLIMETRES.tolist())
+    image = unpacked(packed("16UC1; jpeg compressed mono8", jpeg(4, 1, 1)), "compressed")
+    assert (image.encoding, values(image, "<u2")) == ("16UC1", [[1024]])
+
+
+@given(arrays(np.uint16, st.integers(1, 60), elements=st.sampled_from([0, 0, 0, 1, 2, 900, 901, 40000, 65535])))
+def test_every_rvl_stream_comes_out_as_it_went_in(pixels):
+    assert decoded(np.frombuffer(rvl(pixels), np.uint8), len(pixels)).tolist() == pixels.tolist()
+
+
+@given(st.binary(max_size=200), st.integers(1, 5000))
+def test_no_bytes_upset_the_reader_of_rvl_streams(data, pixels):
+    with suppress(BadRvlError):
+        assert len(decoded(np.frombuffer(data, np.uint8), pixels)) == pixels
+
+
+@pytest.mark.parametrize(
+    ("form", "data", "text"),
+    [
+        ("jpeg", header() + png(MILLIMETRES), "The format of the depth image is 'jpeg'; supported are 16UC1"),
+        ("16UC1; compressedDepth zip", header() + png(MILLIMETRES), "supported are 16UC1, mono16 and 32FC1"),
+        ("8UC1; compressedDepth png", header() + png(MILLIMETRES), "The format of the depth image is '8UC1;"),
+        ("16UC1; compressedDepth png", header()[:7], "has 7 bytes, no more than its header"),
+        ("16UC1; compressedDepth png", header() + b"depths", "neither a PNG nor a JPEG"),
+        ("16UC1; compressedDepth png", header() + png(MILLIMETRES)[:50], "The PNG cannot be read: "),
+        ("16UC1; compressedDepth png", header() + png(MILLIMETRES)[:20], "The PNG cannot be read: "),
+        (
+            "16UC1; compressedDepth png",
+            header() + png(MILLIMETRES, says=(60000, 60000)),
+            "The PNG has 60000 x 60000 pixels; no more than 16777216 are unpacked",
+        ),
+        (
+            "16UC1; compressedDepth png",
+            header() + png(MILLIMETRES.astype(np.uint8)),
+            "not a PNG of 16 bits and one channel",
+        ),
+        ("32FC1; compressedDepth png", header(0.0, 1.0) + png(MILLIMETRES), "no scale for its depths: 0, 1"),
+        ("32FC1; compressedDepth png", header(np.nan, 1.0) + png(MILLIMETRES), "no scale for its depths: nan, 1"),
+        ("16UC1; compressedDepth rvl", header() + b"1234567", "ends before its size"),
+        (
+            "16UC1; compressedDepth rvl",
+            header() + sized_rvl(MILLIMETRES, says=(4_000_000_000, 4_000_000_000)),
+            "gives 4000000000 x 4000000000 pixels; 1 to 16777216 are unpacked",
+        ),
+        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(0, 7)), "gives 0 x 7"),
+        (
+            "16UC1; compressedDepth rvl",
+            header() + sized_rvl(MILLIMETRES)[:-4],
+            "The RVL depth image of 3 x 2 pixels cannot be read: it ends",
+        ),
+        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(1, 2)), "pixels too many"),
+        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(30, 20)), "empty run|pixels too early"),
+        (
+            "16UC1; compressedDepth rvl",
+            header() + struct.pack("<II", 2, 2) + b"\xff" * 40 + bytes(4),
+            "a number of more than 30 bits",
+        ),
+    ],
+)
+def test_what_is_wrong_with_a_depth_image_is_said(form, data, text):
+    with pytest.raises(BadImageError, match=text):
+        unpacked(packed(form, data))
+
+
+def test_what_is_wrong_with_a_colour_image_is_said():
+    for data, text in (
+        (b"", "neither a PNG nor a JPEG"),
+        (jpeg(9, 64, 64)[:100], "The JPEG cannot be read: "),
+        (png(MILLIMETRES, says=(1 << 30, 1 << 30)), r"The PNG has 1073741824 x 1073741824 pixels"),
+    ):
+        with pytest.raises(BadImageError, match=text):
+            unpacked(packed("rgb8; jpeg compressed bgr8", data), "compressed")
+
+
+def test_a_file_with_too_many_pixels_is_not_unpacked_to_be_made_smaller():
+    data = np.frombuffer(png(MILLIMETRES, says=(9000, 9000)), np.uint8)
+    frame = ImageFrame(0, 0, 0, 0, "file", data, None)
+    assert ImageCompressor().compressed(frame, 10) is frame
+
+
+# --- displays --------------------------------------------------------------------------------------------------------
+
+
+def info(node):
+    node.create_publisher(CameraInfo, "/depth/camera_info", 5).publish(clouds.camera_info(2, 1))
+
+
+@pytest.mark.parametrize("packing", ["png", "rvl"])
+async def test_a_depth_cloud_takes_the_transports_of_its_hints(packing):
+    topics = {
+        "Depth_Map_Topic": "/depth/image",
+        "Depth_Map_Transport_Hint": "compressedDepth",
+        "Color_Image_Topic": "/color/image",
+        "Color_Transport_Hint": "compressed",
+    }
+    async with world(clouds.config("DepthCloud", **topics)) as w:
+        node = w.graph.create_node("camera")
+        info(node)
+        depths = node.create_publisher(CompressedImage, "/depth/image/compressedDepth", 5)
+        colours = node.create_publisher(CompressedImage, "/color/image/compressed", 5)
+        depths.publish(depth_message(np.array([[2000, 4000]], np.uint16), packing))
+        colours.publish(packed("rgb8; jpeg compressed bgr8", jpeg((0, 0, 250), 2, 1)))
+        await w.settle()
+        display = w.display("DepthCloud")
+        (content,) = contents(display)
+        assert content.fields["positions"].reshape(-1, 3).tolist() == [[0, 0, 2], [2, 0, 4]]
+        assert np.allclose(clouds.colours(display), [[0, 0, 250, 255]] * 2, atol=4)
+        status = w.status("DepthCloud")
+        assert status["Message"] == ("ok", "Ok")
+        assert (status["Depth Image Size"], status["Image Size"]) == (("ok", "2 x 1"), ("ok", "2 x 1"))
+
+
+async def test_a_depth_topic_may_name_its_transport_itself():
+    async with world(clouds.config("DepthCloud", Depth_Map_Topic="/depth/image/compressedDepth")) as w:
+        node = w.graph.create_node("camera")
+        info(node)
+        depths = node.create_publisher(CompressedImage, "/depth/image/compressedDepth", 5)
+        depths.publish(depth_message(np.array([[2.0, np.nan]])))
+        await w.settle()
+        (content,) = contents(w.display("DepthCloud"))
+        ((x, y, z),) = content.fields["positions"].reshape(-1, 3).tolist()
+        assert (x, y, round(z, 2)) == (0.0, 0.0, 2.0)
+
+
+async def test_a_broken_depth_image_is_one_row_of_the_status_until_a_whole_one_comes():
+    topics = {"Depth_Map_Topic": "/depth/image", "Depth_Map_Transport_Hint": "compressedDepth"}
+    async with world(clouds.config("DepthCloud", **topics)) as w:
+        node = w.graph.create_node("camera")
+        info(node)
+        depths = node.create_publisher(CompressedImage, "/depth/image/compressedDepth", 5)
+        depths.publish(packed("16UC1; compressedDepth png", header() + b"\x89PNG\r\n\x1a\n"))
+        await w.settle()
+        status = w.status("DepthCloud")
+        assert {name for name, (level, _) in status.items() if level == "error"} == {"Message"}
+        assert status["Message"][1].startswith("Error updating depth cloud: The PNG cannot be read: ")
+        depths.publish(depth_message(np.array([[2000, 4000]], np.uint16)))
+        await w.settle()
+        assert w.status("DepthCloud")["Message"] == ("ok", "Ok")
+
+
+async def test_a_depth_cloud_says_that_theora_is_not_read_until_another_transport_is_chosen():
+    topics = {"Depth_Map_Topic": "/depth/image", "Color_Image_Topic": "/c", "Color_Transport_Hint": "theora"}
+    async with world(clouds.config("DepthCloud", **topics)) as w:
+        text = "Images of transport 'theora' are not supported: choose raw, compressed or compressedDepth"
+        assert w.status("DepthCloud") == {"Color Transport Hint": ("error", text)}
+        w.display("DepthCloud").set_property(("Color Transport Hint",), "compressed")
+        await w.settle()
+        assert "Color Transport Hint" not in w.status("DepthCloud")
+
+
+async def test_an_image_display_shows_depths_as_greys():
+    async with world(images.config("Image", "/camera/depth/compressedDepth")) as w:
+        display = w.display("Image")
+        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/depth/compressedDepth", 5)
+        publisher.publish(depth_message(np.array([[0, 500, 1000]], np.uint16), "rvl"))
+        await w.settle()
+        (content,) = contents(display)
+        fields = content.fields
+        assert (fields["encoding"], fields["width"], fields["height"]) == ("grey", 3, 1)
+        assert fields["data"].tolist() == [0, 127, 255]
+        assert images.names(display) == {"Topic", "Normalize Range", "Median window"}
+        display.set_property(("Normalize Range",), False)
+        display.set_property(("Max Value",), 2000.0)
+        assert contents(display)[0].fields["data"].tolist() == [0, 63, 127]
+        publisher.publish(packed("16UC1; compressedDepth rvl", header() + bytes(8)))
+        await w.settle()
+        text = "The header of the RVL depth image gives 0 x 0 pixels; 1 to 16777216 are unpacked"
+        assert w.status("Image")["Image"] == ("error", text)
+
+
+async def test_files_of_more_than_eight_bits_are_given_a_range():
+    async with world(images.config("Image", "/camera/depth/compressed")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/depth/compressed", 5)
+        publisher.publish(packed("16UC1; png compressed ", png(np.array([[0, 500, 1000]], np.uint16))))
+        await w.settle()
+        assert contents(w.display("Image"))[0].fields["data"].tolist() == [0, 127, 255]
+
+
+async def test_a_camera_shows_depths_beside_its_camera_info():
+    async with world(images.config("Camera", "/camera/depth/compressedDepth")) as w:
+        node = w.graph.create_node("camera")
+        node.create_publisher(CameraInfo, "/camera/camera_info", 5).publish(images.info(2, 1))
+        publisher = node.create_publisher(CompressedImage, "/camera/depth/compressedDepth", 5)
+        publisher.publish(depth_message(np.array([[0, 9]], np.uint16)))
+        await w.settle()
+        (content,) = contents(w.display("Camera"))
+        assert content.fields["data"].tolist() == [0, 255]
+        assert content.fields["camera"]["focal_x"] == 100.0
+
+
+@pytest.mark.parametrize("cls", ["Image", "Camera"])
+async def test_images_of_theora_are_not_read_and_their_topics_that_are_named(cls):
+    async with world(images.config(cls, "/camera/image/theora")) as w:
+        text = "Images of transport 'theora' are not supported: choose /camera/image or /camera/image/compressed"
+        assert w.status(cls)["Topic"] == ("error", text)

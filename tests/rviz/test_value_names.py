@@ -1,0 +1,37 @@
+"""Values of properties in the page's Chinese: files keep RViz's words."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+
+from tests.places import REPOSITORY
+
+SAME = {"RGB", "RGB8", "RGBF32", "X", "XY", "XYZ", "XZ", "Y", "YZ", "Z", "compressed", "compressedDepth"}
+SAME |= {"costmap", "map", "raw", "theora"}
+"""What is called alike: axes, fields of messages, transports, and schemes of colours that ROS knows by these names."""
+
+OFFERED = """
+import gc, importlib, json, pkgutil
+from linkwright.rviz import displays
+from linkwright.rviz import config
+from linkwright.rviz.config.schema import PropertySpec
+for package in (displays, config):
+    for module in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
+        importlib.import_module(module.name)
+found = [each for each in gc.get_objects() if isinstance(each, PropertySpec) and each.kind == "enum"]
+print(json.dumps([option for spec in found for option in spec.options]))
+"""
+"""Some rows are made by functions, and only the interpreter knows them all, where nothing is frozen."""
+
+
+def test_every_choice_has_a_chinese_name_and_no_name_is_left_over():
+    run = subprocess.run([sys.executable, "-c", OFFERED], capture_output=True, text=True, check=True, timeout=120)
+    offered = set(json.loads(run.stdout))
+    text = (REPOSITORY / "frontend/src/strings/zh/values.ts").read_text(encoding="utf-8")
+    named = {quoted or plain for quoted, plain in re.findall(r'^  (?:"([^"]+)"|(\w+)): "', text, re.MULTILINE)}
+    assert len(offered) > 40
+    assert sorted(offered - SAME - named) == []
+    assert sorted(named - offered) == []

@@ -1,0 +1,113 @@
+from __future__ import annotations
+
+from linkwright.page.protocol.configuration import EditName
+from linkwright.rviz.visualization.history import LONGEST, PAUSE, Edit, History
+
+
+class Value:
+    """A number, and edits of it."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+        self.told = 0
+        self.number = 0
+        self.history = History(self._tell, lambda: self.now)
+
+    def _tell(self) -> None:
+        self.told += 1
+
+    def set(self, number: int, subject: str | None = "number") -> None:
+        if subject is not None and self.history.is_at(subject):
+            self.history.prolong()
+        else:
+            self.history.add(Edit(EditName("set", "number"), self.swap, self.number, subject))
+        self.number = number
+
+    def swap(self, number: int) -> int:
+        before, self.number = self.number, number
+        return before
+
+
+def test_edits_are_taken_back_and_done_again():
+    value = Value()
+    for number in (1, 2, 3):
+        value.set(number, None)
+    value.history.undo()
+    value.history.undo()
+    assert (value.number, value.history.undoable, value.history.redoable) == (
+        1,
+        EditName("set", "number"),
+        EditName("set", "number"),
+    )
+    value.history.redo()
+    assert value.number == 2
+    value.set(9, None)
+    value.history.redo()
+    assert (value.number, value.history.redoable) == (9, None)
+    for _ in range(5):
+        value.history.undo()
+    assert (value.number, value.history.undoable) == (0, None)
+
+
+def test_a_drag_is_one_edit():
+    value = Value()
+    for number in (1, 2, 3):
+        value.now += PAUSE / 2
+        value.set(number)
+    value.now += PAUSE * 2
+    value.set(4)
+    value.history.undo()
+    assert value.number == 3
+    value.history.undo()
+    assert value.number == 0
+    value.history.redo()
+    assert value.number == 3
+
+
+def test_edits_of_different_things_are_different_edits():
+    value = Value()
+    value.set(1, "a")
+    value.set(2, "b")
+    value.history.undo()
+    assert value.number == 1
+
+
+def test_what_was_saved_is_known_through_undo_and_redo():
+    value = Value()
+    value.set(1)
+    value.history.saved()
+    assert not value.history.unsaved
+    value.set(2)  # not one with the edit before: that one is saved
+    assert value.history.unsaved
+    value.history.undo()
+    assert (value.number, value.history.unsaved) == (1, False)
+    value.history.undo()
+    assert value.history.unsaved
+    value.set(7)
+    value.history.undo()
+    assert value.history.unsaved  # what was saved cannot be come back to
+    value.history.saved()
+    assert not value.history.unsaved
+
+
+def test_what_undo_does_not_know_counts_as_unsaved_too():
+    value = Value()
+    value.history.touch()
+    assert value.history.unsaved
+    value.history.saved()
+    assert not value.history.unsaved
+    value.history.touch()
+    value.history.clear()
+    assert not value.history.unsaved
+
+
+def test_history_does_not_grow_without_end():
+    value = Value()
+    for number in range(LONGEST + 10):
+        value.set(number, None)
+    steps = 0
+    while value.history.undoable:
+        value.history.undo()
+        steps += 1
+    assert steps == LONGEST
+    assert value.history.unsaved

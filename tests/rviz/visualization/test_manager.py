@@ -1,0 +1,345 @@
+"""Displays as pages add, arrange, remove and set them."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.messages import get_message
+from linkwright.rviz import RvizConfig
+from linkwright.rviz.visualization import display_tree
+from tests.viewer.configured import TEXT, PointStamped, edit, entries, names, opened, undo
+from tests.viewer.scene import ARM, page, world
+
+String = get_message("std_msgs/msg/String")
+
+
+async def test_groups_are_rows_that_hold_rows():
+    async with opened() as (_, client):
+        displays = client.first["tree"]["displays"]
+        assert [(display["name"], display["group"]) for display in displays] == [
+            ("Grid", None),
+            ("Marks", None),
+            ("Clicks", "display-2"),
+            ("Radar", None),
+        ]
+        assert [display["supported"] for display in displays] == [True, True, True, False]
+
+
+async def test_a_group_that_is_switched_off_switches_off_what_it_holds():
+    async with opened() as (made, client):
+        publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        assert publisher.get_subscription_count() == 1
+        await client.set("display-2/Enabled", False)
+        await client.until("configuration", unsaved=True)
+        assert publisher.get_subscription_count() == 0
+        assert made.display("PointStamped").config.checked
+        assert "Enabled: false" in made.viewer.config.text()
+        state = await undo(client)
+        assert publisher.get_subscription_count() == 1
+        assert (state["unsaved"], state["undo"], state["redo"]) == (False, None, {"kind": "disable", "name": "Marks"})
+        assert made.viewer.config.text() == TEXT
+
+
+@pytest.mark.parametrize("box", ["", "Enabled: true", "Value: true", "Enabled: true, Value: false", "Enabled: no"])
+async def test_a_box_that_is_set_back_leaves_the_file_as_it_was(box):
+    text = f"Visualization Manager:\n  Displays:\n    - {{Class: rviz_default_plugins/Axes, {box}}}\n"
+    async with world(RvizConfig.parse(text)) as made:
+        manager = made.viewer.manager
+        (display,) = manager.displays
+        was = display.config.checked
+        manager.tree.check(display, not was)
+        changed = manager.config.text()
+        assert display.config.checked is not was
+        for _ in range(2):
+            manager.history.undo()
+            assert (manager.config.text(), display.config.checked) == (text, was)
+            manager.history.redo()
+            assert (manager.config.text(), display.config.checked) == (changed, not was)
+
+
+# --- which displays there are --------------------------------------------------------------------------------------
+
+
+async def test_what_can_be_added_is_told():
+    async with opened() as (_, client):
+        await client.send("ask_display_choices")
+        told = (await client.until("display_choices"))["classes"]
+        classes = {each["cls"]: each["messages"] for each in told}
+        assert classes["rviz_default_plugins/PointStamped"] == ["geometry_msgs/msg/PointStamped"]
+        assert classes["rviz_default_plugins/Grid"] == []
+        assert list(classes)[-1] == "rviz_common/Group"
+
+
+async def test_a_display_is_added_and_taken_away_again():
+    async with opened() as (made, client):
+        await client.send("add_display", cls="rviz_default_plugins/Axes", name="Axes", group="display-2", topic=None)
+        tree = await client.until("tree")
+        assert [(each["name"], each["group"], each["id"]) for each in tree["displays"]][3] == (
+            "Axes",
+            "display-2",
+            "display-5",
+        )
+        assert entries(made)[1]["Displays"][1] == {
+            "Class": "rviz_default_plugins/Axes",
+            "Enabled": True,
+            "Name": "Axes",
+            "Value": True,
+        }
+        state = await undo(client)
+        assert (state["undo"], state["redo"]["name"], state["unsaved"]) == (None, "Axes", False)
+        assert made.viewer.config.text() == TEXT
+        await undo(client, "redo")
+        assert [display.id for display in made.viewer.displays] == [
+            "display-1",
+            "display-2",
+            "display-3",
+            "display-5",
+            "display-4",
+        ]
+
+
+async def test_a_display_for_a_topic_takes_what_its_publishers_offer():
+    async with opened() as (made, client):
+        qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        publisher = made.graph.create_node("sensor").create_publisher(PointStamped, "/found", qos)
+        await client.send("ask_display_choices")
+        topics = (await client.until("display_choices"))["topics"]
+        cls = "rviz_default_plugins/PointStamped"
+        assert {"topic": "/found", "message": "geometry_msgs/msg/PointStamped", "classes": [cls]} in topics
+        await edit(client, "add_display", cls=cls, name="Found", group=None, topic="/found")
+        assert publisher.get_subscription_count() == 1
+        assert entries(made)[-1]["Topic"] == {"Reliability Policy": "Best Effort", "Value": "/found"}
+
+
+async def test_a_robot_is_added_by_the_topic_of_its_description():
+    async with opened() as (made, client):
+        qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        node = made.graph.create_node("robot_state_publisher")
+        publisher = node.create_publisher(String, "/other/robot_description", qos)
+        publisher.publish(String(data='<robot name="other"><link name="base"/></robot>'))
+        await client.send("ask_display_choices")
+        topics = (await client.until("display_choices"))["topics"]
+        offered = next(topic for topic in topics if topic["topic"] == "/other/robot_description")
+        cls = "rviz_default_plugins/RobotModel"
+        assert cls in offered["classes"]
+        await edit(client, "add_display", cls=cls, name="Other", group=None, topic="/other/robot_description")
+        assert entries(made)[-1]["Description Topic"]["Value"] == "/other/robot_description"
+        assert publisher.get_subscription_count() == 1
+
+
+async def test_removed_displays_leave_their_topics_and_come_back_the_same():
+    async with opened() as (made, client):
+        publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        await client.set("display-3/Alpha", 0.25)
+        await client.until("property_changed", id="display-3/Alpha")
+        text = made.viewer.config.text()
+        await edit(client, "remove_displays", displays=["display-2", "display-3"])
+        assert names(made) == ["Grid", "Radar"]
+        assert publisher.get_subscription_count() == 0
+        await undo(client)
+        assert names(made) == ["Grid", "Marks", "Clicks", "Radar"]
+        assert publisher.get_subscription_count() == 1
+        assert made.viewer.config.text() == text
+        await undo(client)  # the edit before, of a display that is another object now
+        assert made.viewer.displays[2].properties.number("Alpha") == 0.5
+        assert made.viewer.config.text() == TEXT
+
+
+async def test_a_removed_robot_is_forgotten_and_comes_back():
+    async with world(RvizConfig.for_model("base")) as made, page(made.viewer) as client:
+        await client.opened()
+        made.describe(ARM)
+        await client.until("robot_scene", revision=1)
+        await client.send("remove_displays", displays=["display-2"])
+        await client.until("tree")
+        await client.send("undo")
+        assert len((await client.until("robot_scene"))["links"]) >= 0
+        await made.settle()
+        assert len(made.display("RobotModel").scene.links) == 3
+
+
+async def test_displays_are_duplicated_with_all_they_have():
+    async with opened() as (made, client):
+        await client.send("duplicate_displays", displays=["display-2", "display-3", "display-4"])
+        tree = await client.until("tree")
+        assert [(each["name"], each["group"]) for each in tree["displays"]] == [
+            ("Grid", None),
+            ("Marks", None),
+            ("Clicks", "display-2"),
+            ("Marks", None),
+            ("Clicks", tree["displays"][3]["id"]),
+            ("Radar", None),
+            ("Radar", None),
+        ]
+        assert entries(made)[1] == entries(made)[2]
+        assert entries(made)[3] == entries(made)[4]
+        await undo(client)
+        assert made.viewer.config.text() == TEXT
+
+
+async def test_displays_are_renamed():
+    async with opened() as (made, client):
+        await client.send("rename_display", display="display-4", name="  Far   radar ")
+        assert (await client.until("tree"))["displays"][3]["name"] == "Far radar"
+        assert (await client.until("configuration"))["undo"] == {"kind": "rename", "name": "Far radar"}
+        await undo(client)
+        assert made.viewer.config.text() == TEXT
+        await client.send("rename_display", display="display-4", name=" ")
+        assert (await client.until("configuration_refused"))["question"] is None
+
+
+@pytest.mark.parametrize(
+    ("displays", "group", "before", "expected"),
+    [
+        (["display-4"], None, "display-1", [("Radar", None), ("Grid", None), ("Marks", None), ("Clicks", "Marks")]),
+        (["display-3"], None, None, [("Grid", None), ("Marks", None), ("Radar", None), ("Clicks", None)]),
+        (
+            ["display-1", "display-4"],
+            "display-2",
+            "display-3",
+            [("Marks", None), ("Grid", "Marks"), ("Radar", "Marks"), ("Clicks", "Marks")],
+        ),
+        (
+            ["display-1", "display-2"],
+            None,
+            "display-2",
+            [("Grid", None), ("Marks", None), ("Clicks", "Marks"), ("Radar", None)],
+        ),
+    ],
+)
+async def test_displays_are_moved(displays, group, before, expected):
+    async with opened() as (made, client):
+        await client.send("move_displays", displays=displays, group=group, before=before)
+        await client.until("tree")
+
+        def holder(display) -> str | None:
+            return display.config.group.name if display.config.group else None
+
+        assert [(display.config.name, holder(display)) for display in made.viewer.displays] == expected
+        await undo(client)
+        assert made.viewer.config.text() == TEXT
+
+
+async def test_a_display_that_moves_out_of_a_group_that_is_off_comes_on():
+    async with opened(
+        TEXT.replace("      Enabled: true\n      Name: Marks", "      Enabled: false\n      Name: Marks")
+    ) as (
+        made,
+        client,
+    ):
+        publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        assert publisher.get_subscription_count() == 0
+        await edit(client, "move_displays", displays=["display-3"], group=None, before=None)
+        assert publisher.get_subscription_count() == 1
+        await undo(client)
+        assert publisher.get_subscription_count() == 0
+
+
+async def test_a_group_cannot_hold_itself_and_a_grid_holds_nothing():
+    async with opened() as (made, client):
+        for group in ("display-2", "display-1"):
+            await client.send("move_displays", displays=["display-2"], group=group, before=None)
+            assert "cannot be put into" in (await client.until("configuration_refused"))["message"]
+        await client.send("add_display", cls="rviz_default_plugins/Axes", name="Axes", group="display-1", topic=None)
+        assert "cannot be put into" in (await client.until("configuration_refused"))["message"]
+        assert made.viewer.config.text() == TEXT
+        assert names(made) == ["Grid", "Marks", "Clicks", "Radar"]
+
+
+async def test_displays_are_put_into_a_new_group():
+    async with opened() as (made, client):
+        await client.send("group_displays", displays=["display-1", "display-3", "display-4"], name="All")
+        tree = await client.until("tree")
+        assert [(each["name"], each["group"]) for each in tree["displays"]] == [
+            ("All", None),
+            ("Grid", "display-5"),
+            ("Clicks", "display-5"),
+            ("Radar", "display-5"),
+            ("Marks", None),
+        ]
+        await undo(client)
+        assert made.viewer.config.text() == TEXT
+
+
+async def test_groups_are_nested_only_so_deep_that_the_file_can_be_read_again():
+    async with opened() as (made, client):
+        for depth in range(display_tree.MAXIMUM_NESTING):
+            await edit(client, "group_displays", displays=["display-1"], name=f"Group {depth}")
+        await client.send("group_displays", displays=["display-1"], name="Too deep")
+        assert "nested" in (await client.until("configuration_refused"))["message"]
+        innermost = next(display for display in made.viewer.displays if display.id == "display-1").config.group
+        await client.send("move_displays", displays=["display-2"], group=innermost.identity, before=None)
+        assert "nested" in (await client.until("configuration_refused"))["message"]
+        await client.send("add_display", cls="rviz_common/Group", name="More", group=innermost.identity, topic=None)
+        assert "nested" in (await client.until("configuration_refused"))["message"]
+        assert len(RvizConfig.parse(made.viewer.config.text()).displays) == 3
+
+
+async def test_there_are_only_so_many_displays(monkeypatch):
+    monkeypatch.setattr(display_tree, "MAXIMUM_DISPLAYS", 6)
+    async with opened() as (made, client):
+        await edit(client, "duplicate_displays", displays=["display-2"])  # a group and what it holds
+        for kind, fields in (
+            ("duplicate_displays", {"displays": ["display-1"]}),
+            ("group_displays", {"displays": ["display-1"], "name": "All"}),
+            ("add_display", {"cls": "rviz_default_plugins/Grid", "name": "Grid", "group": None, "topic": None}),
+        ):
+            await client.send(kind, **fields)
+            assert "no more than 6 displays" in (await client.until("configuration_refused"))["message"]
+        assert len(made.viewer.displays) == 6
+
+
+# --- undo of properties --------------------------------------------------------------------------------------------
+
+
+async def test_a_drag_is_taken_back_in_one_step_and_the_key_goes_again():
+    async with opened() as (made, client):
+        for alpha in (0.1, 0.2, 0.3):
+            await client.set("display-1/Alpha", alpha)
+        await client.until("property_changed", id="display-1/Alpha", value=0.3)
+        assert entries(made)[0]["Alpha"] == 0.3
+        state = await undo(client)
+        rows = {row["name"]: row for row in (await rows_of(client, made, "display-1"))}
+        assert rows["Alpha"]["value"] == 0.5
+        assert made.viewer.config.text() == TEXT
+        assert state["redo"] == {"kind": "set", "name": "Alpha"}
+        await undo(client, "redo")
+        assert entries(made)[0]["Alpha"] == 0.3
+
+
+async def rows_of(client, made, identity: str) -> list[dict]:
+    messages = [
+        message for message in client.messages if isinstance(message, dict) and message["type"] == "display_properties"
+    ]
+    return next(message["properties"] for message in reversed(messages) if message["display"] == identity)
+
+
+async def test_the_box_over_all_links_is_taken_back_with_what_it_did():
+    config = RvizConfig.for_model("base")
+    async with world(config) as made, page(made.viewer) as client:
+        await client.opened()
+        made.describe(ARM)
+        await client.until("robot_scene", revision=1)
+        await client.set("display-2/Links/tip", False)
+        await client.until("configuration")
+        await client.set("display-2/Links/All Links Enabled", False)
+        await client.until("configuration")
+        robot = made.display("RobotModel")
+        assert not robot.properties.flag("Links", "base")
+        await undo(client)
+        assert robot.properties.flag("Links", "base")
+        assert not robot.properties.flag("Links", "tip")
+        await undo(client, "redo")
+        assert not robot.properties.flag("Links", "base")
+
+
+async def test_the_fixed_frame_is_taken_back_too():
+    async with opened() as (made, client):
+        await client.set("global/Fixed Frame", "odom")
+        await client.until("configuration")
+        assert made.viewer._node.get_parameter("fixed_frame").value == "odom"
+        await undo(client)
+        assert made.viewer.manager.fixed_frame == "base"
+        assert made.viewer._node.get_parameter("fixed_frame").value == "base"
+        assert made.viewer.manager.frames.fixed_frame == "base"

@@ -1,0 +1,269 @@
+"""Sound of pages' microphones on topics, and what was heard and answered in pages."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import numpy as np
+import pytest
+
+from linkwright.graph import DurabilityPolicy, QoSProfile
+from linkwright.page.protocol.voice import MOST_LOST_SAMPLES, unpack_sound
+from linkwright.speech.page import floor
+from tests.viewer.scene import Client, World, page, world
+from tests.waiting import eventually
+
+BLOCK = np.arange(1600, dtype=np.int16)
+LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+AUDIO = ("/audio/audio", "/audio/audio_stamped", "/audio/audio_info")
+
+
+def frame(samples: np.ndarray, *, kind: int = 5, count: int | None = None, lost: int = 0) -> bytes:
+    header = struct.pack("<IIII", kind, samples.size if count is None else count, lost, 0)
+    return header + samples.astype("<i2").tobytes()
+
+
+class Ears:
+    """A node that keeps what is on the topics of sound, and says things on those of the conversation."""
+
+    def __init__(self, made: World) -> None:
+        self.made = made
+        self.node = made.graph.create_node("ears")
+        self.blocks: list[list[int]] = []
+        self.stamps: list[float] = []
+        self.held: list[bool] = []
+        self.commands: list[str] = []
+        self.node.create_subscription("audio_common_msgs/msg/AudioDataStamped", "/audio/audio_stamped", self._hear, 100)
+        self.node.create_subscription("std_msgs/msg/Bool", "/voice/listen", lambda m: self.held.append(m.data), 100)
+        self.node.create_subscription(
+            "std_msgs/msg/String", "/voice/text_input", lambda m: self.commands.append(m.data), 100
+        )
+
+    def _hear(self, message) -> None:
+        assert message.header.stamp.sec > 0
+        self.stamps.append(message.header.stamp.sec + message.header.stamp.nanosec * 1e-9)
+        self.blocks.append(np.frombuffer(bytes(message.audio.data), "<i2").tolist())
+
+    def say(self, topic: str, text: str) -> None:
+        publisher = self.node.create_publisher("std_msgs/msg/String", topic, 10)
+        publisher.publish(publisher.msg_type(data=text))
+
+
+@asynccontextmanager
+async def heard() -> AsyncIterator[tuple[World, Client, Ears]]:
+    async with world() as made, page(made.viewer) as client:
+        await client.opened()
+        yield made, client, Ears(made)
+
+
+def publishers(made: World) -> list[int]:
+    return [made.graph.count_publishers(topic) for topic in (*AUDIO, "/voice/listen")]
+
+
+@pytest.mark.parametrize(("topic", "present"), [("/voice/command", True), ("/voice/response", False)])
+async def test_only_a_node_that_understands_commands_can_be_talked_to(topic, present):
+    async with world() as made:
+        made.graph.create_node("other").create_publisher("std_msgs/msg/String", topic, 10)
+        async with page(made.viewer) as client:
+            await client.send("watch_voice", watched=True)
+            assert (await client.until("voice_node"))["present"] is present
+
+
+async def test_sound_is_published_while_the_button_is_held():
+    async with heard() as (made, client, ears):
+        await client.send("talk", mode="ready")
+        await client.socket.send_bytes(frame(BLOCK))
+        await client.send("talk", mode="held")
+        await client.socket.send_bytes(frame(BLOCK))
+        await client.socket.send_bytes(frame(BLOCK[:30]))
+        await client.send("talk", mode="ready")
+        await client.socket.send_bytes(frame(BLOCK))
+        await eventually(lambda: ears.held == [True, False])
+        await made.settle()
+        assert ears.blocks == [BLOCK.tolist(), BLOCK[:30].tolist()]
+
+
+async def test_stamps_jump_over_what_the_browser_lost():
+    async with heard() as (_, client, ears):
+        await client.send("talk", mode="held")
+        for lost in (0, 0, 4000, 0):
+            await client.socket.send_bytes(frame(BLOCK, lost=lost))
+        await eventually(lambda: len(ears.stamps) == 4)
+        assert np.diff(ears.stamps) == pytest.approx([0.1, 0.35, 0.1], abs=0.002)
+
+
+async def test_the_topics_of_sound_are_there_while_a_microphone_is_open():
+    async with heard() as (made, client, _):
+        await client.send("watch_voice", watched=True)
+        await client.until("voice_state", talking="nobody")
+        assert publishers(made) == [0, 0, 0, 0]
+        await client.send("talk", mode="ready")
+        await eventually(lambda: publishers(made) == [1, 1, 1, 1])
+        infos: list = []
+        made.graph.create_node("late").create_subscription(
+            "audio_common_msgs/msg/AudioInfo",
+            "/audio/audio_info",
+            infos.append,
+            QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        )
+        await eventually(lambda: len(infos) == 1)
+        assert (infos[0].channels, infos[0].sample_rate, infos[0].sample_format) == (1, 16000, "S16LE")
+        assert (infos[0].bitrate, infos[0].coding_format) == (256, "wave")
+        await client.send("talk", mode="off")
+        await eventually(lambda: publishers(made) == [0, 0, 0, 0])
+
+
+async def test_a_page_that_goes_lets_go_of_the_button():
+    async with world() as made:
+        ears = Ears(made)
+        async with page(made.viewer) as client:
+            await client.opened()
+            await client.send("talk", mode="held")
+            await eventually(lambda: ears.held == [True])
+        await eventually(lambda: ears.held == [True, False])
+        assert publishers(made) == [0, 0, 0, 0]
+
+
+async def test_who_listens_only_after_the_button_was_pressed_is_told_too():
+    async with heard() as (made, client, ears):
+        await client.send("talk", mode="held")
+        await eventually(lambda: ears.held == [True])
+        late = Ears(made)
+        await eventually(lambda: late.held == [True])
+        await client.send("talk", mode="ready")
+        await eventually(lambda: late.held == [True, False])
+        assert ears.held == [True, True, False]
+
+
+async def test_of_two_pages_the_one_talks_that_holds_the_button():
+    async with heard() as (made, first, ears), page(made.viewer) as second:
+        for client in (first, second):
+            await client.send("watch_voice", watched=True)
+            await client.until("voice_state", talking="nobody")
+        await first.send("talk", mode="open")
+        await second.until("voice_state", talking="another")
+        await second.send("talk", mode="held")
+        await first.until("voice_state", talking="another")
+        await second.until("voice_state", talking="you")
+        await first.socket.send_bytes(frame(BLOCK[:5]))
+        await second.socket.send_bytes(frame(BLOCK[:7]))
+        await eventually(lambda: len(ears.blocks) == 1)
+        await second.send("talk", mode="off")
+        await first.until("voice_state", talking="you")
+        await first.socket.send_bytes(frame(BLOCK[:9]))
+        await eventually(lambda: len(ears.blocks) == 2)
+        assert [len(block) for block in ears.blocks] == [7, 9]
+        assert ears.held == [True, False]
+
+
+async def test_the_second_to_hold_a_button_waits_for_the_first():
+    async with heard() as (made, first, ears), page(made.viewer) as second:
+        await second.send("watch_voice", watched=True)
+        await first.send("talk", mode="held")
+        await second.until("voice_state", talking="another")
+        await second.send("talk", mode="held")
+        await second.socket.send_bytes(frame(BLOCK))
+        await first.send("talk", mode="ready")
+        await second.until("voice_state", talking="you")
+        await made.settle()
+        assert ears.held == [True, False, True]
+        assert ears.blocks == []
+
+
+async def test_a_page_that_floods_is_cut_until_it_begins_anew(monkeypatch):
+    monkeypatch.setattr(floor, "_LEAD", 0.05)
+    async with heard() as (_, client, ears):
+        await client.send("watch_voice", watched=True)
+        await client.send("talk", mode="held")
+        await client.until("voice_state", talking="you")
+        await client.socket.send_bytes(frame(BLOCK))
+        await client.until("voice_state", talking="nobody", cut=True)
+        await eventually(lambda: ears.held == [True, False])
+        assert ears.blocks == []
+        await client.send("talk", mode="held")
+        await client.until("voice_state", talking="you", cut=False)
+
+
+def test_as_much_sound_may_come_as_time_passes():
+    now = 0.0
+    budget = floor.SoundBudget(lambda: now)
+    for _ in range(10_000):
+        now += 0.1
+        assert budget.spend(0.1, 0.1)  # a machine so busy that there is nothing but silence
+    assert all(budget.spend(0.1, 0.0) for _ in range(99))
+    assert not budget.spend(0.2, 0.0)
+
+
+async def test_a_page_that_says_more_was_lost_than_time_has_passed_is_cut_and_its_stamps_do_not_run_ahead():
+    async with heard() as (_, client, ears):
+        await client.send("watch_voice", watched=True)
+        await client.send("talk", mode="held")
+        for lost in (0, MOST_LOST_SAMPLES, MOST_LOST_SAMPLES, MOST_LOST_SAMPLES):
+            await client.socket.send_bytes(frame(BLOCK, lost=lost))
+        await client.until("voice_state", talking="nobody", cut=True)
+        await eventually(lambda: ears.held == [True, False])
+        assert len(ears.stamps) == 3
+        assert max(ears.stamps) - ears.stamps[0] < 3.0
+
+
+async def test_a_page_that_says_that_hours_were_lost_is_closed():
+    async with heard() as (_, client, ears):
+        await client.send("talk", mode="held")
+        await client.socket.send_bytes(frame(BLOCK, lost=MOST_LOST_SAMPLES + 1))
+        with pytest.raises(ConnectionError):
+            await client.until("nothing of this kind")
+        assert client.socket.close_code == 1003
+        assert ears.stamps == []
+
+
+async def test_pages_hear_the_conversation():
+    async with heard() as (made, client, ears):
+        await client.send("watch_voice", watched=True)
+        await client.until("voice_state")
+        for topic in ("partial_text", "text", "command", "response"):
+            part = topic.removesuffix("_text")
+            ears.say(f"/voice/{topic}", f"turn left: {part}")
+            assert (await client.until("voice_said", part=part))["text"] == f"turn left: {part}"
+        await client.send("watch_voice", watched=False)
+        await eventually(lambda: made.graph.count_subscribers("/voice/text") == 0)
+
+
+async def test_commands_are_sent_as_text_and_pages_know_whether_anybody_takes_them():
+    async with heard() as (made, client, ears):
+        await client.send("watch_voice", watched=True)
+        await client.until("voice_state", sound_listeners=1, text_listeners=1)
+        await client.send("say_command", text="前进")
+        await eventually(lambda: ears.commands == ["前进"])
+        ears.node.destroy_node()
+        await client.until("voice_state", sound_listeners=0, text_listeners=0)
+        await client.send("watch_voice", watched=False)
+        await eventually(lambda: made.graph.count_publishers("/voice/text_input") == 0)
+
+
+async def test_pages_know_whether_enrolling_is_proposed_until_who_proposed_it_is_gone():
+    async with heard() as (_, client, ears):
+        await client.send("watch_voice", watched=True)
+        await client.until("voice_state", proposes_enrolling=False)
+        proposal = ears.node.create_publisher("std_msgs/msg/Bool", "/voice/propose_enrolling", 10)
+        proposal.publish(proposal.msg_type(data=True))
+        await client.until("voice_state", proposes_enrolling=True)
+        ears.node.destroy_node()
+        await client.until("voice_state", proposes_enrolling=False)
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        b"",
+        b"\5",
+        frame(BLOCK, kind=4),
+        frame(BLOCK, count=1599),
+        frame(BLOCK[:0]),
+        frame(np.zeros(1601, np.int16)),
+        frame(BLOCK, lost=2**32 - 1),
+    ],
+)
+def test_other_binary_frames_are_no_sound(bad):
+    assert unpack_sound(bad) is None

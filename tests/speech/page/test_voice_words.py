@@ -1,0 +1,124 @@
+"""Words that pages enrol, in the user's file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
+from linkwright.speech.enrolled.words import Words, words_path
+from tests.speech.page.test_voice import frame
+from tests.speech.voices import WORDS, say
+from tests.viewer.scene import Client, page, world
+
+STRINGS = Path(__file__).parents[3] / "frontend" / "src" / "strings"
+
+
+@pytest.fixture(autouse=True)
+def _own_file(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+
+
+@asynccontextmanager
+async def opened() -> AsyncIterator[tuple[Client, Client]]:
+    """Two pages that see the words, the first with its microphone open."""
+    async with world() as made, page(made.viewer) as client, page(made.viewer) as other:
+        for each in (client, other):
+            await each.opened()
+            await each.send("watch_words", watched=True)
+            assert (await each.until("voice_words"))["words"] == []
+        await client.send("talk", mode="ready")
+        yield client, other
+
+
+async def record(client: Client, name: str, samples: np.ndarray, *, has_gaps: bool = False) -> dict:
+    await client.send("begin_take", name=name)
+    for at in range(0, samples.size, 1600):
+        await client.socket.send_bytes(frame(samples[at : at + 1600]))
+    await client.send("end_take", has_gaps=has_gaps)
+    return await client.until("take_judged", name=name)
+
+
+async def test_a_word_is_enrolled_by_saying_it():
+    async with opened() as (client, other):
+        for count in (1, 2, 3):
+            judged = await record(client, "stop", say(WORDS["stop"], seed=count))
+            assert (judged["code"], judged["number"]) == (None, count)
+            assert 0.1 < judged["peak"] < 1.0
+            assert judged["seconds"] == pytest.approx(1.0 + 0.4, abs=0.3)
+            told = await other.until("voice_words")
+            assert (told["words"], told["enough"]) == ([{"name": "stop", "takes": count}], 3)
+        assert Words.read(words_path()).names == ("stop",)
+
+
+async def test_a_recording_of_which_the_page_lost_some_is_not_taken():
+    async with opened() as (client, _):
+        judged = await record(client, "stop", say(WORDS["stop"]), has_gaps=True)
+        assert judged["code"] == "VOICE212"
+        assert not Words.read(words_path()).names
+
+
+async def test_what_cannot_serve_is_not_taken():
+    async with opened() as (client, _):
+        judged = await record(client, "stop", np.zeros(16_000, np.int16))
+        assert (judged["code"], judged["peak"]) == ("VOICE205", 0.0)
+        assert "no audible word" in judged["text"]
+        assert Words.read(words_path()).names == ()
+
+
+async def test_words_are_renamed_and_removed_and_keep_their_place():
+    async with opened() as (client, _):
+        for name in ("stop", "back", "forward"):
+            await record(client, name, say(WORDS[name]))
+        await client.send("rename_word", name="stop", new_name="停止")
+        told = await client.until("voice_words", problem=None)
+        while [word["name"] for word in told["words"]] != ["停止", "back", "forward"]:
+            told = await client.until("voice_words", problem=None)
+        await client.send("rename_word", name="back", new_name="forward")
+        while told["problem"] is None:
+            told = await client.until("voice_words")
+        assert told["problem"] == "a word cannot be called 'forward': there is a word of that name"
+        await client.send("remove_word", name="back")
+        told = await client.until("voice_words", problem=None)
+        assert [word["name"] for word in told["words"]] == ["停止", "forward"]
+
+
+async def test_the_file_goes_from_one_user_to_another():
+    async with opened() as (client, _):
+        await record(client, "stop", say(WORDS["stop"]))
+        await client.send("ask_words_file")
+        text = (await client.until("voice_words_file"))["text"]
+        words_path().unlink()
+        await client.send("import_words", text=text)
+        while (await client.until("voice_words"))["words"] != [{"name": "stop", "takes": 1}]:
+            pass
+        await client.send("import_words", text="[]")
+        while (problem := (await client.until("voice_words"))["problem"]) is None:
+            pass
+        assert "cannot be read as a file of enrolled words" in problem
+        assert Words.read(words_path()).names == ("stop",)
+
+
+async def test_a_damaged_file_is_left_alone_and_told_of():
+    async with opened() as (client, other):
+        words_path().parent.mkdir(parents=True)
+        words_path().write_text("{")
+        await client.send("begin_take", name="stop")
+        await client.send("end_take", has_gaps=False)
+        assert "it is not JSON" in (await client.until("voice_words"))["problem"]
+        assert words_path().read_text() == "{"
+        await other.send("watch_words", watched=True)
+        assert "it is not JSON" in (await other.until("voice_words"))["problem"]
+
+
+@pytest.mark.parametrize("language", ["en", "zh"])
+def test_the_words_that_the_page_offers_are_commands(language):
+    (offered,) = re.findall(r"suggestions: \[(.*?)\]", (STRINGS / language / "voice.ts").read_text(encoding="utf-8"))
+    commands = read_command_file(DEFAULT_FILE)
+    for phrase in re.findall(r'"(.*?)"', offered):
+        assert commands.understand(phrase) is not None, phrase
