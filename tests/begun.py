@@ -13,7 +13,7 @@ BEGUN = "begun"
 
 _PROGRAM = f"""
 import runpy, sys
-from linkwright.interruption import end_at_once
+from linkwright.process.interruption import end_at_once
 end_at_once()
 print({BEGUN!r}, flush=True)
 sys.argv[:] = sys.argv[1:]

@@ -46,7 +46,7 @@ _MODULES = {
 def __getattr__(name: str) -> object:
     if name not in __all__:  # such as a module that is about to be imported
         raise AttributeError(f"module 'linkwright' has no attribute '{name}'")
-    from linkwright.deferred import deferred
+    from linkwright.loading.deferred import deferred
 
     return deferred(__name__, _MODULES)(name)
 

@@ -5,7 +5,7 @@ It is outside of the package of the nodes, so that Ctrl-C ends it quietly while 
 
 import sys
 
-from linkwright.interruption import end_at_once
+from linkwright.process.interruption import end_at_once
 
 if __name__ == "__main__":
     end_at_once()

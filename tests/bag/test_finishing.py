@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from linkwright.bag import BagReader, BagWriter
+from linkwright.files.unfinished import finish_all
 from linkwright.messages import String, serialize
-from linkwright.unfinished import finish_all
 from tests.waiting import SECONDS, wait_until
 
 FORMS = {

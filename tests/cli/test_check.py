@@ -29,7 +29,7 @@ def test_tree_of_a_good_model(capsys):
 def test_checking_a_robot_loads_nothing_of_worlds():
     """Their elements and attributes are many, and making tables of them takes longer than checking a robot.
 
-    As long takes `importlib.metadata`, which `linkwright.extensions` does without.
+    As long takes `importlib.metadata`, which `linkwright.loading.extensions` does without.
     """
     words = ["check", str(PACKAGE / "urdf" / "mbot_base.xacro")]
     loaded = loaded_by(f"from linkwright.cli import main; main({words})")

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from linkwright.cli import main
-from linkwright.interruption import INTERRUPTED
+from linkwright.process.interruption import INTERRUPTED
 from linkwright.vision.datasets.folder import DatasetFolder
 from tests.full_disk import full_disk, needs_limits
 from tests.vision.datasets.places import yard

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright import extensions
 from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.loading import extensions
 from linkwright.speech.engine import Heard, SpeechEngine
 from linkwright.speech.sound.samples import BLOCK, RATE
 from linkwright.speech.sound.wav import write_wav

@@ -11,7 +11,6 @@ from typing import Any, get_type_hints
 
 import pytest
 
-from linkwright import extensions
 from linkwright.control.controllers.gripper_action_controller import EffortGripper, ParallelGripper, PositionGripper
 from linkwright.control.controllers.joint_trajectory_controller import JointTrajectoryController
 from linkwright.control.controllers.pid_controller import PidController
@@ -24,6 +23,7 @@ from linkwright.control.controllers.sensor_broadcasters import (
 )
 from linkwright.control.manager.switching import STRICT
 from linkwright.diagnostics import LinkwrightError
+from linkwright.loading import extensions
 from linkwright.messages import get_message
 from linkwright.packages.readers.entry_points import in_pyproject
 from tests.control.robots import joint, manager, robot

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from linkwright import extensions
+from linkwright.loading import extensions
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays import catalogue

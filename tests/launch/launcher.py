@@ -14,7 +14,7 @@ from pathlib import Path
 from tests.waiting import SECONDS
 
 DRIVER = """
-from linkwright.interruption import end_at_once
+from linkwright.process.interruption import end_at_once
 end_at_once()
 print("begun", flush=True)
 import sys

@@ -6,10 +6,10 @@ import sys
 
 import pytest
 
-from linkwright import extensions
 from linkwright.lint import check, registry
 from linkwright.lint.configuration import settings_for
 from linkwright.lint.explain import find_page
+from linkwright.loading import extensions
 
 RULES = '''
 from linkwright.lint import Rule

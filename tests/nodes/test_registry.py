@@ -7,8 +7,8 @@ from importlib.metadata import entry_points
 
 import pytest
 
-from linkwright import extensions
 from linkwright.diagnostics import LinkwrightError
+from linkwright.loading import extensions
 from linkwright.nodes import COMPONENTS, EXECUTABLES, NodeOptions
 from linkwright.nodes.options import SingleNode
 from linkwright.nodes.registry import NodeRegistry

@@ -115,13 +115,13 @@ FIRST_MODULES = {
     "linkwright.cli",
     "linkwright.cli.entry",
     "linkwright.cli.tools",
-    "linkwright.interruption",
+    "linkwright.process.interruption",
 }
 """What is loaded before Ctrl-C is taken care of: about a millisecond."""
 
 WATCHED = """
 import runpy, sys
-from linkwright import interruption
+from linkwright.process import interruption
 def watch():
     print(*(each for each in sys.modules if each.partition(".")[0] == "linkwright"))
     raise SystemExit
@@ -143,7 +143,7 @@ COMMANDS = [
 def test_little_is_loaded_before_ctrl_c_is_taken_care_of(machine: Machine, words: tuple[str, ...]) -> None:
     running = machine.python("-c", WATCHED, *words)
     assert running.wait() == 0, running.text
-    assert {"linkwright", "linkwright.interruption"} <= set(running.text.split()) <= FIRST_MODULES
+    assert {"linkwright", "linkwright.process.interruption"} <= set(running.text.split()) <= FIRST_MODULES
 
 
 @pytest.mark.parametrize("words", COMMANDS)

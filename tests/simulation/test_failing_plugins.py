@@ -7,9 +7,9 @@ from random import Random
 
 import pytest
 
-from linkwright.extensions import extensions
 from linkwright.graph import LogLevel
 from linkwright.graph.endpoints.publisher import Publisher
+from linkwright.loading.extensions import extensions
 from linkwright.messages import get_message, get_service
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.plugins.registry import SENSORS

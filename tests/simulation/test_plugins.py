@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import pytest
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
-from linkwright.extensions import extensions
 from linkwright.graph import Graph, LogLevel, LogRecord
 from linkwright.graph.stepped.calls import logged_calls
 from linkwright.graph.stepped.exchange import Exchange
 from linkwright.graph.stepped.node import Output
+from linkwright.loading.extensions import extensions
 from linkwright.messages import get_message
 from linkwright.sdf.plugins import library_name
 from linkwright.sdf.text import parse_as_gazebo

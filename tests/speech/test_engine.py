@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright import extensions
 from linkwright.diagnostics import LinkwrightError
+from linkwright.loading import extensions
 from linkwright.speech.engine import EngineOptions, SpeechEngine, make_engine
 
 

@@ -12,8 +12,8 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 
 import pytest
 
-from linkwright import interruption, standard_streams
 from linkwright.packages.uri import absolute_path
+from linkwright.process import interruption, standard_streams
 from tests.domains import own_domain
 from tests.places import PACKAGE
 from tests.waiting import wait_until

@@ -8,7 +8,7 @@ from importlib.metadata import entry_points
 
 import pytest
 
-from linkwright import extensions
+from linkwright.loading import extensions
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays import catalogue
 from tests.viewer.scene import page, world

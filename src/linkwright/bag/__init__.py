@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from linkwright.bag.names import is_recording
-from linkwright.deferred import deferred
+from linkwright.loading.deferred import deferred
 
 if TYPE_CHECKING:
     from linkwright.bag.history import History

@@ -11,9 +11,9 @@ import yaml
 from rosbags.interfaces import Qos
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
-from linkwright import whole_files
 from linkwright.bag.names import METADATA, SUFFIXES
-from linkwright.scratch_folders import ScratchFolder
+from linkwright.files import whole_files
+from linkwright.files.scratch_folders import ScratchFolder
 
 VERSION: Literal[8] = 8
 """The version of the metadata; Humble reads 8 and below, except unknown fields; Jazzy writes 9."""

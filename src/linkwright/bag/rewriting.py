@@ -126,7 +126,7 @@ class _Output:
 def _entries(path: str | Path) -> list[Mapping[str, Any]]:
     import yaml
 
-    from linkwright.input_files import read_text
+    from linkwright.files.input_files import read_text
 
     try:
         document = yaml.safe_load(read_text(path))

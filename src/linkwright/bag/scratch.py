@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from linkwright.scratch_folders import ScratchFolder
+from linkwright.files.scratch_folders import ScratchFolder
 
 _ON_DISK = Path("/var/tmp")  # noqa: S108 - the folder below it gets an unpredictable name
 """The system's folder for large temporary files; ``/tmp`` may be memory (file-hierarchy(7))."""

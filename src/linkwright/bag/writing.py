@@ -9,11 +9,11 @@ from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright import unfinished
 from linkwright.bag.names import SUFFIXES, numbered
 from linkwright.bag.qos import to_bag
 from linkwright.bag.snapshots import LatestMessages
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, missing_extra, phrase
+from linkwright.files import unfinished
 from linkwright.messages import type_hash
 from linkwright.messages.schema_text import schema_of
 

@@ -7,8 +7,8 @@ import sys
 
 from linkwright.cli.session import TerminationEnds
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.event_loop import run_coroutine
-from linkwright.interruption import raise_interrupts
+from linkwright.process.event_loop import run_coroutine
+from linkwright.process.interruption import raise_interrupts
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

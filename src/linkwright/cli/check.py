@@ -10,7 +10,6 @@ from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
-from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import say
 from linkwright.diagnostics import (
     Diagnostic,
@@ -25,8 +24,9 @@ from linkwright.diagnostics import (
 from linkwright.diagnostics.alike import alike_together
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
 from linkwright.diagnostics.translation import localized
-from linkwright.lean_dataclasses import dataclass, field
-from linkwright.lean_typing import TYPE_CHECKING, Any, TypeAlias
+from linkwright.loading.lean_dataclasses import dataclass, field
+from linkwright.loading.lean_typing import TYPE_CHECKING, Any, TypeAlias
+from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
     import argparse

@@ -15,8 +15,8 @@ from linkwright.cli.endings import FINE, USAGE, status_of
 from linkwright.cli.language import LANGUAGE_HELP, said_in_help, take_language
 from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import set_language
-from linkwright.interruption import end_at_once, raise_interrupts
-from linkwright.lean_typing import TYPE_CHECKING, Protocol, cast
+from linkwright.loading.lean_typing import TYPE_CHECKING, Protocol, cast
+from linkwright.process.interruption import end_at_once, raise_interrupts
 
 if TYPE_CHECKING:
     import argparse

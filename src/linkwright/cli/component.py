@@ -17,7 +17,7 @@ from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.remote_parameters import parameter_of
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, foreign, joined, phrase
-from linkwright.interruption import interrupt
+from linkwright.process.interruption import interrupt
 
 if TYPE_CHECKING:
     from asyncio.subprocess import Process
@@ -284,7 +284,7 @@ def add_component_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _assigned(words: Sequence[str]) -> list[Any]:
-    from linkwright.assignments import parse_assignments
+    from linkwright.process.assignments import parse_assignments
 
     return [parameter_of(name, value) for name, value in parse_assignments(words).items()]
 

@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.assignments import parse_assignments
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, has_errors, phrase, print_diagnostics
+from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
     from linkwright.packages import PackageFinder

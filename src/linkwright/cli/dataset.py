@@ -12,8 +12,8 @@ from linkwright.cli.endings import FINE, say
 from linkwright.cli.numbers import positive_int, unsigned_int
 from linkwright.diagnostics import counted, display_path, phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.interruption import INTERRUPTED
-from linkwright.processors import usable_processors
+from linkwright.process.interruption import INTERRUPTED
+from linkwright.process.processors import usable_processors
 
 if TYPE_CHECKING:
     from linkwright.vision.datasets.making import Studio

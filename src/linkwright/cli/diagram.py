@@ -6,9 +6,9 @@ import argparse
 import sys
 from pathlib import Path
 
-from linkwright.assignments import parse_assignments
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import print_diagnostics
+from linkwright.process.assignments import parse_assignments
 
 _PICTURES = (".pdf", ".svg", ".png")
 

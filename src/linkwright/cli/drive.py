@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import say
 from linkwright.cli.model_arguments import add_model
 from linkwright.cli.simulation_options import add_simulation_options, recording
@@ -24,6 +23,7 @@ from linkwright.diagnostics import (
     print_diagnostics,
 )
 from linkwright.diagnostics.translation import localized
+from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
     from linkwright.inference import Inference

@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterable
 from linkwright._version import __version__
 from linkwright.cli.language import UnknownLanguageError
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase, print_diagnostics
-from linkwright.interruption import INTERRUPTED
-from linkwright.standard_streams import take_any_text
-from linkwright.whole_files import NO_SPACE
+from linkwright.files.whole_files import NO_SPACE
+from linkwright.process.interruption import INTERRUPTED
+from linkwright.process.standard_streams import take_any_text
 
 FINE, FINDINGS, USAGE, BUG = 0, 1, 2, 3
 

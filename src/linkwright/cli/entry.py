@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.interruption import end_at_once
+from linkwright.process.interruption import end_at_once
 
 
 def main(words: list[str] | None = None, *, program: str = "linkwright") -> int:

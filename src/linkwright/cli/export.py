@@ -9,7 +9,6 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.assignments import parse_assignments
 from linkwright.cli.model_arguments import add_second_model, asked_pair, names_file
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import (
@@ -23,6 +22,7 @@ from linkwright.diagnostics import (
     phrase,
     print_diagnostics,
 )
+from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
     from linkwright.descriptions.pairs import Pair

@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import say
 from linkwright.cli.model_arguments import add_model
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, phrase, print_diagnostics
 from linkwright.diagnostics.translation import localized
+from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
     from linkwright.urdf import Robot

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from linkwright.assignments import parse_assignments
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
+from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
     import argparse

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.lean_typing import TYPE_CHECKING
-from linkwright.whole_files import write_whole_file
+from linkwright.files.whole_files import write_whole_file
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from linkwright.cli.language import said_in_help
 from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import language
-from linkwright.lean_typing import Any, NoReturn
+from linkwright.loading.lean_typing import Any, NoReturn
 
 
 def make_parser(

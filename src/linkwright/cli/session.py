@@ -18,8 +18,8 @@ from inspect import signature
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, phrase
-from linkwright.event_loop import run_coroutine
-from linkwright.interruption import raise_interrupts
+from linkwright.process.event_loop import run_coroutine
+from linkwright.process.interruption import raise_interrupts
 
 if TYPE_CHECKING:
     from types import FrameType

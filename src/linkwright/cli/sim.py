@@ -6,7 +6,6 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from linkwright.assignments import parse_assignments
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.simulation_options import (
     add_place_options,
@@ -16,6 +15,7 @@ from linkwright.cli.simulation_options import (
     recording,
 )
 from linkwright.cli.view import add_viewer_options
+from linkwright.process.assignments import parse_assignments
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -6,12 +6,12 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.assignments import parse_assignments
 from linkwright.cli.calls import NoAnswerError, call
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.cli.simulation_options import add_place_options, load_model
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session

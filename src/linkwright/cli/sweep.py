@@ -9,15 +9,15 @@ import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import FINDINGS, FINE, say
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.numbers import positive_int
 from linkwright.cli.progress import ProgressLine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, counted, display_path, phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.interruption import INTERRUPTED
-from linkwright.processors import usable_processors
+from linkwright.process.assignments import parse_assignments
+from linkwright.process.interruption import INTERRUPTED
+from linkwright.process.processors import usable_processors
 
 if TYPE_CHECKING:
     from linkwright.sweep.scenario import Scenario

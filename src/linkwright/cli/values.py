@@ -55,7 +55,7 @@ def read_values(arguments: argparse.Namespace) -> str:
     file = getattr(arguments, "yaml_file", None)
     if file is None:
         return str(arguments.values)
-    from linkwright.input_files import read_text
+    from linkwright.files.input_files import read_text
 
     try:
         return read_text(file)

@@ -9,9 +9,9 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.assignments import parse_assignments
 from linkwright.cli.model_arguments import add_second_model, asked_pair, names_file
 from linkwright.hosting.last_minutes import DEFAULT_HISTORY
+from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
     from linkwright.hosting.plans import HostOptions

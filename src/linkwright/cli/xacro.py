@@ -5,11 +5,11 @@ from __future__ import annotations
 import sys
 from types import SimpleNamespace
 
-from linkwright.assignments import parse_assignments
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import Diagnostic, Severity, phrase, print_diagnostics
-from linkwright.lean_typing import TYPE_CHECKING, Any
+from linkwright.loading.lean_typing import TYPE_CHECKING, Any
+from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
     import argparse

@@ -10,7 +10,7 @@ from pathlib import Path
 from linkwright.descriptions.service import examine
 from linkwright.descriptions.worlds import examine_world, is_world
 from linkwright.diagnostics import Diagnostic
-from linkwright.lean_typing import TYPE_CHECKING, Any
+from linkwright.loading.lean_typing import TYPE_CHECKING, Any
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:

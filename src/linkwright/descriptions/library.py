@@ -8,7 +8,7 @@ from pathlib import Path
 from linkwright.descriptions.description import Description
 from linkwright.diagnostics import LinkwrightError
 from linkwright.diagnostics.source import TEXT_NAME
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Reading, read
 from linkwright.urdf.plaintext import parse_as_urdfdom

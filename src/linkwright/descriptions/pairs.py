@@ -9,8 +9,8 @@ from linkwright.descriptions.comparison import Comparison, Side, compare
 from linkwright.descriptions.description import Description
 from linkwright.descriptions.service import examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, display_path
-from linkwright.lean_dataclasses import dataclass, replace
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_dataclasses import dataclass, replace
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from pathlib import Path
 from linkwright.descriptions.description import TRUE_OF_PARTS, Description
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, has_errors, phrase
 from linkwright.diagnostics.source import TEXT_NAME, is_text
-from linkwright.lean_typing import TYPE_CHECKING, Union
+from linkwright.loading.lean_typing import TYPE_CHECKING, Union
 from linkwright.urdf import Reading, Robot, read
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xmltree import Document, Element, Overlay

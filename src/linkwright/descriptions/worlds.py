@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, has_errors, phrase
-from linkwright.lean_dataclasses import dataclass
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Reading
 from linkwright.xmltree import Document, Overlay

@@ -7,8 +7,8 @@ from enum import Enum
 
 from linkwright.diagnostics.phrase import Phrase, joined
 from linkwright.diagnostics.source import SourceText, Span
-from linkwright.lean_dataclasses import NamedTuple
-from linkwright.lean_typing import TYPE_CHECKING, Any
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from typing_extensions import Self

@@ -7,7 +7,7 @@ import sys
 
 from linkwright.diagnostics.diagnostic import Diagnostic, LinkwrightError
 from linkwright.diagnostics.phrase import Phrase, phrase
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.diagnostics.installation import Installation

@@ -19,8 +19,8 @@ from pathlib import Path
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import Any
 
 NAME = "linkwright"
 SOMEWHERE = "PATH_TO_LINKWRIGHT"

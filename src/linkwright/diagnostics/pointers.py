@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.diagnostics.phrase import phrase
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,7 +9,7 @@ from linkwright.diagnostics.diagnostic import Diagnostic, Note, Severity
 from linkwright.diagnostics.phrase import as_phrase, phrase
 from linkwright.diagnostics.source import Span
 from linkwright.diagnostics.translation import labels, language, localized, translated
-from linkwright.lean_typing import IO, TYPE_CHECKING, Any
+from linkwright.loading.lean_typing import IO, TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pathlib import Path

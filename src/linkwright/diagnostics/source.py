@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 
 TEXT_NAME = "<robot_description>"
 """The name, in messages, of a description that is given as a text."""

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from linkwright.diagnostics.phrase import Phrase, joined, phrase, quoted_names
 from linkwright.diagnostics.render import display_path
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pathlib import Path

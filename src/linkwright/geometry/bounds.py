@@ -8,7 +8,7 @@ from math import hypot
 from linkwright.geometry.placement import Placement
 from linkwright.geometry.shapes import Box, Capsule, SimpleShape, Sphere
 from linkwright.geometry.vectors import Vector3, added, scaled, subtracted
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 
 FARTHEST = 1e9
 """Lengths in m beyond this are mistakes; nothing is computed from them, so that nothing overflows."""

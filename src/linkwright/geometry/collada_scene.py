@@ -10,9 +10,9 @@ import math
 from collections.abc import Iterator
 from xml.etree import ElementTree as ET
 
-from linkwright.lean_dataclasses import dataclass
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import Any, Generic, Protocol, TypeVar
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import Any, Generic, Protocol, TypeVar
 
 _Node = ET.Element
 _TRANSFORMS = ("matrix", "translate", "rotate", "scale")

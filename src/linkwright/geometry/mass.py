@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.placement import rotation as rotation_of
 from linkwright.geometry.single import Pose
-from linkwright.lean_dataclasses import dataclass, field
+from linkwright.loading.lean_dataclasses import dataclass, field
 
 LEAST_MASS = 1e-30
 """A mass in kg below this, some electrons, is none."""

@@ -14,8 +14,8 @@ from math import isfinite
 
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
 from linkwright.diagnostics.pointers import is_pointer
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import Any
 from linkwright.xmltree import Element, parse
 
 _WEB_PAGE = lazy_pattern(rb"\s*<(?:!doctype\s+)?html", re.IGNORECASE)

@@ -19,8 +19,8 @@ from linkwright.geometry.mesh_faults import fault_in
 from linkwright.geometry.outlines import STL_HEADER, STL_TRIANGLE
 from linkwright.geometry.stl import read_stl
 from linkwright.geometry.wavefront import read_obj
-from linkwright.lean_dataclasses import NamedTuple
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_typing import Any
 from linkwright.xmltree import Comment, write_element
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.tinyxml import parse_as_tinyxml

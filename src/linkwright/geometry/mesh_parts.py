@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import missing_extra
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.mesh_files import BadMeshError, PlacedMesh, placed_meshes, said_by_parser
-from linkwright.lean_dataclasses import dataclass, replace
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_dataclasses import dataclass, replace
+from linkwright.loading.lean_typing import Any
 
 
 @dataclass(frozen=True, slots=True)

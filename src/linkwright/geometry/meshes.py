@@ -25,7 +25,7 @@ from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, beside, p
 from linkwright.geometry.outlines import COLLADA_PADDING
 from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
 from linkwright.geometry.vectors import Vector3
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 
 LARGEST_FILE = 1 << 29
 """A mesh file of more bytes is not read."""

@@ -15,7 +15,7 @@ from struct import iter_unpack
 
 from linkwright.geometry.bounds import FARTHEST, Bounds
 from linkwright.geometry.vectors import Vector3
-from linkwright.lean_typing import Protocol
+from linkwright.loading.lean_typing import Protocol
 
 STEPS = 1 << 20
 """Corners nearer to each other than this part of the mesh's size are one."""

@@ -10,7 +10,7 @@ from math import acos
 
 from linkwright.geometry.single import Pose, quaternion_of, rotation_matrix
 from linkwright.geometry.vectors import Vector3, dot, subtracted
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 
 Matrix = tuple[Vector3, Vector3, Vector3]
 

@@ -10,7 +10,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.collada_scene import Unusual
 from linkwright.geometry.polyhedron import Faces
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 
 
 class PlainMesh:

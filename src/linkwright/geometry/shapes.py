@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import pi, prod
 
 from linkwright.geometry.vectors import Vector3
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import acos, asin, atan2, cos, pi, sin, sqrt
 
 from linkwright.geometry.vectors import Vector3
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 
 Quaternion = tuple[float, float, float, float]
 """x, y, z, w, of unit length."""

@@ -14,7 +14,7 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.bounds import Bounds
 from linkwright.geometry.placement import Matrix
 from linkwright.geometry.vectors import Vector3
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.geometry.arrays import Array

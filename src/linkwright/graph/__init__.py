@@ -2,7 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-from linkwright.deferred import deferred
 from linkwright.graph.computation_graph import Graph
 from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
@@ -71,6 +70,7 @@ from linkwright.graph.transforms.errors import (
     LookupException,
     TransformException,
 )
+from linkwright.loading.deferred import deferred
 
 if TYPE_CHECKING:
     from linkwright.graph.actions.client import ActionClient, ClientGoalHandle

@@ -16,11 +16,11 @@ from contextlib import contextmanager
 from types import FrameType, TracebackType
 from typing import Any, Protocol, TypeVar
 
-from linkwright.event_loop import run_coroutine
+from linkwright.files.unfinished import finish_all
 from linkwright.hosting.launch_log import LaunchLog
-from linkwright.interruption import signal_again, when_lost
 from linkwright.packages import PackageFinder, use_finder
-from linkwright.unfinished import finish_all
+from linkwright.process.event_loop import run_coroutine
+from linkwright.process.interruption import signal_again, when_lost
 
 T = TypeVar("T")
 

@@ -1,7 +1,7 @@
 """Mass properties of links from their shapes: computing them, judging them, writing them into the file."""
 
-from linkwright.deferred import deferred
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.deferred import deferred
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.inertia.estimation import DEFAULT_DENSITY, Estimate, ShapeKind, estimate

@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.validity import problems
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,8 @@ from linkwright.geometry.mass import MassProperties, combine
 from linkwright.geometry.solids import shape_properties
 from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.mesh_library import MeshLibrary
-from linkwright.lean_dataclasses import dataclass
-from linkwright.lean_typing import Literal
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_typing import Literal
 from linkwright.urdf import Collision, Link, Mesh, Visual
 
 ShapeKind = Literal["collision", "visual"]

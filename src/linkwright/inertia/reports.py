@@ -15,7 +15,7 @@ from linkwright.inertia.estimation import Estimate
 from linkwright.inertia.inertial import to_inertial
 from linkwright.inertia.verdict import Standing, Verdict, grouped, judge
 from linkwright.inertia.writing import Written
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.urdf import Robot
 from linkwright.urdf.bodies import Bodies
 

@@ -14,7 +14,7 @@ from linkwright.inertia.comparison import Comparison, compare
 from linkwright.inertia.estimation import Estimate
 from linkwright.inertia.inertial import from_inertial
 from linkwright.inertia.magnitudes import is_computable
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Link, Mesh
 from linkwright.urdf.bodies import Bodies
 

@@ -8,11 +8,11 @@ from functools import partial
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, display_path, foreign, phrase
+from linkwright.files.whole_files import write_whole_file
 from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.source_edits import NotWritableError, edits_for
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Link, Robot
-from linkwright.whole_files import write_whole_file
 from linkwright.xmltree.patches import Replacement, apply
 from linkwright.xmltree.reader import read_bytes
 

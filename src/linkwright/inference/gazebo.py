@@ -10,8 +10,8 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from linkwright.extensions import extensions
 from linkwright.inference.model import Drive
+from linkwright.loading.extensions import extensions
 from linkwright.sdf.plugins import library_name, original_library
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element, Text

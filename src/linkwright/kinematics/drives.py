@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import atan, atan2, copysign, cos, hypot, pi, sin, tan
 
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 
 _QUARTER_TURN = pi / 2.0
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import Array, matrix_from_pose, row_from_pose
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Joint, Robot, children_of, parent_joints
 
 Indices = NDArray[np.intp]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, sin
 
 from linkwright.geometry.single import Transform
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 
 _STRAIGHT = 1e-6
 """The angle in rad below which an arc is a straight line: dividing by less loses digits."""

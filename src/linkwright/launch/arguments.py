@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from linkwright.assignments import parse_assignments
 from linkwright.diagnostics import (
     Diagnostic,
     LinkwrightError,
@@ -19,6 +18,7 @@ from linkwright.launch.model.actions import DeclareLaunchArgument
 from linkwright.launch.model.declared_arguments import undeclared_names
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.substitution import describe
+from linkwright.process.assignments import parse_assignments
 
 UNDECLARED = frozenset({"launch-prefix", "sigterm_timeout", "sigkill_timeout", "emulate_tty", "ros_namespace"})
 """Launch configurations that have an effect without being declared."""

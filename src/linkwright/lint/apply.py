@@ -7,11 +7,11 @@ from difflib import unified_diff
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
-from linkwright.lean_dataclasses import dataclass, field
+from linkwright.files.whole_files import write_whole_file
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Edit, Fix
+from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.packages import enclosing_package
-from linkwright.whole_files import write_whole_file
 from linkwright.xmltree import parse
 from linkwright.xmltree.reader import read_bytes
 

@@ -21,11 +21,11 @@ from linkwright.diagnostics import (
     quoted_names,
 )
 from linkwright.diagnostics.phrase import as_phrase
-from linkwright.lean_dataclasses import dataclass, field, replace
 from linkwright.lint.engine import Checked, as_set, in_order
 from linkwright.lint.registry import find_rule
 from linkwright.lint.rules.inertia_doubtful import LEFT_TO_PLACEHOLDERS, placeholders
 from linkwright.lint.settings import Settings
+from linkwright.loading.lean_dataclasses import dataclass, field, replace
 from linkwright.packages import PackageFinder
 from linkwright.xmltree import Document
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Hashable
 from pathlib import Path
 
-from linkwright.lean_dataclasses import NamedTuple
-from linkwright.lean_typing import TYPE_CHECKING, Any
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_typing import TYPE_CHECKING, Any
 from linkwright.xacro.origin import Frame
 from linkwright.xmltree import Element, Text
 from linkwright.xmltree.nodes import LazyCopy

@@ -10,8 +10,6 @@ from linkwright.descriptions import examine as examine_description
 from linkwright.descriptions.description import TRUE_OF_PARTS
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, phrase
 from linkwright.diagnostics.phrase import as_phrase
-from linkwright.lean_dataclasses import dataclass
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.finding import Finding
 from linkwright.lint.missing_files import judged_files
 from linkwright.lint.missing_packages import judged
@@ -20,6 +18,8 @@ from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
 from linkwright.lint.suppression import Suppressions
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST
 from linkwright.urdf import Reading, Robot

@@ -10,8 +10,8 @@ from linkwright.geometry.bounds import FARTHEST, Bounds, bounds_of, union
 from linkwright.geometry.placement import IDENTITY, Placement, placement
 from linkwright.geometry.shapes import volume_of
 from linkwright.inertia.magnitudes import is_computable
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.meshes import MeshFacts
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Collision, Inertial, Link, Mesh, Visual
 from linkwright.urdf.bodies import WORLD, Bodies, Body
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, SourceText, Span, phrase
-from linkwright.lean_typing import Any
 from linkwright.lint.fix import Fix
+from linkwright.loading.lean_typing import Any
 from linkwright.xmltree import Element
 
 _MOST_NOTES = 10

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import element_range, escaped, start_tag_of, whole_lines
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range

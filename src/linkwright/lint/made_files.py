@@ -7,8 +7,8 @@ from fnmatch import fnmatchcase
 from functools import lru_cache
 from pathlib import Path
 
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext

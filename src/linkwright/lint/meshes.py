@@ -7,8 +7,8 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.lean_dataclasses import dataclass
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Collision, Link, Mesh, Visual
 from linkwright.xmltree import Element
 

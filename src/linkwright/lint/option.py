@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 
 OptionValue = bool | int | float | str | list[str]
 """The TOML types that an option of a rule may have."""

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, SourceText
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages.sources import SKIPPED_FOLDERS
 from linkwright.xmltree import Document, Overlay, parse_file
 from linkwright.xmltree.decoding import decode

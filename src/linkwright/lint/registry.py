@@ -12,10 +12,10 @@ from importlib import import_module
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
-from linkwright.extensions import EntryPoint, extensions
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.rule import Rule, Scope
+from linkwright.loading.extensions import EntryPoint, extensions
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from types import ModuleType

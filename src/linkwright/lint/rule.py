@@ -6,11 +6,11 @@ from collections.abc import Iterable
 from enum import Enum
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, SourceText, Span
-from linkwright.lean_typing import ClassVar, TypeVar
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Fix
 from linkwright.lint.option import Option
 from linkwright.lint.subject import Subject
+from linkwright.loading.lean_typing import ClassVar, TypeVar
 from linkwright.xmltree import Element
 
 Value = TypeVar("Value", bool, int, float, str, list[str])

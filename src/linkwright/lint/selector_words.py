@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Phrase, nearest, phrase, quoted_names
-from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.registry import all_rules, find_rule
 from linkwright.lint.selectors import ALL
+from linkwright.loading.lean_patterns import lazy_pattern
 
 _CODE = lazy_pattern("[A-Z]+[0-9]{0,3}")
 

@@ -7,10 +7,10 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from linkwright.diagnostics import Severity
-from linkwright.lean_dataclasses import dataclass, field, replace
-from linkwright.lean_typing import Protocol
 from linkwright.lint.option import OptionValue
 from linkwright.lint.selectors import specificity
+from linkwright.loading.lean_dataclasses import dataclass, field, replace
+from linkwright.loading.lean_typing import Protocol
 
 
 class Switched(Protocol):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 
 from linkwright.diagnostics import phrase, term
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.schema import ElementRule
 from linkwright.urdf import schema
 from linkwright.xmltree import Element

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from linkwright.descriptions import Description
 from linkwright.diagnostics import LinkwrightError
-from linkwright.lean_typing import TYPE_CHECKING, Any, TypeVar
 from linkwright.lint.settings import Settings
+from linkwright.loading.lean_typing import TYPE_CHECKING, Any, TypeVar
 from linkwright.urdf import Inertial, Joint, Link, Robot
 from linkwright.xmltree import Document, Element
 

@@ -12,8 +12,6 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, phrase
-from linkwright.lean_dataclasses import dataclass, field
-from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.registry import find_rule
@@ -21,6 +19,8 @@ from linkwright.lint.selector_words import canonical, is_selector, selector_hint
 from linkwright.lint.selectors import matches
 from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
+from linkwright.loading.lean_dataclasses import dataclass, field
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.xmltree import Element
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.patches import element_range, whole_lines

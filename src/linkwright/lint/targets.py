@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.lean_dataclasses import dataclass
-from linkwright.lean_patterns import lazy_pattern
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.packages import enclosing_package
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.sources import IGNORE_MARKERS, SKIPPED_FOLDERS

@@ -12,9 +12,9 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span
-from linkwright.lean_dataclasses import dataclass, field
-from linkwright.lean_typing import TYPE_CHECKING, TypeVar
 from linkwright.lint.xacro_names import Mentions, identifiers, mentions
+from linkwright.loading.lean_dataclasses import dataclass, field
+from linkwright.loading.lean_typing import TYPE_CHECKING, TypeVar
 from linkwright.xacro.expressions.symbols import MATHEMATICS
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.kept import Kept

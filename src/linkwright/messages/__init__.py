@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from linkwright.deferred import deferred
+from linkwright.loading.deferred import deferred
 from linkwright.messages.catalogue import packages as shipped_packages
 from linkwright.messages.classes import get_action, get_interface, get_message, get_service
 from linkwright.messages.conversion import to_csv, to_dict

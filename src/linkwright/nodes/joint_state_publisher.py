@@ -16,6 +16,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.files.input_files import read_text
 from linkwright.graph import (
     DEFAULT_QOS,
     DESCRIPTION_QOS,
@@ -25,7 +26,6 @@ from linkwright.graph import (
     Subscription,
     Timer,
 )
-from linkwright.input_files import read_text
 from linkwright.messages import Header, JointState, String, Time
 from linkwright.nodes.joint_layout import layout_of
 from linkwright.nodes.joint_positions import JointPositions

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase, print_diagnostics
-from linkwright.event_loop import run_coroutine
-from linkwright.interruption import raise_interrupts
-from linkwright.standard_streams import take_any_text
+from linkwright.process.event_loop import run_coroutine
+from linkwright.process.interruption import raise_interrupts
+from linkwright.process.standard_streams import take_any_text
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph

@@ -13,11 +13,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.extensions import extensions
+from linkwright.loading.extensions import extensions
 from linkwright.nodes.options import Factory
 
 if TYPE_CHECKING:
-    from linkwright.extensions import EntryPoint
+    from linkwright.loading.extensions import EntryPoint
 
 
 class NodeRegistry(Mapping[tuple[str, str], Factory]):

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from math import isfinite
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.files.input_files import read_text
 from linkwright.graph import (
     DESCRIPTION_QOS,
     SENSOR_DATA_QOS,
@@ -29,7 +30,6 @@ from linkwright.graph import (
 )
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions
 from linkwright.graph.qos.profile import QoSPolicyKind
-from linkwright.input_files import read_text
 from linkwright.messages import JointState, String, TFMessage
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.robot_transforms import MOVING_TYPES, JointGroup, RobotTransforms, Throttle

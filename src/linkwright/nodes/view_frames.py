@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.files.whole_files import write_whole_file
 from linkwright.graph import Graph
 from linkwright.graph.transforms.listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC, TransformListener
 from linkwright.graph.transforms.waiting import Buffer
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.whole_files import write_whole_file
 
 
 class ViewFrames(SingleNode):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from linkwright.lean_patterns import lazy_pattern
+from linkwright.loading.lean_patterns import lazy_pattern
 
 MANIFEST = "package.xml"
 

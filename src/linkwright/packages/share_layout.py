@@ -16,7 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from linkwright.files.user_folders import SHARES
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages.substituted import substituted_files
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from linkwright.extensions import extensions
+from linkwright.loading.extensions import extensions
 from linkwright.packages.ament import install_prefix, share_in_prefix
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.installed_file import InstalledFile

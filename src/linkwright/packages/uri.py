@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from linkwright.diagnostics import phrase
-from linkwright.lean_patterns import lazy_pattern
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.packages.errors import bad_uri
 
 _DRIVE = lazy_pattern(r"/?([A-Za-z]:[\\/])")

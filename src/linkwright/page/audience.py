@@ -290,7 +290,7 @@ class Audience(PageGroup):
         await asyncio.gather(*goodbyes, return_exceptions=True)
 
     async def _listen(self, page: Page, socket: WebSocketResponse) -> None:
-        from linkwright.http_server import web
+        from linkwright.page.http_server import web
 
         patience = _PATIENCE
         pace = Pace(asyncio.get_running_loop().time)

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.files.user_folders import state_folder
-from linkwright.whole_files import write_whole_file
+from linkwright.files.whole_files import write_whole_file
 
 _LIFETIME = 7 * 24 * 3600.0
 """Seconds."""

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, cast
 from urllib.parse import quote
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.http_server import SERVER_LOGGER, web
 from linkwright.page.access import TOKEN_PARAMETER, Admission, Gate, security_headers
 from linkwright.page.files import CONTENT_TYPES, IMAGE_TYPES, Downloads, FileRefusedError, MeshFolders
+from linkwright.page.http_server import SERVER_LOGGER, web
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Mapping

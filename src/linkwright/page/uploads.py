@@ -20,8 +20,8 @@ import msgspec
 from linkwright.bag.scratch import scratch_folder
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, in_one_line, phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.http_server import web
 from linkwright.page.audience import language_asked
+from linkwright.page.http_server import web
 
 if TYPE_CHECKING:
     from linkwright.page.audience import Audience

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-from linkwright.extensions import extensions
 from linkwright.graph import Logger
+from linkwright.loading.extensions import extensions
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import ServerMessage, tag_of
 from linkwright.panels.page_feature import FeatureHost, PageFeature

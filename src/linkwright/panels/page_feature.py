@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 from linkwright.diagnostics import Diagnostic
-from linkwright.extensions import extensions
+from linkwright.loading.extensions import extensions
 from linkwright.page.audience import Page
 from linkwright.page.outbox import Payload
 from linkwright.page.protocol.message import ServerMessage

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from linkwright.deferred import deferred
+from linkwright.loading.deferred import deferred
 
 if TYPE_CHECKING:
     from linkwright.rviz.config.locations import find_unsaved

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from functools import cache
 
-from linkwright.lean_dataclasses import NamedTuple
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_typing import Any
 from linkwright.schema.report import UNREADABLE, Read, Report
 from linkwright.schema.rules import AttributeRule, ElementRule, Version
 from linkwright.schema.source import flat_source, nested_source

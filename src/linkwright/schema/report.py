@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from linkwright.lean_typing import Any, Final, Protocol
+from linkwright.loading.lean_typing import Any, Final, Protocol
 from linkwright.schema.rules import AttributeRule, ElementRule
 from linkwright.xmltree import Element
 

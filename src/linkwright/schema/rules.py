@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from linkwright.lean_dataclasses import dataclass, field
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_dataclasses import dataclass, field
+from linkwright.loading.lean_typing import Any
 
 Version = tuple[int, int]
 """Major and minor version of a language."""

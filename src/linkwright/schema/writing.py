@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.schema.rules import AttributeRule, ElementRule
 from linkwright.xmltree import Element, Text
 

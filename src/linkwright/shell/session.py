@@ -15,8 +15,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import phrase
-from linkwright.interruption import interrupt
-from linkwright.scratch_folders import ScratchFolder
+from linkwright.files.scratch_folders import ScratchFolder
+from linkwright.process.interruption import interrupt
 from linkwright.shell.instead import no_such_command
 from linkwright.shell.programs import PROGRAMS, write_programs
 from linkwright.standins import process

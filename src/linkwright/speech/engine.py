@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
-from linkwright.extensions import extensions
+from linkwright.loading.extensions import extensions
 from linkwright.speech.sound.samples import Samples
 
 _GROUP = "linkwright.speech_engines"

@@ -8,13 +8,13 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from linkwright.files.whole_files import write_whole_file
 from linkwright.sweep.journal import Journal, refusing
 from linkwright.sweep.page import summary
 from linkwright.sweep.plan import Run, fingerprint, planned
 from linkwright.sweep.running import Outcome
 from linkwright.sweep.scenario import Scenario
 from linkwright.sweep.table import Table, written
-from linkwright.whole_files import write_whole_file
 
 Runner = Callable[[Sequence[Run], Callable[[Outcome], None]], None]
 """Makes runs and reports each when it is done."""

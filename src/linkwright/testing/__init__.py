@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linkwright.deferred import deferred
+from linkwright.loading.deferred import deferred
 from linkwright.testing.recording import Recording
 from linkwright.testing.stepped import AsyncSteppedGraph
 from linkwright.testing.stepped_sync import SteppedGraph

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from functools import cached_property
 
 from linkwright.geometry.placement import IDENTITY, Placement, placement
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf.model import Joint, Link, Robot
 
 WORLD = "world"

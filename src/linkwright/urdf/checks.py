@@ -10,8 +10,8 @@ from math import sqrt
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Pose, Quaternion, rpy_from_quaternion
 from linkwright.geometry.vectors import Vector3
-from linkwright.lean_dataclasses import replace
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_dataclasses import replace
+from linkwright.loading.lean_typing import Any
 from linkwright.schema.report import UNREADABLE
 from linkwright.urdf.findings import Findings
 from linkwright.urdf.model import Dynamics, Geometry, Limit

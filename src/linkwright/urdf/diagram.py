@@ -14,7 +14,7 @@ from linkwright.diagnostics import (
     missing_extra,
     phrase,
 )
-from linkwright.whole_files import write_whole_file
+from linkwright.files.whole_files import write_whole_file
 
 IMAGE_ENDINGS = (".pdf", ".svg", ".png")
 

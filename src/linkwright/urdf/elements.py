@@ -13,8 +13,8 @@ from __future__ import annotations
 from itertools import takewhile
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, did_you_mean, joined, phrase
-from linkwright.lean_dataclasses import replace
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_dataclasses import replace
+from linkwright.loading.lean_typing import Any
 from linkwright.schema.reading import reader_of
 from linkwright.schema.report import UNREADABLE
 from linkwright.schema.rules import ElementRule, Version

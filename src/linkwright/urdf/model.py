@@ -12,8 +12,8 @@ from collections.abc import Mapping
 from linkwright.geometry.shapes import SimpleShape
 from linkwright.geometry.single import IDENTITY_POSE, Pose
 from linkwright.geometry.vectors import Vector3
-from linkwright.lean_dataclasses import dataclass, field
-from linkwright.lean_typing import Literal
+from linkwright.loading.lean_dataclasses import dataclass, field
+from linkwright.loading.lean_typing import Literal
 from linkwright.xmltree import Element
 
 JointType = Literal["revolute", "continuous", "prismatic", "fixed", "floating", "planar"]

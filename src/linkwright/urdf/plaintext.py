@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.lean_patterns import lazy_pattern
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.xmltree import Document, Element, parse
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.positions import attribute_value_range

@@ -11,9 +11,9 @@ from collections import defaultdict
 from collections.abc import Iterable
 
 from linkwright.diagnostics import Diagnostic, did_you_mean, joined, phrase
-from linkwright.lean_dataclasses import dataclass
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import TypeVar
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import TypeVar
 from linkwright.schema.rules import Version
 from linkwright.urdf.elements import MaterialTable, read_joint, read_link
 from linkwright.urdf.model import Joint, Link, Robot

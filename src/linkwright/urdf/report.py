@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Phrase, counted, did_you_mean, joined, nearest, phrase, quoted, term
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.schema.report import UNREADABLE
 from linkwright.schema.rules import AttributeRule, ElementRule
 from linkwright.urdf.findings import Findings

@@ -10,8 +10,8 @@ from math import inf
 
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import IDENTITY_POSE
-from linkwright.lean_dataclasses import replace
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_dataclasses import replace
+from linkwright.loading.lean_typing import Any
 from linkwright.schema.rules import AttributeRule, ElementRule, Version
 from linkwright.urdf.checks import check_dynamics, check_end, check_limit, check_origin, check_sizes, pose_of
 from linkwright.urdf.model import (

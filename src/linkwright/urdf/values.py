@@ -15,8 +15,8 @@ from math import isfinite, isinf, radians
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.single import Quaternion
 from linkwright.geometry.vectors import Vector3
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import get_args
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import get_args
 from linkwright.schema import ValueType, Version
 from linkwright.urdf.model import JointType
 

@@ -1,7 +1,7 @@
 """The macro language xacro, as ros/xacro 2.1 understands it, with positions and without its holes."""
 
-from linkwright.deferred import deferred
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.deferred import deferred
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.xacro.engine import expand

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from linkwright.diagnostics.source import TEXT_NAME, is_text
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xacro.expander import Expander
 from linkwright.xacro.expansion import Expansion
 from linkwright.xacro.inputs import Inputs, main_document

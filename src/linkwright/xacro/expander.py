@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Span, phrase
-from linkwright.lean_dataclasses import NamedTuple
-from linkwright.lean_typing import NoReturn
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_typing import NoReturn
 from linkwright.xacro.comments import CommentSweeper
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault

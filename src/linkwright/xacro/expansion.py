@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.origin import Origin, origin_of
 from linkwright.xmltree import Document, Element, write

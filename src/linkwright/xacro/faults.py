@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 
 from linkwright.diagnostics import Note, Phrase, SourceText, Span, phrase, term
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xmltree import Element, Text
 
 # Not compiled here: few files need them.

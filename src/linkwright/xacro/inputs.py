@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xacro.limits import Limits
 from linkwright.xacro.plan import plan_document
 from linkwright.xacro.session import PackageSource, Session

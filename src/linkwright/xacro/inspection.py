@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xacro.engine import expand
 from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.limits import Limits

@@ -10,7 +10,7 @@ from _thread import allocate_lock  # threading.Lock without the rest of threadin
 from time import thread_time
 
 from linkwright.diagnostics import phrase
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree.collection import seldom_collected
 

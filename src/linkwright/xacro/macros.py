@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from linkwright.diagnostics import phrase
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree import Element
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from linkwright.diagnostics import Note, Span, phrase
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xmltree import Element
 
 _SHOWN = 10

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.lean_patterns import lazy_pattern
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.xacro.expander import Directive, Expander, Site, is_final
 from linkwright.xacro.expansion import Expansion
 from linkwright.xacro.expressions.scope import Scope

@@ -11,7 +11,7 @@ searched.
 
 from __future__ import annotations
 
-from linkwright.lean_typing import Any, TypeAlias
+from linkwright.loading.lean_typing import Any, TypeAlias
 from linkwright.xacro.limits import LONG
 from linkwright.xmltree import Comment, Document, Element, Node, Text
 from linkwright.xmltree.nodes import KeptText

@@ -16,7 +16,7 @@ from linkwright.diagnostics import (
     foreign,
     phrase,
 )
-from linkwright.lean_typing import TYPE_CHECKING, Any, Protocol
+from linkwright.loading.lean_typing import TYPE_CHECKING, Any, Protocol
 from linkwright.xacro import sources
 from linkwright.xacro.expressions import sandbox, symbols
 from linkwright.xacro.expressions.bounded import keys

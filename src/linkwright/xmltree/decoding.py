@@ -11,7 +11,7 @@ import re
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, phrase
 from linkwright.diagnostics.pointers import FETCH, IS_POINTER, is_pointer
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 
 UTF_8 = "utf-8"
 _LONGEST_BEGINNING = 100

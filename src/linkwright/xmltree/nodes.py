@@ -6,7 +6,7 @@ from _thread import allocate_lock  # threading.Lock without the rest of threadin
 from collections.abc import Iterator
 
 from linkwright.diagnostics import SourceText, Span
-from linkwright.lean_typing import Any, SupportsIndex
+from linkwright.loading.lean_typing import Any, SupportsIndex
 from linkwright.xmltree.decoding import UTF_8
 
 

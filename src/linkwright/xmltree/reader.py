@@ -18,8 +18,8 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
-from linkwright.input_files import LARGEST_TEXT, NoWriterError, read_file
-from linkwright.lean_typing import TYPE_CHECKING, NoReturn
+from linkwright.files.input_files import LARGEST_TEXT, NoWriterError, read_file
+from linkwright.loading.lean_typing import TYPE_CHECKING, NoReturn
 from linkwright.xmltree.decoding import decoded, unsaved
 from linkwright.xmltree.entities import GROWTH_LIMIT, EntityGuard
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text

@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from linkwright.lean_dataclasses import NamedTuple
-from linkwright.lean_patterns import lazy_pattern
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, Text
 
 _PRIVATE = 0xE000

@@ -13,8 +13,8 @@ from xml.parsers.expat import ExpatError, ParserCreate
 from xml.parsers.expat.errors import XML_ERROR_TAG_MISMATCH, codes
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, SourceText, Span, phrase
-from linkwright.lean_dataclasses import NamedTuple
-from linkwright.lean_patterns import lazy_pattern
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.xmltree.nodes import Document
 from linkwright.xmltree.reader import parse
 from linkwright.xmltree.stand_ins import REPAIRS, can_stand_in, put_back, stand_in, tags_alone

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import pytest
 
-from linkwright import extensions
 from linkwright.control.hardware.component import Hardware, HardwareError
 from linkwright.control.nodes.ros2_control_node import Ros2ControlNode
 from linkwright.descriptions import DescriptionLibrary
+from linkwright.loading import extensions
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions
 from tests.control.manager.test_ros2_control_node import ask, go_on

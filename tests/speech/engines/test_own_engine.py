@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from linkwright import extensions
+from linkwright.loading import extensions
 from linkwright.speech.engine import EngineOptions, make_engine
 from linkwright.speech.sound.samples import BLOCK
 from tests.speech.voices import WORDS, say

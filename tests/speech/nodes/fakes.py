@@ -7,9 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from linkwright import extensions
 from linkwright.diagnostics import Diagnostic
 from linkwright.graph import Time
+from linkwright.loading import extensions
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
 from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine

@@ -162,7 +162,7 @@ class FoxgloveBridge(SingleNode):
     # --- the network -------------------------------------------------------------------------------------------
 
     async def _serve(self) -> None:
-        from linkwright.http_server import SERVER_LOGGER, web
+        from linkwright.page.http_server import SERVER_LOGGER, web
 
         application = web.Application()
         application.router.add_get("/", self._connected)
@@ -176,7 +176,7 @@ class FoxgloveBridge(SingleNode):
         self._node.get_logger().info(f"Foxglove and Lichtblick connect to {self.address}")
 
     async def _connected(self, request: web.Request) -> web.StreamResponse:
-        from linkwright.http_server import web
+        from linkwright.page.http_server import web
 
         if not is_welcome(request.headers.get("Origin"), self._origins):
             return web.Response(status=403, text="Pages of other sites may not connect.\n")

@@ -43,7 +43,7 @@ def read_overrides(arguments: argparse.Namespace) -> dict[str, QoSProfile]:
     import yaml
 
     from linkwright.bag.qos import overrides_of
-    from linkwright.input_files import read_text
+    from linkwright.files.input_files import read_text
 
     try:
         document = yaml.safe_load(read_text(path))

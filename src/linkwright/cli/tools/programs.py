@@ -9,7 +9,7 @@ from linkwright.cli.command import main as linkwright
 from linkwright.cli.endings import FINDINGS, FINE, status_of
 from linkwright.cli.tools.ros2 import ros2
 from linkwright.diagnostics import LinkwrightError, missing_extra, print_diagnostics
-from linkwright.interruption import raise_interrupts
+from linkwright.process.interruption import raise_interrupts
 
 _FAILED = 255
 """The exit status of urdfdom's programs for errors (``return -1``)."""

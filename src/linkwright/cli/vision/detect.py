@@ -101,9 +101,9 @@ def _read(name: str) -> NDArray[np.uint8]:
     """Return the pixels of a file, shape (height, width, 3)."""
     import numpy as np
 
+    from linkwright.files.input_files import read_file
     from linkwright.images import BadImageError, Picture
     from linkwright.images.image_files import file_pixels
-    from linkwright.input_files import read_file
 
     try:
         pixels = file_pixels(np.frombuffer(read_file(name, _LARGEST_FILE), np.uint8))

@@ -12,7 +12,7 @@ from linkwright.cli.endings import FINE
 from linkwright.cli.numbers import positive_float, positive_int, unsigned_int
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.interruption import INTERRUPTED
+from linkwright.process.interruption import INTERRUPTED
 
 if TYPE_CHECKING:
     from linkwright.vision.training.learning.course import Epoch

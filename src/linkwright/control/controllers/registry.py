@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, foreign, phrase
-from linkwright.extensions import extensions
+from linkwright.loading.extensions import extensions
 
 if TYPE_CHECKING:
     from linkwright.control.controllers.controller import Controller

@@ -12,9 +12,9 @@ from linkwright.control.hardware.description import ComponentDescription, Hardwa
 from linkwright.control.hardware.interfaces import CommandInterface, StateInterface
 from linkwright.control.hardware.timing import Timing
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.extensions import extensions
 from linkwright.graph.lifecycle.states import UNCONFIGURED, LifecycleState
 from linkwright.graph.log.logger import Logger
+from linkwright.loading.extensions import extensions
 
 GROUP = "linkwright.hardware"
 

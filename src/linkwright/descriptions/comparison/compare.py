@@ -19,8 +19,8 @@ from linkwright.descriptions.comparison.facts import (
 )
 from linkwright.descriptions.comparison.matching import Matches, match
 from linkwright.diagnostics import LinkwrightError, Span
-from linkwright.lean_dataclasses import dataclass, field
-from linkwright.lean_typing import Literal, TypeVar
+from linkwright.loading.lean_dataclasses import dataclass, field
+from linkwright.loading.lean_typing import Literal, TypeVar
 from linkwright.urdf import Collision, Joint, Link, Mesh, Robot, Visual
 from linkwright.xacro.origin import Frame, frames
 from linkwright.xmltree import Element

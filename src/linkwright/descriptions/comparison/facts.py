@@ -7,7 +7,7 @@ from math import sqrt
 
 from linkwright.geometry.shapes import Box, Sphere
 from linkwright.geometry.single import Pose, quaternion_of
-from linkwright.lean_dataclasses import dataclass, field
+from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.urdf import Geometry, Inertial, Joint, Link, Mesh, Visual
 from linkwright.urdf.model import Collision
 from linkwright.xmltree import Element

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Mapping
 
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Joint, Link, Robot, children_of
 
 

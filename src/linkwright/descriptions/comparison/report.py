@@ -7,7 +7,7 @@ from collections.abc import Callable
 from linkwright.descriptions.comparison.compare import Comparison, Difference, Place
 from linkwright.diagnostics import Phrase, Span, counted, phrase, term
 from linkwright.diagnostics.translation import localized
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 
 Label = Callable[[str], str]
 """Returns the name of a file for users."""

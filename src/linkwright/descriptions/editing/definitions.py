@@ -10,7 +10,7 @@ import yaml
 
 from linkwright.descriptions.editing.places import Candidate, Place, literal, words
 from linkwright.diagnostics import LinkwrightError, SourceText
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import parse_parameters
 from linkwright.xacro.origin import Frame, frames

@@ -10,8 +10,8 @@ from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.planning import EditPlan
 from linkwright.descriptions.editing.refusals import forbidden_file
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
-from linkwright.lean_dataclasses import dataclass
-from linkwright.whole_files import write_whole_file
+from linkwright.files.whole_files import write_whole_file
+from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.xmltree.decoding import decoded
 from linkwright.xmltree.reader import read_bytes
 

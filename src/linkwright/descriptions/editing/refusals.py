@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from linkwright.descriptions.editing.places import Place
 from linkwright.diagnostics import Diagnostic, Note, display_path, joined, phrase
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 
 _MOST_NAMED = 6
 

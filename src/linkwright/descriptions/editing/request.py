@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from linkwright.lean_dataclasses import dataclass
-from linkwright.lean_typing import Literal
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_typing import Literal
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
 

@@ -12,8 +12,8 @@ from linkwright.descriptions.description import Description
 from linkwright.descriptions.editing.definitions import Definitions
 from linkwright.descriptions.editing.places import Place
 from linkwright.diagnostics import LinkwrightError
-from linkwright.lean_dataclasses import dataclass
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.urdf import read
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xmltree import Document, Element, Overlay

@@ -7,7 +7,7 @@ from importlib import import_module
 
 from linkwright.diagnostics.diagnostic import Diagnostic
 from linkwright.diagnostics.translation import translated
-from linkwright.lean_typing import cast
+from linkwright.loading.lean_typing import cast
 
 FORMATS = ("text", "concise", "json", "sarif", "github")
 """``text`` for people, ``concise`` a line each, ``json`` and ``sarif`` for programs, ``github`` for its workflows."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from functools import cache
 
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from gettext import NullTranslations

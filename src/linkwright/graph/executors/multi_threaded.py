@@ -18,7 +18,7 @@ from linkwright.graph.faults import (
     ShutdownException,
     TimeoutException,
 )
-from linkwright.processors import usable_processors
+from linkwright.process.processors import usable_processors
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 

@@ -26,9 +26,9 @@ from linkwright.diagnostics import (
     foreign,
     phrase,
 )
+from linkwright.files.input_files import read_text
 from linkwright.graph.parameters.errors import ParameterFileNotFoundError
 from linkwright.graph.parameters.rules import ParameterRules
-from linkwright.input_files import read_text
 
 PARAMETERS_KEY = "ros__parameters"
 _KINDS = {bool: "bool", int: "integer", float: "double", str: "string"}

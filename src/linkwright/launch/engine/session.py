@@ -26,10 +26,10 @@ from linkwright.launch.model.entity import LaunchDescriptionEntity, as_entities
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
+    from linkwright.files.scratch_folders import ScratchFolder
     from linkwright.hosting.plans import HostedPlan
     from linkwright.launch.model.plans import ProcessPlan
     from linkwright.launch.model.running_launch import Schedule
-    from linkwright.scratch_folders import ScratchFolder
 
 
 _SILENT_SECONDS = 1.0
@@ -108,7 +108,7 @@ class LaunchSession:
     def scratch_folder(self) -> Path:
         """A folder for files that the processes of this launch read; it is deleted after the launch."""
         if self._scratch is None:
-            from linkwright.scratch_folders import ScratchFolder
+            from linkwright.files.scratch_folders import ScratchFolder
 
             self._scratch = ScratchFolder("launch")
             self.processes.owns(Path(self._scratch.name))

@@ -20,7 +20,7 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
-from linkwright.input_files import read_text
+from linkwright.files.input_files import read_text
 from linkwright.launch.errors.exceptions import InvalidPythonLaunchFileError, as_ros_error
 from linkwright.launch.errors.places import MarkupPlace, Place, error_at, not_reading
 from linkwright.launch.errors.user_code import explain

@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.extensions import extensions
+from linkwright.loading.extensions import extensions
 
 if TYPE_CHECKING:
     from linkwright.launch.model.action import Action

@@ -18,7 +18,7 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
-from linkwright.input_files import read_text
+from linkwright.files.input_files import read_text
 from linkwright.launch.errors.exceptions import SubstitutionFailure
 from linkwright.launch.errors.places import MarkupPlace, Place, Placed, error_at, located
 from linkwright.launch.frontend.grammar import parse_substitution

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, Span, phrase
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.extents import MARKER
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
@@ -14,6 +13,7 @@ from linkwright.lint.rules.geometry import is_scenery
 from linkwright.lint.rules.meshes import Millimetres
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import SURROUNDINGS
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Collision, Link, Mesh, Visual
 from linkwright.xmltree import Element
 

@@ -10,7 +10,6 @@ from math import prod
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
 from linkwright.geometry.shapes import volume_of
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.explanations import is_explained
 from linkwright.lint.extents import MARKER, WEIGHTLESS
 from linkwright.lint.option import Option
@@ -19,6 +18,7 @@ from linkwright.lint.rules.inertia import links_with_inertial, part
 from linkwright.lint.rules.inertia_doubtful import placeholders
 from linkwright.lint.subject import Subject
 from linkwright.lint.tensors import DIAGONAL, PRODUCTS, flaw_of, name_others
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Inertial, Link, Mesh
 
 if TYPE_CHECKING:

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Iterator
 from math import pi, radians, sqrt
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
-from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.fix import Fix, value_edit
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import SURROUNDINGS, joints, parts, shown, values
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.urdf.values import looks_like_degrees
 from linkwright.xmltree import Element
 

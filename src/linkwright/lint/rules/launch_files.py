@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, foreign, nearest, phrase, quoted
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.made_files import is_made_later
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.subject import Subject
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import is_substitute
 
 if TYPE_CHECKING:

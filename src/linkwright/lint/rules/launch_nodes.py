@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, counted, joined, nearest, phrase, quoted, quoted_names
-from linkwright.extensions import extensions
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.dependencies import brings, is_always_installed, would_make_a_circle
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.rules.package_python import is_ament_python
 from linkwright.lint.subject import Subject
+from linkwright.loading.extensions import extensions
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xmltree.patches import element_range
 
 if TYPE_CHECKING:

@@ -20,14 +20,14 @@ from linkwright.diagnostics import (
     quoted,
 )
 from linkwright.diagnostics.misspellings import misspelling_of
-from linkwright.lean_dataclasses import NamedTuple
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.launch_files import LaunchRule
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.subject import Subject
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 
 if TYPE_CHECKING:

@@ -6,12 +6,12 @@ import re
 from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, Span, phrase
-from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.fix import remove_element
 from linkwright.lint.meshes import material_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.geometry import shapes_of
 from linkwright.lint.subject import Subject
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.urdf import Link, Material, Mesh, Visual
 from linkwright.urdf.elements import read_material
 from linkwright.urdf.report import UrdfReport

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator
 from math import isclose
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.fix import Fix, add_attribute, replace_value
 from linkwright.lint.meshes import MeshUse
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.geometry import is_scenery
 from linkwright.lint.subject import Subject
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.geometry.outlines import Outline

@@ -8,10 +8,10 @@ from contextlib import suppress
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, did_you_mean, display_path, joined, phrase
-from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.packages import enclosing_package
 from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range

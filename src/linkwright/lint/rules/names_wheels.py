@@ -14,10 +14,10 @@ from math import cos, radians
 from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase
 from linkwright.geometry.placement import Placement, placement, turned
 from linkwright.geometry.vectors import dot, length, subtracted
-from linkwright.lean_dataclasses import NamedTuple
-from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.urdf import Collision, Cylinder, Joint, Link, Robot, Vector3, Visual
 
 _NO_WHEEL = lazy_pattern(

@@ -7,10 +7,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.fix import remove_element
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.subject import Subject
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext

@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.rules.package_install import checkout_hint, near_file
 from linkwright.lint.rules.package_manifest import PackageRule
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, phrase, quoted
 from linkwright.diagnostics.misspellings import misspelling_of
-from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.extension_names import INTERFACES, OF_JOINTS, OF_LINKS
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import element_range
 

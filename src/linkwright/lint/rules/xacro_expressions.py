@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from itertools import islice
 
 from linkwright.diagnostics import Diagnostic, phrase
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rules.xacro_rule import XacroRule
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range, raw_offset
 

@@ -6,9 +6,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.lint.xacro_facts import XacroFacts

@@ -8,12 +8,12 @@ from itertools import product
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.fix import Fix, add_attribute, rename_element, replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.lint.subject import Subject
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.schema import ElementRule
 from linkwright.urdf.schema import ROBOT
 from linkwright.xmltree import Element

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Span, phrase
-from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.rules.xacro_rule import XacroRule
+from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xacro.expressions.literals import literal
 from linkwright.xmltree import Element
 

@@ -21,7 +21,7 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
-from linkwright.input_files import read_file
+from linkwright.files.input_files import read_file
 
 MOST_PIXELS = 1 << 28
 """No map with more pixels is read: a small file can claim any size."""

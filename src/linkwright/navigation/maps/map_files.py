@@ -8,11 +8,11 @@ from math import floor, log10
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, display_path, foreign, phrase
+from linkwright.files.whole_files import write_whole_file
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.maps.images import pgm_bytes, pillow_bytes, read_image
 from linkwright.navigation.maps.map_yaml import MapMode, read_map_yaml
 from linkwright.navigation.maps.pixels import UNKNOWN_DARKNESS, cells_of_image, pixels_of_cells
-from linkwright.whole_files import write_whole_file
 
 OCCUPIED_THRESH = 0.65
 FREE_THRESH = 0.25

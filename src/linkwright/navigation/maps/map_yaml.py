@@ -21,7 +21,7 @@ from linkwright.diagnostics import (
     did_you_mean,
     phrase,
 )
-from linkwright.yaml_documents import YamlDocument, read_source
+from linkwright.files.yaml_documents import YamlDocument, read_source
 
 _REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 _TRUE = frozenset({"true", "yes", "on", "y"})

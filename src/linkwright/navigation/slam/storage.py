@@ -21,12 +21,12 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
-from linkwright.input_files import read_file
+from linkwright.files.input_files import read_file
+from linkwright.files.whole_files import write_whole_file
 from linkwright.navigation.slam.mapper import Mapper
 from linkwright.navigation.slam.pose_graph import PoseGraph
 from linkwright.navigation.slam.poses import Floats
 from linkwright.navigation.slam.scan import PlanarScan
-from linkwright.whole_files import write_whole_file
 
 ENDING = ".posegraph"
 _FORMAT = 1

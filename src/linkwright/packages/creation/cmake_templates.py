@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.packages.creation.request import PackageRequest

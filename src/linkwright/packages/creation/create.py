@@ -20,12 +20,12 @@ from linkwright.diagnostics import (
     phrase,
     term,
 )
-from linkwright.lean_dataclasses import dataclass
+from linkwright.files.whole_files import write_whole_file
+from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.packages.creation import cmake_templates, package_templates
 from linkwright.packages.creation.licenses import known_licenses, license_text
 from linkwright.packages.creation.request import DEFAULT_LICENSE, PackageRequest
 from linkwright.packages.naming import check_dependency, check_email, check_member_name, check_package_name
-from linkwright.whole_files import write_whole_file
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from linkwright.lean_dataclasses import dataclass
-from linkwright.lean_typing import Literal
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_typing import Literal
 
 BuildType = Literal["cmake", "ament_cmake", "ament_python"]
 BUILD_TYPES: tuple[BuildType, ...] = ("cmake", "ament_cmake", "ament_python")

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from linkwright.files.user_folders import cache_folder
+from linkwright.files.whole_files import write_whole_file
 from linkwright.packages.programs.child_python import python_command
 from linkwright.packages.readers.entry_points import EntryPoint
-from linkwright.whole_files import write_whole_file
 
 _LONGEST_INTERPRETER_LINE = 120
 """Systems cut longer ones off."""
@@ -44,7 +44,7 @@ def script_for_ours(package: str, name: str) -> Path:
         *_interpreter_lines(),
         "import sys",
         "",
-        "from linkwright.interruption import end_at_once",
+        "from linkwright.process.interruption import end_at_once",
         "",
         'if __name__ == "__main__":',
         "    end_at_once()",

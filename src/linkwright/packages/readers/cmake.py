@@ -11,7 +11,7 @@ from itertools import takewhile
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
-from linkwright.lean_dataclasses import dataclass, field, replace
+from linkwright.loading.lean_dataclasses import dataclass, field, replace
 from linkwright.packages.readers.cmake_commands import is_followed
 from linkwright.packages.readers.cmake_conditions import matched
 from linkwright.packages.readers.cmake_language import (

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 
 _PLACEHOLDER = r"@(\w+)@|\$\{(\w+)\}"
 

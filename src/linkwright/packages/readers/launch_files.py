@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 from linkwright.diagnostics import SourceText, Span
-from linkwright.lean_dataclasses import dataclass, field
+from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.packages.readers.python_values import PythonFile, SharePath, argument_of, called_name
 from linkwright.packages.readers.setup_py import SyntaxMistake, syntax_mistake
 

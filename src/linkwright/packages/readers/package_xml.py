@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from linkwright.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.xmltree import Document, Element
 
 DEPENDENCIES = frozenset(

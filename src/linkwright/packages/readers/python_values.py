@@ -13,8 +13,8 @@ from enum import Enum
 from functools import cached_property
 
 from linkwright.diagnostics import SourceText, Span, phrase
-from linkwright.lean_dataclasses import dataclass
-from linkwright.lean_typing import Union
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_typing import Union
 
 
 class Nothing(Enum):

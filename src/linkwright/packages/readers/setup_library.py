@@ -14,8 +14,8 @@ from glob import glob
 from itertools import chain
 from pathlib import Path, PurePosixPath
 
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import Any
 
 _MOST_ITEMS = 20_000
 _LONGEST_TEXT = 4096

@@ -12,7 +12,7 @@ from glob import glob
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText, Span
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.packages.readers.entry_points import LINE, PROGRAMS
 from linkwright.packages.readers.installed_file import InstalledFile
 from linkwright.packages.readers.python_values import Pattern, PythonFile, argument_of, called_name

@@ -11,7 +11,7 @@ import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.packages.readers.installed_file import InstalledFile
 from linkwright.packages.readers.setup_library import (
     ATTRIBUTES,

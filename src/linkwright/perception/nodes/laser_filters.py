@@ -15,8 +15,8 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
-from linkwright.extensions import extensions
 from linkwright.graph import SENSOR_DATA_QOS, Graph, Node, ParameterDescriptor, Subscription
+from linkwright.loading.extensions import extensions
 from linkwright.messages import Time, get_message
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.input_files import read_file
-from linkwright.whole_files import write_whole_file
+from linkwright.files.input_files import read_file
+from linkwright.files.whole_files import write_whole_file
 
 MAXIMUM_SIZE = 16 * 1024 * 1024
 """Largest file that is read, bytes; those that RViz writes have some ten thousand."""

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, foreign, phrase
 from linkwright.files.user_folders import state_folder
+from linkwright.files.whole_files import write_whole_file
 from linkwright.rviz.config import file as configuration_file
 from linkwright.rviz.config.file import FileForm
-from linkwright.whole_files import write_whole_file
 
 if TYPE_CHECKING:
     from linkwright.page.protocol.configuration import Folder

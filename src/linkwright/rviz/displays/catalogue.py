@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import cache
 
 from linkwright.diagnostics import phrase
-from linkwright.extensions import extensions
+from linkwright.loading.extensions import extensions
 from linkwright.page.protocol.displays import StatusRow
 from linkwright.rviz.config.former_names import GROUP as GROUP_CLASS
 from linkwright.rviz.config.rviz_config import DisplayConfig

@@ -14,6 +14,7 @@ from typing import Any
 import yaml
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, install_hint, phrase
+from linkwright.files.input_files import read_text
 from linkwright.graph import Graph, MessageInfo, Node, Publisher, QoSProfile, ReliabilityPolicy, Subscription
 from linkwright.graph.endpoints.commander import Commander
 from linkwright.graph.endpoints.drivers import DriverWatch
@@ -21,7 +22,6 @@ from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, QoSM
 from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions
 from linkwright.graph.qos.profile import QoSPolicyKind
-from linkwright.input_files import read_text
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.standstill import VELOCITIES, send_stop

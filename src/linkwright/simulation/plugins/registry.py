@@ -16,7 +16,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.extensions import EntryPoint, extensions
+from linkwright.loading.extensions import EntryPoint, extensions
 from linkwright.sdf.plugins import Plugin, library_name
 
 if TYPE_CHECKING:

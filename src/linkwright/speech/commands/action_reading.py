@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import yaml
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.files.yaml_documents import YamlDocument
 from linkwright.messages import get_action, get_message, get_service, set_fields
 from linkwright.speech.commands.actions import (
     Action,
@@ -28,7 +29,6 @@ from linkwright.speech.commands.actions import (
 )
 from linkwright.speech.commands.command_set import Place
 from linkwright.speech.commands.reading import Keys
-from linkwright.yaml_documents import YamlDocument
 
 _SLOT = re.compile(r"\{(\w+)\}")
 _GRIPPER = "control_msgs/action/GripperCommand"

@@ -16,6 +16,7 @@ from linkwright.diagnostics import (
     did_you_mean,
     phrase,
 )
+from linkwright.files.yaml_documents import YamlDocument, read_source
 from linkwright.speech.commands.action_reading import ActionReader
 from linkwright.speech.commands.actions import MOTIONS
 from linkwright.speech.commands.command_set import ANY, ByLanguage, Command, CommandSet, Place
@@ -23,7 +24,6 @@ from linkwright.speech.commands.phrases import Template, TemplateError, template
 from linkwright.speech.commands.quantities import SAYABLE, quantity
 from linkwright.speech.commands.reading import Keys
 from linkwright.speech.commands.words import Words, words_of
-from linkwright.yaml_documents import YamlDocument, read_source
 
 DEFAULT_FILE = Path(__file__).with_name("default.yaml")
 """The commands of a robot that was given none."""

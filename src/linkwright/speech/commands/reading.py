@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 
 from linkwright.diagnostics import LinkwrightError, Phrase, did_you_mean, phrase
-from linkwright.yaml_documents import YamlDocument
+from linkwright.files.yaml_documents import YamlDocument
 
 _NULL = "tag:yaml.org,2002:null"
 

@@ -22,10 +22,10 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, missing_file_hint, phrase
 from linkwright.diagnostics.source import Span
+from linkwright.files.input_files import read_text
 from linkwright.files.user_folders import config_folder
-from linkwright.input_files import read_text
+from linkwright.files.whole_files import write_whole_file
 from linkwright.speech.sound.spectra import BANDS, Powers
-from linkwright.whole_files import write_whole_file
 
 TAKES = 3
 """The number of takes of a word; it is recognised from the first on, but less surely."""

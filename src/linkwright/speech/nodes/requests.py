@@ -12,9 +12,9 @@ from typing import Any
 from linkwright.graph import ActionClient, Client, Node, Publisher
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.graph.endpoints.info import EndpointKind
-from linkwright.interruption import interrupt
 from linkwright.messages import get_action, get_message, get_service, set_fields
 from linkwright.packages.programs.child_python import python_command
+from linkwright.process.interruption import interrupt
 from linkwright.speech.commands.actions import CallService, GoTo, Launch, Publish, SendGoal, Values, filled, shown
 from linkwright.speech.commands.command_set import Place
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase, translated
+from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.page.audience import Page
 from linkwright.page.protocol.voice_words import (
     AskWordsFile,
@@ -22,7 +23,6 @@ from linkwright.page.protocol.voice_words import (
     VoiceWordsFile,
     WatchWords,
 )
-from linkwright.scratch_folders import ScratchFolder
 from linkwright.speech.enrolled.enrolment import enrol
 from linkwright.speech.enrolled.words import TAKES, Words, name_problem, words_path
 from linkwright.speech.sound.samples import RATE, Samples

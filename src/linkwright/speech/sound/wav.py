@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, missing_file_hint, phrase
-from linkwright.input_files import read_file
+from linkwright.files.input_files import read_file
+from linkwright.files.whole_files import write_whole_file
 from linkwright.speech.sound.resampling import HIGHEST_RATE, LOWEST_RATE, resample
 from linkwright.speech.sound.samples import RATE, Samples
-from linkwright.whole_files import write_whole_file
 
 _LARGEST = 1 << 30  # bytes
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE

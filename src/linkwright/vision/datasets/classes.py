@@ -13,6 +13,7 @@ import numpy as np
 import yaml
 
 from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.files.yaml_documents import YamlDocument, read_source
 from linkwright.geometry.arrays import Array
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR
@@ -20,7 +21,6 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.sensors.mount import part_of
 from linkwright.simulation.simulation import Simulation
-from linkwright.yaml_documents import YamlDocument, read_source
 
 _NUMBER = re.compile(r"[ _-]*(?:clone)?[ _-]*\(?\d+\)?$")
 _COLOURS = frozenset(

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from linkwright._version import __version__
+from linkwright.files.whole_files import write_whole_file
 from linkwright.vision.datasets.contact_sheet import MOST, contact_sheet
 from linkwright.vision.datasets.folder import SHEET, DatasetFolder, cannot_write
 from linkwright.vision.datasets.making import CHAPTER, LabelledImage, Source, Studio
 from linkwright.vision.datasets.workers import make_in_processes
-from linkwright.whole_files import write_whole_file
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.files.whole_files import write_whole_file
 from linkwright.vision.datasets.making import LabelledImage
 from linkwright.vision.datasets.options import SPLITS
 from linkwright.vision.datasets.statistics import ClassStatistics, statistics_of
-from linkwright.whole_files import write_whole_file
 
 CARD = "dataset.json"
 SHEET = "contact_sheet.jpg"

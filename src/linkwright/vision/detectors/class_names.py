@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
-from linkwright.input_files import read_text
+from linkwright.files.input_files import read_text
 
 _LARGEST = 1_000_000
 """Characters of metadata that are read as names."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase, quoted_names
-from linkwright.extensions import extensions
+from linkwright.loading.extensions import extensions
 from linkwright.model_files import find_model, model_table
 from linkwright.vision.detector import Detector
 from linkwright.vision.detectors.efficientdet import EfficientDetDetector

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.files.whole_files import write_whole_file
 from linkwright.vision.evaluation import Evaluation
 from linkwright.vision.training.card import Examination, card, made_of, origin
 from linkwright.vision.training.library import need_pytorch
 from linkwright.vision.training.measuring import measure
 from linkwright.vision.training.options import Options
 from linkwright.vision.training.reading import Dataset, Labelled, open_dataset
-from linkwright.whole_files import write_whole_file
 
 if TYPE_CHECKING:
     from linkwright.vision.training.learning.course import Epoch

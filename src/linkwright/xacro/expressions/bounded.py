@@ -14,7 +14,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterable
 
 from linkwright.diagnostics import phrase
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions.refusal import RefusalError
 
 _MOST_ALIKE = 1_000

@@ -13,7 +13,7 @@ import re
 from collections.abc import Callable, Iterator
 
 from linkwright.diagnostics import Phrase, foreign, phrase
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import keys
 from linkwright.xacro.expressions.function_calls import call, charged, cost

@@ -11,7 +11,7 @@ import re
 from types import GeneratorType
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions.compile_cache import TextCompiler
 from linkwright.xacro.expressions.compiler import FAILURES, Closure, Compiler, failure
 from linkwright.xacro.expressions.scope import Scope

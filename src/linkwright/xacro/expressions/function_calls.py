@@ -6,7 +6,7 @@ expression could, but not for free, and an expression may call them as often as 
 
 from __future__ import annotations
 
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import HASHING, check_codec, keys
 from linkwright.xacro.expressions.functions import Function

@@ -6,8 +6,8 @@ import _ast as ast  # the nodes alone: the rest of ast takes long to import
 from collections.abc import Callable
 
 from linkwright.diagnostics import phrase
-from linkwright.lean_dataclasses import NamedTuple
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions.scope import Environment, Local
 
 _Closure = Callable[[Any], Any]

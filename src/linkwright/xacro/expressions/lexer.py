@@ -11,7 +11,7 @@ import re
 from enum import Enum
 
 from linkwright.diagnostics import phrase
-from linkwright.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xacro.faults import Fault
 
 

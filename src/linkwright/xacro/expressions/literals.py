@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 
 _NEVER_A_LITERAL = frozenset('ABCDEGHJKLMOPQRSUVWXYZabcdeghjklmopqrsuvwxyz$/<>(["')
 """Characters that begin neither a number nor a boolean."""

@@ -12,7 +12,7 @@ import re
 from collections.abc import Callable
 
 from linkwright.diagnostics import phrase
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import bounded
 from linkwright.xacro.expressions.refusal import RefusalError
 from linkwright.xacro.expressions.scope import Namespace

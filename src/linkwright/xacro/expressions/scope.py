@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Phrase, Span, phrase
-from linkwright.lean_typing import Any, Protocol
+from linkwright.loading.lean_typing import Any, Protocol
 from linkwright.xacro.expressions.literals import literal
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import Budget, Limits

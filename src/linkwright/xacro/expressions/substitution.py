@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable
 
 from linkwright.diagnostics import LinkwrightError, did_you_mean, joined, phrase, term
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions.expression import compile_expression
 from linkwright.xacro.expressions.sandbox import as_text
 from linkwright.xacro.expressions.scope import Context, Scope

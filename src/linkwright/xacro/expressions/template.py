@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.compile_cache import TextCompiler
 from linkwright.xacro.expressions.expression import Expression, compile_expression

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Iterator
 
 from linkwright.diagnostics import phrase
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.kept import Kept
 
 UNITS = {

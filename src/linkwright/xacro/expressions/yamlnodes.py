@@ -10,7 +10,7 @@ import sys
 
 import yaml
 
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 
 _PREFIX = "tag:yaml.org,2002:"
 _MOST_REMEMBERED = 10_000

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 
 from linkwright.diagnostics import did_you_mean, phrase, term
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Container, Directive, Expander, Site
 from linkwright.xacro.expressions.literals import truth
 from linkwright.xacro.tags.attributes import check_attributes

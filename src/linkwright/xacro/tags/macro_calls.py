@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Note, counted, did_you_mean, joined, phrase, quoted_names
-from linkwright.lean_typing import Any, NoReturn
+from linkwright.loading.lean_typing import Any, NoReturn
 from linkwright.xacro.expander import Container, Expander, Site
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault, attribute_name, definition_elsewhere

@@ -13,8 +13,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, Span, did_you_mean, phrase
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault, attribute_part, text_part

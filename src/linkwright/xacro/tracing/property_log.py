@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Expander, Site
 from linkwright.xacro.expressions.scope import Lazy, Scope
 from linkwright.xacro.inputs import Inputs

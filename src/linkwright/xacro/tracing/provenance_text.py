@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Span, display_path
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.tracing.provenance import AttributeProvenance, Call, Provenance, TextProvenance
 from linkwright.xacro.tracing.references import Value
 from linkwright.xmltree import Element, write_element

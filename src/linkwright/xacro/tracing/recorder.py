@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from linkwright.diagnostics import LinkwrightError, Span
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.expressions.literals import literal
 from linkwright.xacro.expressions.scope import Lazy, Scope

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Span
-from linkwright.lean_dataclasses import NamedTuple
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions.lexer import TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree.positions import attribute_value_range

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Phrase, did_you_mean, foreign, phrase
-from linkwright.input_files import read_text
+from linkwright.files.input_files import read_text
 from linkwright.launch.errors.exceptions import SubstitutionFailure
 from linkwright.launch.errors.places import error_at
 from linkwright.launch.model.context import LaunchContext

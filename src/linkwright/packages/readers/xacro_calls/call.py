@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cached_property
 
 from linkwright.diagnostics import Span
-from linkwright.lean_dataclasses import dataclass, field
+from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.packages.readers.xacro_calls.texts import Choice, Open, Selection, Text, resolve, split_mark
 
 _LAUNCH = "launch:"

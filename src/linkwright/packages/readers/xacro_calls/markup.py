@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterator
 
 from linkwright.diagnostics import LinkwrightError, SourceText, Span
-from linkwright.lean_patterns import lazy_pattern
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.loading.lean_typing import Any
 from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall, launch_argument
 from linkwright.packages.readers.xacro_calls.command_line import xacro_command
 from linkwright.packages.readers.xacro_calls.texts import UNKNOWN, Open, Share, Text, literal

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations, islice
 
-from linkwright.lean_dataclasses import dataclass, field, replace
-from linkwright.lean_typing import Union
+from linkwright.loading.lean_dataclasses import dataclass, field, replace
+from linkwright.loading.lean_typing import Union
 
 _DEEPEST = 12
 _MOST_PATHS = 64

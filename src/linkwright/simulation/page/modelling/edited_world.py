@@ -9,10 +9,10 @@ from pathlib import Path
 
 from linkwright.descriptions import is_world
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, foreign, phrase
+from linkwright.files.whole_files import write_whole_file
 from linkwright.packages import PackageFinder
 from linkwright.sdf.editing import EditError, WorldText
 from linkwright.sdf.resources import ResourceFinder
-from linkwright.whole_files import write_whole_file
 from linkwright.xmltree.decoding import UTF_8, decoded
 from linkwright.xmltree.reader import read_bytes
 

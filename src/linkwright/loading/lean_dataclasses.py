@@ -15,7 +15,7 @@ from collections import namedtuple
 from collections.abc import Callable, Iterable, Iterator
 from operator import attrgetter
 
-from linkwright.lean_typing import TYPE_CHECKING, Any
+from linkwright.loading.lean_typing import TYPE_CHECKING, Any
 
 __all__ = ["NamedTuple", "dataclass", "field", "replace"]
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright import extensions
+from linkwright.loading import extensions
 
 
 @pytest.fixture

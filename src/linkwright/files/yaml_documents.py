@@ -18,7 +18,7 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
-from linkwright.input_files import read_text
+from linkwright.files.input_files import read_text
 
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _DEEPEST = 50

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.whole_files import write_whole_file
+from linkwright.files.whole_files import write_whole_file
 
 OLD, NEW = b"what was there\n" * 100, b"something new\n" * 1000
 

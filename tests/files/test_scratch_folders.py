@@ -11,12 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.scratch_folders import ScratchFolder, forget_abandoned
+from linkwright.files.scratch_folders import ScratchFolder, forget_abandoned
 from tests.places import REPOSITORY
 
 KILLED = """
 import os, pathlib, signal
-from linkwright.scratch_folders import ScratchFolder
+from linkwright.files.scratch_folders import ScratchFolder
 made = ScratchFolder("test")
 pathlib.Path(made.name, "file").write_text("text")
 print(made.name, flush=True)

@@ -17,8 +17,8 @@ from functools import cache
 from importlib import import_module
 from operator import attrgetter
 
-from linkwright.lean_dataclasses import NamedTuple
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_typing import Any
 
 _OURS = "linkwright."
 _READ = (_OURS, "launch_ros.")

@@ -8,7 +8,7 @@ import signal
 
 import pytest
 
-from linkwright.event_loop import run_coroutine
+from linkwright.process.event_loop import run_coroutine
 
 
 def interrupt() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 
-from linkwright.lean_typing import Any
+from linkwright.loading.lean_typing import Any
 
 
 def deferred(package: str, names: Mapping[str, Sequence[str]]) -> Callable[[str], Any]:

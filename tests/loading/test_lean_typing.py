@@ -1,4 +1,4 @@
-"""Names of `linkwright.lean_typing`, beside those of `typing`: what a module may do with them when it is loaded."""
+"""Names of `linkwright.loading.lean_typing`, beside those of `typing`: their use while a module is loaded."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from linkwright import lean_typing
+from linkwright.loading import lean_typing
 
 
 @pytest.mark.parametrize("library", [typing, lean_typing])

@@ -1,4 +1,4 @@
-"""Classes of `linkwright.lean_dataclasses`, beside the same ones of `dataclasses`."""
+"""Classes of `linkwright.loading.lean_dataclasses`, beside the same ones of `dataclasses`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any, ClassVar, NamedTuple, get_type_hints
 
 import pytest
 
-from linkwright import lean_dataclasses
+from linkwright.loading import lean_dataclasses
 
 KINDS = [{"frozen": frozen, "slots": slots, "eq": eq} for frozen in (0, 1) for slots in (0, 1) for eq in (0, 1)]
 
@@ -177,7 +177,7 @@ def test_named_tuples_are_those_of_typing():
 
 def test_defining_and_making_objects_does_not_import_dataclasses():
     code = (
-        "from __future__ import annotations\nimport sys\nfrom linkwright.lean_dataclasses import dataclass\n"
+        "from __future__ import annotations\nimport sys\nfrom linkwright.loading.lean_dataclasses import dataclass\n"
         "@dataclass(frozen=True, slots=True)\nclass Point:\n    x: int\n"
         "print(Point(1), 'dataclasses' in sys.modules, 'inspect' in sys.modules)"
     )

@@ -8,7 +8,7 @@ import textwrap
 
 PROGRAM = """
     import os, signal, time
-    from linkwright.interruption import end_at_once, raise_interrupts
+    from linkwright.process.interruption import end_at_once, raise_interrupts
 
     class Dropping:
         def __del__(self):

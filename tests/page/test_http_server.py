@@ -8,10 +8,10 @@ import sys
 
 import pytest
 
-from linkwright.http_server import SERVER_LOGGER
+from linkwright.page.http_server import SERVER_LOGGER
 from tests.places import REPOSITORY
 
-SERVER = "import sys; from linkwright.http_server import web; import aiohttp; "
+SERVER = "import sys; from linkwright.page.http_server import web; import aiohttp; "
 
 
 def told(code: str) -> list[str]:
@@ -46,13 +46,15 @@ def test_a_server_that_needs_the_whole_package_gets_it(tmp_path):
     (package / "__init__.py").write_text("X = 1\nfrom .web import A\n")
     (package / "web.py").write_text("from . import X\nA = X + 1\n")
     (package / "http_exceptions.py").write_text("HttpProcessingError = ValueError\n")
-    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from linkwright.http_server import web; print(web.A)"
+    code = (
+        f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from linkwright.page.http_server import web; print(web.A)"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["2"]
 
 
 def test_what_was_loaded_before_stays():
-    code = "import aiohttp.web; given = aiohttp.web; from linkwright.http_server import web; print(web is given)"
+    code = "import aiohttp.web; given = aiohttp.web; from linkwright.page.http_server import web; print(web is given)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["True"]
 

@@ -13,9 +13,9 @@ import pytest
 
 from linkwright.cli.entry import main
 from linkwright.diagnostics import LinkwrightError
+from linkwright.files.input_files import NoWriterError, read_file, read_text
 from linkwright.geometry.meshes import read_mesh
 from linkwright.graph.parameters.files import read_parameter_file
-from linkwright.input_files import NoWriterError, read_file, read_text
 from linkwright.launch.frontend.python_file import read_launch_file
 from linkwright.rviz.config.file import read as read_configuration
 from linkwright.xmltree.reader import read_bytes

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from typing import Any, AnyStr

@@ -1,0 +1,1 @@
+"""The process: its arguments, standard streams, Ctrl-C, event loop and processors."""
