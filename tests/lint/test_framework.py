@@ -38,7 +38,7 @@ def test_rules_about_packages_are_in_modules_of_their_own():
 def test_the_room_imports_what_the_check_of_a_robot_uses_alone():
     loaded = loaded_by("from linkwright.lint import check")
     assert not {"argparse", "ast", "asyncio", "dataclasses", "inspect", "numpy", "tomllib", "typing", "yaml"} & loaded
-    below = {"descriptions", "diagnostics", "geometry", "packages", "schema", "urdf", "xmltree"}
+    below = {"descriptions", "diagnostics", "files", "geometry", "loading", "packages", "schema", "urdf", "xmltree"}
     assert rooms_of(loaded) == {"lint", *below}
     assert not any(name.startswith("linkwright.lint.rules") for name in loaded)
 

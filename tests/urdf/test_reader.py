@@ -311,5 +311,5 @@ def test_the_room_imports_what_reading_a_robot_uses_alone():
     loaded = loaded_by("from linkwright.urdf import read")
     slow = {"contextlib", "dataclasses", "inspect", "pathlib", "typing", "warnings", "xml.parsers"}
     assert not slow & loaded
-    assert rooms_of(loaded) == {"diagnostics", "geometry", "schema", "urdf", "xmltree"}
+    assert rooms_of(loaded) == {"diagnostics", "files", "geometry", "loading", "schema", "urdf", "xmltree"}
     assert not {f"linkwright.urdf.{seldom}" for seldom in ("gv", "listing", "writer")} & loaded
