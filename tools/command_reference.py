@@ -17,7 +17,7 @@ from importlib import import_module, metadata
 from pathlib import Path
 from typing import Any
 
-from linkwright.cli.command import VERBS, parser_for
+from linkwright.cli.command import help_texts, parser_for
 from linkwright.cli.completion.candidates import TABLE
 from linkwright.cli.tools.ros2 import COMMANDS
 from linkwright.launch.ros.executables import hosted_executables
@@ -54,7 +54,7 @@ Words in capitals are placeholders for your values. Brackets mark optional argum
 def generate() -> str:
     """The whole page."""
     sections = [INTRODUCTION]
-    for name, text in VERBS.items():
+    for name, text in help_texts().items():
         sections += describe(parser_for(name), text)
     return "\n".join(sections)
 
@@ -66,7 +66,7 @@ def completion_table() -> str:
         executables.setdefault(package, []).append(name)
     names = [f"{package}/{name}" for package in catalogue.packages() for name in catalogue.texts(package)]
     types = {kind: sorted(name for name in names if f"/{kind}/" in name) for kind in ("msg", "srv", "action")}
-    verbs = {name: _completed(parser_for(name)) for name in VERBS}
+    verbs = {name: _completed(parser_for(name)) for name in help_texts()}
     table = {"verbs": verbs, "ros2": list(COMMANDS), "executables": executables, "types": types}
     return json.dumps(table, indent=1) + "\n"  # a line for each entry, which merges
 

@@ -48,7 +48,12 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module 'linkwright' has no attribute '{name}'")
     from linkwright.loading.deferred import deferred
 
-    return deferred(__name__, _MODULES)(name)
+    try:
+        return deferred(__name__, _MODULES)(name)
+    except ModuleNotFoundError as error:
+        if (error.name or "").startswith("linkwright."):
+            raise ImportError(f"'{name}' needs linkwright; linkwright-core is installed alone") from None
+        raise
 
 
 def __dir__() -> list[str]:

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.cli.command import VERBS
+from linkwright.cli.command import help_texts
 from linkwright.cli.completion import graph_names
 from linkwright.cli.completion.candidates import complete, divided
 from linkwright.cli.completion.scripts import FILES, script, shell_script
@@ -54,7 +54,7 @@ def after(line: str) -> list[str]:
 
 
 def test_commands() -> None:
-    assert after("linkwright ")[: len(VERBS)] == list(VERBS)
+    assert after("linkwright ")[: len(help_texts())] == list(help_texts())
     assert after("linkwright la") == ["launch"]
     assert "launch" in after("/some/bin/ros2 ")
     assert "view" not in after("ros2 ")

@@ -124,7 +124,7 @@ def test_what_mujoco_refuses_is_said(folder, capsys, monkeypatch):
         def compile(self):
             raise ValueError("mesh volume is too small:\n  mesh0")
 
-    monkeypatch.setattr("linkwright.simulation.scene.scene.Scene", Refused)
+    monkeypatch.setattr("linkwright.simulation.mjcf.Scene", Refused)
     assert main(["convert", "arm.xacro", "--to", "mjcf"]) == 1
     assert "MuJoCo rejects the model: mesh volume is too small: mesh0" in capsys.readouterr().err
 

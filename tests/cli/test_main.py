@@ -11,20 +11,20 @@ import pytest
 
 from linkwright import __version__
 from linkwright.cli import main
-from linkwright.cli.command import VERBS, parser_for
+from linkwright.cli.command import help_texts, parser_for
 from linkwright.diagnostics.translation import set_language
 
 
 def test_no_words_prints_the_overview_as_usage(capsys):
     assert main([]) == 2
     printed = capsys.readouterr().out
-    assert all(verb in printed for verb in VERBS)
+    assert all(verb in printed for verb in help_texts())
 
 
 def test_help_lists_every_verb(capsys):
     assert main(["--help"]) == 0
     printed = capsys.readouterr().out
-    assert all(f"  {verb} " in printed for verb in VERBS)
+    assert all(f"  {verb} " in printed for verb in help_texts())
 
 
 def test_version(capsys):
@@ -52,7 +52,7 @@ def test_a_misspelt_option_names_the_nearest(words, meant, capsys):
     assert meant in capsys.readouterr().err.splitlines()[-1].rpartition(";")[2]
 
 
-@pytest.mark.parametrize("verb", VERBS)
+@pytest.mark.parametrize("verb", help_texts())
 def test_every_verb_has_help(verb, capsys):
     assert main([verb, "--help"]) == 0
     assert f"usage: linkwright {verb}" in capsys.readouterr().out
@@ -118,7 +118,7 @@ def test_what_is_imported_at_the_start_is_not_searched_for_garbage():
     assert first > later > 700
 
 
-def help_texts(parser: argparse.ArgumentParser) -> Iterator[str]:
+def texts_in(parser: argparse.ArgumentParser) -> Iterator[str]:
     """What a parser and those below it say: of themselves, of their groups and of each argument."""
     yield from filter(None, [parser.description, *(group.title for group in parser._action_groups)])
     for action in parser._actions:
@@ -126,16 +126,16 @@ def help_texts(parser: argparse.ArgumentParser) -> Iterator[str]:
             yield action.help
         if isinstance(action, argparse._SubParsersAction):
             for below in action.choices.values():
-                yield from help_texts(below)
+                yield from texts_in(below)
 
 
-@pytest.mark.parametrize("verb", VERBS)
+@pytest.mark.parametrize("verb", help_texts())
 def test_all_that_the_help_of_a_command_says_is_translated(verb):
     set_language("en")
     try:
-        english = list(help_texts(parser_for(verb)))
+        english = list(texts_in(parser_for(verb)))
         set_language("zh")
-        chinese = list(help_texts(parser_for(verb)))
+        chinese = list(texts_in(parser_for(verb)))
     finally:
         set_language(None)
         parser_for(verb)  # argparse's own words are English again

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from linkwright.cli import main
-from linkwright.cli.command import VERBS
+from linkwright.cli.command import help_texts
 from linkwright.diagnostics.extras import APART, EXTRAS
 from tests.docs.pages import DOCS
 from tests.repository_tools import load_tool
@@ -39,7 +39,7 @@ def test_a_stale_table_is_found_and_mended(tool, tmp_path, monkeypatch) -> None:
 @pytest.mark.parametrize("folder", ["", "zh"])
 def test_the_index_lists_each_command(folder) -> None:
     page = (DOCS / folder / "index.md").read_text(encoding="utf-8")
-    assert re.findall(r"^\| \[`linkwright (\w+)`\]", page, re.MULTILINE) == list(VERBS)
+    assert re.findall(r"^\| \[`linkwright (\w+)`\]", page, re.MULTILINE) == list(help_texts())
 
 
 def test_each_extra_has_a_purpose_and_packages(tool) -> None:

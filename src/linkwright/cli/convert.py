@@ -6,20 +6,22 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypeAlias
 
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.output import write_output
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, has_errors, phrase, print_diagnostics
+from linkwright.diagnostics import Diagnostic, LinkwrightError, has_errors, phrase, print_diagnostics
 from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
     from linkwright.packages import PackageFinder
     from linkwright.sdf.worlds import Sdf
 
-_UNSAID = [0.5, 0.5, 0.5, 1.0]
-"""The colour that means "use the material's colour" in MuJoCo."""
+    Writer: TypeAlias = Callable[[Sdf, PackageFinder], tuple[str | None, Sequence[Diagnostic]]]
+
 _FORMATS = ("sdf", "urdf", "mjcf")
+_GROUP = "linkwright.model_formats"
+"""The group of the entry points that bring formats: name -> `Writer`."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -56,6 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.descriptions.worlds import is_world
     from linkwright.packages import PackageFinder
 
+    write = _writer(arguments.to)
     path = Path(arguments.file).absolute()
     if arguments.to == "urdf" and not is_world(path.name):
         hint = phrase("to expand a xacro file, run `linkwright xacro`")
@@ -74,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
     print_diagnostics(converted.diagnostics, sys.stderr)
     if converted.sdf is None or (arguments.to != "sdf" and has_errors(converted.diagnostics)):
         return 1  # a robot or a MuJoCo model is written completely or not at all
-    text, remarks = _WRITERS[arguments.to](converted.sdf, finder)
+    text, remarks = write(converted.sdf, finder)
     print_diagnostics(remarks, sys.stderr)
     if text is None:
         return 1
@@ -102,49 +105,22 @@ def _urdf(sdf: Sdf, _finder: PackageFinder) -> tuple[str | None, Sequence[Diagno
     return None if reading.robot is None else save(reading.robot), reading.diagnostics
 
 
-def _mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnostic]]:
-    from linkwright.sdf.resources import ResourceFinder
-    from linkwright.sdf.worlds import World
-    from linkwright.simulation.scene.meshes import MeshLibrary
-    from linkwright.simulation.scene.scene import Scene
+def _writer(form: str) -> Writer:
+    """Return the function that writes a format.
 
-    world = sdf.worlds[0] if sdf.worlds else World(sdf.models[0].name if sdf.models else "", models=sdf.models)
-    scene = Scene(world, MeshLibrary(ResourceFinder(finder)))
-    try:
-        model = scene.spec.compile()
-    except ValueError as error:
-        reason = " ".join(str(error).split())
-        raise LinkwrightError(
-            Diagnostic("CLI321", phrase("MuJoCo rejects the model: {reason}", reason=foreign(reason)))
-        ) from None
-    _take_images_out(scene.spec, model)
-    return scene.spec.to_xml(), scene.diagnostics
+    Raises:
+        LinkwrightError: CLI323, the package that brings it is not installed.
+    """
+    if form in _WRITERS:
+        return _WRITERS[form]
+    from linkwright.loading.extensions import extensions
 
-
-def _take_images_out(spec: Any, model: Any) -> None:
-    """Replace textures by their mean colours: MJCF refers to image files only."""
-    import numpy as np
-
-    from linkwright.simulation.rendering.ray_renderer import mean_colour
-
-    means: dict[str, Any] = {}
-    for material in spec.materials:
-        (texture,) = {int(number) for number in np.atleast_1d(model.mat_texid[model.material(material.name).id])} - {
-            -1
-        } or {-1}
-        if texture >= 0:
-            means[material.name] = np.array([*mean_colour(model, texture), 1.0])
-            material.rgba = material.rgba * means[material.name]
-            material.textures = [""] * len(material.textures)
-    for geom in spec.geoms:
-        if geom.material in means and list(geom.rgba) != _UNSAID:
-            geom.rgba = geom.rgba * means[geom.material]
-    for texture in list(spec.textures):
-        spec.delete(texture)
+    found = extensions(_GROUP).get(form)
+    if found is None:
+        message = phrase("cannot write '{format}': linkwright-core is installed without linkwright", format=form)
+        raise LinkwrightError(Diagnostic("CLI323", message, hint=phrase("install linkwright")))
+    writer: Writer = found.load()
+    return writer
 
 
-_WRITERS: dict[str, Callable[[Sdf, PackageFinder], tuple[str | None, Sequence[Diagnostic]]]] = {
-    "sdf": _sdf,
-    "urdf": _urdf,
-    "mjcf": _mjcf,
-}
+_WRITERS: dict[str, Writer] = {"sdf": _sdf, "urdf": _urdf}

@@ -12,6 +12,7 @@ import shlex
 import shutil
 import sys
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module, metadata
 from importlib.util import find_spec
@@ -23,6 +24,8 @@ from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import Any
 
 NAME = "linkwright"
+ENGINE = "linkwright-core"
+"""The distribution of the engine alone."""
 SOMEWHERE = "PATH_TO_LINKWRIGHT"
 """A placeholder in a command for a checkout or wheel that no longer exists."""
 
@@ -34,10 +37,12 @@ class Origin:
     Attributes:
         place: a path, or an address; empty for a package index.
         editable: whether the files of the checkout are those that run.
+        name: the name of the distribution.
     """
 
     place: str = ""
     editable: bool = False
+    name: str = NAME
 
     @property
     def is_gone(self) -> bool:
@@ -48,8 +53,8 @@ class Origin:
         """Return the installer's arguments that install it with extras."""
         wanted = f"[{','.join(sorted(extras))}]" if extras else ""
         if "://" in self.place:
-            return [f"{NAME}{wanted} @ {self.place}"]
-        place = SOMEWHERE if self.is_gone else self.place or NAME
+            return [f"{self.name}{wanted} @ {self.place}"]
+        place = SOMEWHERE if self.is_gone else self.place or self.name
         if self.place and Path(self.place) == Path.cwd():
             place = "."
         return [*(["-e"] if self.editable else []), f"{place}{wanted}"]
@@ -78,7 +83,7 @@ class Installation:
     def command_for_packages(self, *packages: str) -> str:
         """The command that adds other packages, by the names that pip knows them by."""
         if self.tool == PIPX:
-            return _quoted(["pipx", "inject", NAME, *packages])
+            return _quoted(["pipx", "inject", self.origin.name, *packages])
         if self.tool == UV_TOOL:
             return self._command(self.tool, self.extras, (*self.beside, *packages))
         return _quoted([*self.tool, *packages])
@@ -112,37 +117,40 @@ def installation_in(prefix: Path, origin: Origin) -> Installation:
         return Installation(origin, PIPX, _extras_in(asked))
     if receipt.is_file():
         toml: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
-        wanted = toml.loads(receipt.read_text(encoding="utf-8"))["tool"]["requirements"]
-        extras = frozenset(extra for each in wanted if each["name"] == NAME for extra in each.get("extras", ()))
-        return Installation(origin, UV_TOOL, extras, tuple(each["name"] for each in wanted if each["name"] != NAME))
+        requirements = toml.loads(receipt.read_text(encoding="utf-8"))["tool"]["requirements"]
+        own = (asked for asked in requirements if asked["name"] == origin.name)
+        others = tuple(asked["name"] for asked in requirements if asked["name"] != origin.name)
+        extras = frozenset(extra for asked in own for extra in asked.get("extras", ()))
+        return Installation(origin, UV_TOOL, extras, others)
     if prefix.parent.name.startswith(_CACHE_OF_UV):  # uvx made it for this run alone
         return Installation(origin, UV_TOOL)
     return Installation(origin, _pip(prefix, origin))
 
 
-def origin_of(direct_url: Mapping[str, Any]) -> Origin:
-    """Return the origin of a distribution from its ``direct_url.json``."""
+def origin_of(direct_url: Mapping[str, Any], name: str = NAME) -> Origin:
+    """Return the origin of a distribution of this name from its ``direct_url.json``."""
     url = direct_url["url"]
     if version_control := direct_url.get("vcs_info"):
         revision = version_control.get("requested_revision")
         folder = direct_url.get("subdirectory")
         return Origin(
             f"{version_control['vcs']}+{url}{f'@{revision}' if revision else ''}"
-            f"{f'#subdirectory={folder}' if folder else ''}"
+            f"{f'#subdirectory={folder}' if folder else ''}",
+            name=name,
         )
     if url.startswith("file:"):
         path = url2pathname(urlsplit(url).path)
-        return Origin(path, editable=bool(direct_url.get("dir_info", {}).get("editable")))
-    return Origin(url)
+        return Origin(path, bool(direct_url.get("dir_info", {}).get("editable")), name)
+    return Origin(url, name=name)
 
 
 def _origin() -> Origin:
-    try:
-        direct_url = metadata.distribution(NAME).read_text("direct_url.json")
-    except metadata.PackageNotFoundError:  # it runs out of a folder
-        checkout = Path(__file__).parents[3]
-        return Origin(str(checkout), editable=True) if (checkout / "pyproject.toml").is_file() else Origin()
-    return origin_of(json.loads(direct_url)) if direct_url else Origin()
+    for name in (NAME, ENGINE):
+        with suppress(metadata.PackageNotFoundError):
+            direct_url = metadata.distribution(name).read_text("direct_url.json")
+            return origin_of(json.loads(direct_url), name) if direct_url else Origin(name=name)
+    checkout = Path(__file__).parents[3]  # it runs out of a folder
+    return Origin(str(checkout), editable=True) if (checkout / "pyproject.toml").is_file() else Origin()
 
 
 def _pip(prefix: Path, origin: Origin) -> tuple[str, ...]:

@@ -21,6 +21,8 @@ from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import Any
 
 _OURS = "linkwright."
+_NODES = "linkwright.nodes"
+"""A group that linkwright declares, and linkwright-core does not."""
 _READ = (_OURS, "launch_ros.")
 """The prefixes of the groups in use: ours, and those of launch_ros, which its users' packages extend too."""
 
@@ -56,11 +58,13 @@ def extensions(group: str) -> Mapping[str, EntryPoint]:
     The order in which a package declares them does not reach its metadata: some build tools sort them, others do not.
     If two packages declare the same name, the first one found applies; ours cannot be replaced.
 
+    A group is empty where no installed package declares it: linkwright-core alone has few.
+
     Raises:
         RuntimeError: a group of ours is missing, because the installation's metadata is older than its code.
     """
     found = _all_groups()
-    if group.startswith(_OURS) and group not in found:
+    if group.startswith(_OURS) and group not in found and _NODES in found:
         raise RuntimeError(f"Linkwright's metadata lacks the entry points '{group}': reinstall it")
     return found.get(group, {})
 

@@ -28,13 +28,17 @@ def substituted_share(name: str) -> Path | None:
 
 
 @cache
+def substituted_executables() -> dict[str, frozenset[str]]:
+    """Return the packages that are replaced in part, by modules, messages or nodes, with the executables that are."""
+    lines = (SUBSTITUTES / "names.txt").read_text(encoding="utf-8").splitlines()
+    return {package: frozenset(executables) for package, *executables in map(str.split, lines)}
+
+
+@cache
 def _known_in_part() -> frozenset[str]:
-    """The packages that we replace in part, by modules, messages or nodes."""
-    ours = Path(__file__).parents[1]
-    found = {file.stem for folder in ("standins/tables", "messages/data") for file in (ours / folder).glob("*.txt")}
-    for group in ("linkwright.nodes", "linkwright.components"):
-        found.update(name.partition("/")[0] for name in extensions(group))
-    return frozenset({*found, "rviz2"})
+    """The packages that are replaced in part by us, or by the nodes of other installed packages."""
+    nodes = (name for group in ("linkwright.nodes", "linkwright.components") for name in extensions(group))
+    return frozenset({*substituted_executables(), *(name.partition("/")[0] for name in nodes)})
 
 
 def is_substitute(share: Path) -> bool:

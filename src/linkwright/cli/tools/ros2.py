@@ -5,9 +5,10 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from linkwright.cli.command import OTHER_NAMES, VERBS
+from linkwright.cli.command import help_texts
 from linkwright.cli.command import main as linkwright
 from linkwright.cli.endings import FINE, USAGE
+from linkwright.cli.workbench import OTHER_NAMES
 from linkwright.diagnostics import did_you_mean
 
 COMMANDS = (
@@ -68,6 +69,6 @@ def _overview() -> str:
     ]
     for name in COMMANDS:
         ours = OTHER_NAMES.get(name)
-        lines.append(f"  {name:{width}}  {f'the same as {ours}' if ours else VERBS[name]}")
+        lines.append(f"  {name:{width}}  {f'the same as {ours}' if ours else help_texts()[name]}")
     lines += ["", "`ros2 COMMAND -h` says more."]
     return "\n".join(lines)

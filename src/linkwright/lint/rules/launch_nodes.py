@@ -13,8 +13,8 @@ from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.rules.package_python import is_ament_python
 from linkwright.lint.subject import Subject
-from linkwright.loading.extensions import extensions
 from linkwright.loading.lean_typing import TYPE_CHECKING
+from linkwright.packages.substituted import substituted_executables
 from linkwright.xmltree.patches import element_range
 
 if TYPE_CHECKING:
@@ -244,8 +244,7 @@ def _executables_of(name: str) -> frozenset[str] | None:
     """Return the executables of a well-known package, or None if not all are known."""
     if name not in OURS:
         return OTHERS.get(name)
-    nodes = (node.partition("/") for node in extensions("linkwright.nodes"))
-    return frozenset(executable for package, _, executable in nodes if package == name)
+    return substituted_executables()[name]
 
 
 def _own_executables(package: PackageContext) -> frozenset[str] | None:

@@ -1,0 +1,71 @@
+"""The commands beside those of the engine (`linkwright.cli.command.COMMANDS`)."""
+
+GROUPS = {
+    "robot descriptions": {
+        "view": "show a URDF or xacro file in the browser, with joint sliders",
+        "diagram": "draw links and joints as urdf_to_graphviz does (.gv and PDF or SVG)",
+        "export": "write a robot as one HTML file for any browser, or as glTF (.glb)",
+    },
+    "packages and launch files": {
+        "launch": "run a ROS 2 launch file; rviz2 opens as a page in the browser",
+        "run": "run an executable of a package, built or from its sources",
+        "test": "run the launch_testing tests of a file",
+        "pkg": "create ROS packages, find them, and list their contents",
+    },
+    "simulation": {
+        "drive": "drive a robot in a simulated world; missing masses, collisions and wheels are inferred",
+        "sim": "simulate a world, with or without a robot, in the browser or headless",
+        "world": "list worlds and models, create a world, or check one",
+        "spawn": "add a robot or model to a running simulation",
+        "sweep": "run a scenario over parameters and seeds in parallel, and tabulate the results",
+    },
+    "vision and voice": {
+        "vision": "detect objects in images; train and evaluate detectors",
+        "dataset": "render labelled images of a world in COCO and YOLO form, to train a detector",
+        "voice": "try speech engines on recordings, and enrol words",
+        "models": "download, verify and remove models for speech and vision",
+    },
+    "the running ROS graph": {
+        "topic": "list, print, publish and measure topics",
+        "node": "list and describe nodes",
+        "param": "list, read and set parameters of nodes",
+        "service": "list and call services",
+        "action": "list actions and send goals",
+        "interface": "list and show types of messages, services and actions",
+        "lifecycle": "show and change the states of managed nodes",
+        "component": "load, list and unload components in containers",
+        "control": "show and change the controllers and hardware of ros2_control",
+    },
+    "bags": {
+        "bag": "record topics, play recordings, and describe them",
+    },
+    "network and diagnosis": {
+        "doctor": "explain what is wrong with the running nodes, topics and frames",
+        "bridge": "carry topics and services between DDS and Zenoh",
+        "multicast": "send or receive a datagram, to test multicast on the network",
+        "daemon": "accepted for compatibility with ros2; Linkwright has no daemon",
+    },
+    "shell": {
+        "shell": "open a shell with ros2, launch_test, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon",
+        "completion": "print the completion script for bash, zsh or fish",
+    },
+}
+"""The commands in the order in which the help lists them, with their help texts.
+
+Each is a module or package of this package, which is loaded only when it is run.
+"""
+
+OTHER_NAMES = {"wtf": "doctor"}
+"""Aliases of commands that ros2 has; the help does not list them."""
+
+IN_ORDER = frozenset({"pkg", "run", "shell"})
+"""Commands whose arguments must be in order, besides those with subcommands: the rest belongs to another program. Other
+commands accept options between arguments (`launch PACKAGE --no-open FILE`)."""
+
+_GRAPH_GROUPS = ("the running ROS graph", "bags", "network and diagnosis")
+
+WITH_A_LOOP = frozenset({"view", "drive", "run", "sim", "spawn", "launch"}).union(
+    *(GROUPS[title] for title in _GRAPH_GROUPS)
+)
+"""Commands that run an event loop or another program, which handle Ctrl-C themselves; before that there is nothing to
+clean up."""

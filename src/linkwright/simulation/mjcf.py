@@ -1,0 +1,56 @@
+"""Worlds and models as MJCF, the files of MuJoCo."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.packages import PackageFinder
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.worlds import Sdf, World
+from linkwright.simulation.rendering.ray_renderer import mean_colour
+from linkwright.simulation.scene.meshes import MeshLibrary
+from linkwright.simulation.scene.scene import Scene
+
+_UNSAID = [0.5, 0.5, 0.5, 1.0]
+"""The colour that means "use the material's colour" in MuJoCo."""
+
+
+def write_mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnostic]]:
+    """Return a world, or the first model, as MJCF with embedded meshes, and the findings about it.
+
+    Raises:
+        LinkwrightError: CLI321, MuJoCo rejects the model; SIM101, MuJoCo is not installed.
+    """
+    world = sdf.worlds[0] if sdf.worlds else World(sdf.models[0].name if sdf.models else "", models=sdf.models)
+    scene = Scene(world, MeshLibrary(ResourceFinder(finder)))
+    try:
+        model = scene.spec.compile()
+    except ValueError as error:
+        reason = " ".join(str(error).split())
+        raise LinkwrightError(
+            Diagnostic("CLI321", phrase("MuJoCo rejects the model: {reason}", reason=foreign(reason)))
+        ) from None
+    _take_images_out(scene.spec, model)
+    return scene.spec.to_xml(), scene.diagnostics
+
+
+def _take_images_out(spec: Any, model: Any) -> None:
+    """Replace textures by their mean colours: MJCF refers to image files only."""
+    means: dict[str, Any] = {}
+    for material in spec.materials:
+        (texture,) = {int(number) for number in np.atleast_1d(model.mat_texid[model.material(material.name).id])} - {
+            -1
+        } or {-1}
+        if texture >= 0:
+            means[material.name] = np.array([*mean_colour(model, texture), 1.0])
+            material.rgba = material.rgba * means[material.name]
+            material.textures = [""] * len(material.textures)
+    for geom in spec.geoms:
+        if geom.material in means and list(geom.rgba) != _UNSAID:
+            geom.rgba = geom.rgba * means[geom.material]
+    for texture in list(spec.textures):
+        spec.delete(texture)

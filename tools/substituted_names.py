@@ -1,0 +1,48 @@
+"""Write the list of the ROS packages that Linkwright replaces, with their executables, for the engine.
+
+The engine (linkwright-core) checks launch files without the nodes, modules and messages that are listed here.
+
+Usage: python tools/substituted_names.py [--check]
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = ROOT / "src" / "linkwright"
+LIST = PACKAGE / "packages" / "substitutes" / "names.txt"
+
+tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+
+
+def names() -> str:
+    """Return the list: a line for each package, its name before those of its executables."""
+    groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["entry-points"]
+    found: dict[str, set[str]] = {"rviz2": set()}
+    for folder in ("standins/tables", "messages/data"):
+        found |= {file.stem: set() for file in (PACKAGE / folder).glob("*.txt")}
+    for name in groups["linkwright.components"]:
+        found.setdefault(name.partition("/")[0], set())
+    for name in groups["linkwright.nodes"]:
+        package, _, executable = name.partition("/")
+        found.setdefault(package, set()).add(executable)
+    return "".join(" ".join((package, *sorted(found[package]))) + "\n" for package in sorted(found))
+
+
+def main(words: list[str]) -> int:
+    """Write the list, or check it; returns the exit status."""
+    if words == ["--check"]:
+        if LIST.read_text(encoding="utf-8") == names():
+            return 0
+        print(f"{LIST.relative_to(ROOT)} is stale: run `python tools/substituted_names.py`", file=sys.stderr)
+        return 1
+    LIST.write_text(names(), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
