@@ -101,9 +101,8 @@ class Source:
     def _help(self, node: ast.AST, place: str) -> None:
         """The help texts of commands: what their table says of them, and what parsers are given."""
         named = isinstance(node, ast.Assign) and ast.unparse(node.targets[0])
-        if named == "GROUPS":
-            inner = [each for each in ast.walk(node.value) if isinstance(each, ast.Dict) and each is not node.value]
-            texts = [text for verbs in inner for text in verbs.values]
+        if named in ("COMMANDS", "GROUPS") and isinstance(node.value, ast.Dict):
+            texts = [text for table in ast.walk(node.value) if isinstance(table, ast.Dict) for text in table.values]
         elif named and named.endswith("_HELP"):
             texts = [node.value]
         elif isinstance(node, ast.keyword) and node.arg and node.arg.endswith(("help", "title", "description")):
