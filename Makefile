@@ -77,10 +77,10 @@ ENGINE := diagnostics xmltree schema geometry packages xacro urdf sdf descriptio
 test-base: $(BASE)/.ready
 	$(BASE)/bin/pytest $(if $(ARGS),,$(WORKERS)) -m "not browser and not slow and not extra" $(or $(ARGS),$(ENGINE:%=tests/%))
 
-$(BASE)/.ready: pyproject.toml hatch_build.py $(LOCKED) | $(UV)
+$(BASE)/.ready: pyproject.toml core/pyproject.toml core/engine_build.py hatch_build.py $(LOCKED) | $(UV)
 	test -x $(BASE)/bin/python || $(UV) venv --quiet --python $(or $(VERSION),$(PYTHON)) $(BASE)
 	LINKWRIGHT_WITHOUT_PAGE=1 $(UV) pip install --quiet --python $(BASE)/bin/python --constraints $(LOCKED) \
-		--reinstall-package linkwright --editable . --group test-base
+		--reinstall-package linkwright --no-sources --editable ./core --editable . --group test-base
 	touch $@
 
 # Those of the quick ones that may end otherwise with another Python.
@@ -134,7 +134,7 @@ test-train: .build/train/.ready
 
 .build/train/.ready: pyproject.toml | $(UV)
 	$(UV) venv --quiet --clear --python $(or $(VERSION),3.12) .build/train
-	$(UV) pip install --quiet --python .build/train/bin/python -e '.[train]' \
+	$(UV) pip install --quiet --python .build/train/bin/python --no-sources -e ./core -e '.[train]' \
 		babel hypothesis psutil pytest pytest-asyncio pytest-xdist
 	touch $@
 
@@ -215,10 +215,10 @@ $(LOCKED): uv.lock tools/lock.py
 	$(PYTHON) tools/lock.py constraints > $@
 
 # The program alone, installed so that changes to the sources count at once; the build makes the page.
-$(VENV)/.ready: pyproject.toml hatch_build.py $(LOCKED) $(PAGE_SOURCES) | $(UV)
+$(VENV)/.ready: pyproject.toml core/pyproject.toml core/engine_build.py hatch_build.py $(LOCKED) $(PAGE_SOURCES) | $(UV)
 	test -x $(BIN)/python || $(UV) venv --quiet --python $(or $(VERSION),$(PYTHON)) $(VENV)
 	$(UV) pip install --quiet $(COMPILE) --python $(BIN)/python --constraints $(LOCKED) \
-		--reinstall-package linkwright --editable '.[all]'
+		--reinstall-package linkwright --no-sources --editable ./core --editable '.[all]'
 	$(BIN)/python -m compileall -q src
 	touch $@
 

@@ -103,13 +103,14 @@ def _needed(lock: dict[str, list[dict[str, Any]]], environment: dict[str, str]) 
             continue
         package = _chosen(lock, wanted, environment)
         for extra in ("", *wanted.get("extra", ())):
-            if (package["name"], package["version"], extra) in seen:
+            key = (package["name"], package.get("version", ""), extra)
+            if key in seen:
                 continue
-            seen.add((package["name"], package["version"], extra))
+            seen.add(key)
             asked += (
                 package.get("optional-dependencies", {}).get(extra, ()) if extra else package.get("dependencies", ())
             )
-        if package is not root:
+        if "registry" in package["source"]:  # it is not one of ours
             yield package
 
 
@@ -120,7 +121,7 @@ def _chosen(
     (package,) = [
         package
         for package in lock[wanted["name"]]
-        if wanted.get("version", package["version"]) == package["version"]
+        if wanted.get("version", package.get("version")) == package.get("version")
         and any(
             Marker(marker).evaluate(environment)
             for marker in package.get("resolution-markers", ("python_version > '3'",))

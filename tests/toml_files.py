@@ -19,3 +19,4 @@ def read_toml(text: str) -> dict[str, Any]:
 
 PYPROJECT = read_toml((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT: dict[str, Any] = PYPROJECT["project"]
+ENGINE: dict[str, Any] = read_toml((REPOSITORY / "core" / "pyproject.toml").read_text(encoding="utf-8"))["project"]

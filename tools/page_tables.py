@@ -33,7 +33,10 @@ PAGES = tuple(
 )
 
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
-PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+PROJECT, ENGINE = (
+    tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    for folder in (ROOT, ROOT / "core")
+)
 
 _TABLE = re.compile(r"(?<=<!-- table: )(\w+) -->\n.*?(?=<!-- end of table -->)", re.DOTALL)
 
@@ -203,8 +206,13 @@ def _capital(text: str) -> str:
 
 
 def _required(extra: str) -> Iterator[Requirement]:
-    """The requirements of an extra, in the order in which they are listed."""
-    return map(Requirement, PROJECT["optional-dependencies"][extra])
+    """The requirements of an extra, in the order in which they are listed; those of the engine's in their place."""
+    for requirement in map(Requirement, PROJECT["optional-dependencies"][extra]):
+        if requirement.name == ENGINE["name"]:
+            for name in requirement.extras:
+                yield from map(Requirement, ENGINE["optional-dependencies"][name])
+        else:
+            yield requirement
 
 
 def _span(main: str, platform: str, machine: str) -> str:

@@ -1,8 +1,9 @@
-"""Build what a release consists of, twice, and try it: wheel, source distribution, bill of materials, changelog, sums.
+"""Build a release twice, and try it: wheels, source distributions, bill of materials, changelog, sums.
 
-Everything is made of the last commit, below ``.build/release``, and ends up in ``dist/``. Wheel and source distribution
-are built in two folders, in other time zones, languages, umasks and seconds, and the wheel once more of the unpacked
-source distribution: all bytes have to be the same. See "Making a release" in CONTRIBUTING.md.
+Everything is made of the last commit, below ``.build/release``, and ends up in ``dist/``. The wheels and source
+distributions of linkwright and linkwright-core are built in two folders, in other time zones, languages, umasks and
+seconds, and the wheels once more of the unpacked source distributions: all bytes have to be the same. See "Making a
+release" in CONTRIBUTING.md.
 
 Usage:
     python tools/release.py                  make it (`make release`, which has the programs that this needs)
@@ -33,6 +34,8 @@ RESULTS = ROOT / "dist"
 VERSION = Path("src", "linkwright", "_version.py")
 RECIPE = Path("packaging", "conda", "recipe.yaml")
 _GENERATED = ("src/linkwright/page/built", "src/linkwright/standins/stubs")
+_NAMES = ("linkwright_core", "linkwright")
+"""The two distributions as their files name them, the engine first."""
 _DIFFERENT = (
     {"TZ": "UTC", "LC_ALL": "C", "PYTHONHASHSEED": "1"},
     {"TZ": "Asia/Tokyo", "LC_ALL": "C.UTF-8", "PYTHONHASHSEED": "2"},
@@ -72,11 +75,21 @@ def sources(folder: Path) -> Path:
 
 
 def built(folder: Path, time: str, *kinds: str, umask: int = 0o022, **environment: str) -> dict[str, Path]:
-    """Build a folder's wheel (``--wheel``) or source distribution (``--sdist``); what came of it, by name."""
+    """Build a folder's wheels (``--wheel``) or source distributions (``--sdist``); what came of it, by name."""
     results = folder.with_name(f"{folder.name} dist")
     constraints = SCRATCH / "constraints.txt"
     words = ("build", "--quiet", "--no-create-gitignore", "--build-constraints", constraints, *kinds)
-    run(_uv(), *words, "--out-dir", results, folder, umask=umask, SOURCE_DATE_EPOCH=time, **environment)
+    run(
+        _uv(),
+        *words,
+        "--out-dir",
+        results,
+        folder,
+        umask=umask,
+        SOURCE_DATE_EPOCH=time,
+        LINKWRIGHT_PINNED_CORE="1",
+        **environment,
+    )
     return {path.name: path for path in sorted(results.iterdir())}
 
 
@@ -86,9 +99,7 @@ def unpacked(sdist: Path, folder: Path) -> Path:
         archive.extractall(folder, filter="data")
     (root,) = folder.iterdir()
     for generated in _GENERATED:
-        shutil.rmtree(root / generated)
-    for catalogue in root.rglob("*.mo"):
-        catalogue.unlink()
+        shutil.rmtree(root / generated, ignore_errors=True)  # that of the engine has none
     return root
 
 
@@ -108,13 +119,22 @@ def digest(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def installed(wheel: Path, name: str, extras: str = "") -> Path:
-    """Install a wheel with the locked packages into an empty environment, and return that one's Python."""
+def installed(files: list[Path], name: str, extras: str = "") -> Path:
+    """Install distributions with the locked packages into an empty environment, and return that one's Python.
+
+    Args:
+        files: wheels or source distributions, the last one with the extras.
+        name: of the environment.
+        extras: in brackets.
+    """
     environment = SCRATCH / name
     python = environment / ("Scripts" if os.name == "nt" else "bin") / "python"
     run(_uv(), "venv", "--quiet", "--clear", "--python", sys.executable, environment)
-    wanted = ("--constraints", SCRATCH / "constraints.txt", f"linkwright{extras} @ {wheel.resolve().as_uri()}")
-    run(_uv(), "pip", "install", "--quiet", "--python", python, *wanted)
+    names = [file.name.partition("-")[0].replace("_", "-") for file in files]
+    wanted = [f"{name} @ {file.resolve().as_uri()}" for name, file in zip(names, files, strict=True)]
+    wanted[-1] = wanted[-1].replace(" @", f"{extras} @", 1)
+    constraints = ("--constraints", SCRATCH / "constraints.txt")
+    run(_uv(), "pip", "install", "--quiet", "--python", python, *constraints, *wanted)
     return python
 
 
@@ -129,31 +149,35 @@ def make() -> None:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
     (SCRATCH / "constraints.txt").write_text(lock.constraints(lock.LOCK.read_text(encoding="utf-8")), encoding="utf-8")
-    _say("building wheel and source distribution")
-    first = built(sources(SCRATCH / "first"), time, "--sdist", "--wheel", **_DIFFERENT[0])
+    _say("building wheels and source distributions")
+    first = built(sources(SCRATCH / "first"), time, "--all-packages", "--sdist", "--wheel", **_DIFFERENT[0])
     _say("building them in another folder")
     again = sources(SCRATCH / "a longer name" / "of a folder" / "second")
-    same(first, built(again, time, "--sdist", "--wheel", umask=0o077, **_DIFFERENT[1]))
-    _say("building the wheel of the source distribution")
-    wheel, sdist = sorted(first.values(), key=lambda path: path.suffix, reverse=True)
-    same(first, built(unpacked(sdist, SCRATCH / "unpacked"), time, "--wheel"))
-    _say(run(_beside("twine"), "check", "--strict", wheel, sdist).strip())
+    same(first, built(again, time, "--all-packages", "--sdist", "--wheel", umask=0o077, **_DIFFERENT[1]))
+    _say("building the wheels of the source distributions")
+    wheels = [path for name in _NAMES for path in first.values() if path.match(f"{name}-*.whl")]
+    sdists = [path for name in _NAMES for path in first.values() if path.match(f"{name}-*.tar.gz")]
+    for sdist in sdists:
+        same(first, built(unpacked(sdist, SCRATCH / f"unpacked {sdist.name}"), time, "--wheel"))
+    _say(run(_beside("twine"), "check", "--strict", *wheels, *sdists).strip())
 
     version = read_version()
     tried = Path(__file__).with_name("try_installation.py")
-    _say(run(installed(wheel, "alone"), "-I", tried, version, cwd=SCRATCH).strip())
-    everything = installed(wheel, "with everything", "[all]")
+    _say(run(installed(wheels[:1], "engine"), "-I", tried, version, "--engine", cwd=SCRATCH).strip())
+    _say(run(installed(wheels, "alone"), "-I", tried, version, cwd=SCRATCH).strip())
+    everything = installed(wheels, "with everything", "[all]")
     _say(run(everything, "-I", tried, version, cwd=SCRATCH).strip())
-    _say(run(installed(sdist, "of source"), "-I", tried, version, cwd=SCRATCH).strip())
+    _say(run(installed(sdists, "of source"), "-I", tried, version, cwd=SCRATCH).strip())
 
     title, notes = release_notes.section(release_notes.CHANGELOG.read_text(encoding="utf-8"), version)
     _say(f"the changelog is that of [{title}]")
-    results = [Path(shutil.copy(path, RESULTS)) for path in (sdist, wheel)]
-    results += [RESULTS / f"linkwright-{version}.changelog.md", RESULTS / f"linkwright-{version}.cdx.json"]
-    results[2].write_text(notes, encoding="utf-8")
+    results = [Path(shutil.copy(path, RESULTS)) for path in (*sdists, *wheels)]
+    changelog, bill = RESULTS / f"linkwright-{version}.changelog.md", RESULTS / f"linkwright-{version}.cdx.json"
+    results += [changelog, bill]
+    changelog.write_text(notes, encoding="utf-8")
     listing = (_beside("cyclonedx-py"), "environment", "--output-reproducible", "--gather-license-texts", everything)
-    results[3].write_text(bill_of_materials.complete(run(*listing, SOURCE_DATE_EPOCH=time)), encoding="utf-8")
-    if silent := bill_of_materials.check(results[3]):
+    bill.write_text(bill_of_materials.complete(run(*listing, SOURCE_DATE_EPOCH=time)), encoding="utf-8")
+    if silent := bill_of_materials.check(bill):
         _say(f"packages that tell no licence: {', '.join(silent)}")
     sums = "".join(f"{digest(path)}  {path.name}\n" for path in results)
     (RESULTS / "SHA256SUMS").write_text(sums, encoding="utf-8")

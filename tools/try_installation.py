@@ -2,7 +2,9 @@
 
 Run by the Python of the environment to be tried, which needs nothing but Linkwright.
 
-Usage: PYTHON -I tools/try_installation.py VERSION
+Usage: PYTHON -I tools/try_installation.py VERSION [--engine]
+
+With --engine only linkwright-core is installed: its commands are tried on a robot that is written for it.
 """
 
 from __future__ import annotations
@@ -21,6 +23,11 @@ from urllib.parse import urljoin
 from urllib.request import HTTPCookieProcessor, ProxyHandler, build_opener
 
 _PROGRAM = Path(sysconfig.get_path("scripts"), "linkwright")
+_XACRO = """\
+<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <link name="base"><visual><geometry><box size="${2 * 0.5} 1 1"/></geometry></visual></link>
+</robot>
+"""
 _ROBOT = Path("robots", "my_robot_description", "urdf", "mbot_with_laser.urdf")
 _SECONDS = 120
 """More than enough on any machine; nothing is measured here."""
@@ -49,11 +56,38 @@ def try_it(version: str) -> str:
     )
 
 
-def _run(environment: dict[str, str], *words: str) -> str:
+def try_engine(version: str) -> str:
+    """What was seen of linkwright-core alone, in a line.
+
+    Raises:
+        AssertionError: when something is not as it should be.
+    """
+    with tempfile.TemporaryDirectory() as home:
+        environment = {**os.environ, "HOME": home, "XDG_CONFIG_HOME": home, "XDG_CACHE_HOME": home}
+        file, other = Path(home, "robot.xacro"), Path(home, "other.xacro")
+        file.write_text(_XACRO, encoding="utf-8")
+        other.write_text(_XACRO.replace("0.5", "0.6"), encoding="utf-8")
+        printed = _run(environment, "--version")
+        assert printed.strip() == f"linkwright {version}", printed
+        assert 'size="1.0 1 1"' in _run(environment, "xacro", str(file))
+        assert "root Link: base" in _run(environment, "check", str(file))
+        assert "<sdf" in _run(environment, "convert", str(file))
+        assert "base" in _run(environment, "inertia", str(file))
+        assert "box 1 1 1 -> box 1.2 1 1 m" in _run(environment, "diff", str(file), str(other), status=1)
+        assert "LW302" in _run(environment, "explain", "LW302")
+        assert importlib.util.find_spec("linkwright.viewer") is None
+        size = sum(path.stat().st_size for path in Path(sys.prefix).rglob("*") if path.is_file())
+    python = f"{sys.version_info[0]}.{sys.version_info[1]}"
+    return f"the engine installed for Python {python}: {printed.strip()}, six commands, {size >> 20} MB"
+
+
+def _run(environment: dict[str, str], *words: str, status: int = 0) -> str:
     done = subprocess.run(
         [_PROGRAM, *words], env=environment, capture_output=True, text=True, timeout=_SECONDS, check=False
     )
-    assert done.returncode == 0, f"linkwright {' '.join(words)}: status {done.returncode}\n{done.stdout}{done.stderr}"
+    assert done.returncode == status, (
+        f"linkwright {' '.join(words)}: status {done.returncode}\n{done.stdout}{done.stderr}"
+    )
     return done.stdout
 
 
@@ -86,4 +120,4 @@ def _page(environment: dict[str, str], robot: Path) -> int:
 
 
 if __name__ == "__main__":
-    print(try_it(sys.argv[1]))
+    print((try_engine if "--engine" in sys.argv else try_it)(sys.argv[1]))

@@ -10,7 +10,7 @@ from linkwright.cli import main
 from tests.places import REPOSITORY
 from tests.toml_files import read_toml
 
-CONTRACT = "The engine imports nothing else; linkwright-core is made of its modules (hatch_build.py)"
+CONTRACT = "The engine imports nothing else; linkwright-core is made of its modules (core/engine_build.py)"
 
 
 def rooms() -> tuple[set[str], set[str]]:

@@ -19,9 +19,10 @@ INSTALLING = re.compile(r"\b(?:pip|pipx|uv tool) install (?P<what>(?:-e )?(?:'[^
 OTHERS = {
     "--no-index",
     "-e street_displays",
-    "'linkwright-0.1.0-py3-none-any.whl[all]'",
     "ai-edge-litert",
+    "linkwright_core-0.1.0-py3-none-any.whl",
     "path/to/linkwright",
+    "path/to/linkwright/core",
 }
 """What readers are told to install besides Linkwright, and Linkwright where they are not in its checkout."""
 

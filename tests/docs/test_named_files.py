@@ -56,9 +56,8 @@ def tree() -> list[Path]:
 @functools.cache
 def other_names() -> str:
     """Where names are declared that look like files or modules: groups of entry points, packages of npm."""
-    return "".join(
-        (REPOSITORY / name).read_text(encoding="utf-8") for name in ("pyproject.toml", "frontend/package.json")
-    )
+    names = ("pyproject.toml", "core/pyproject.toml", "frontend/package.json")
+    return "".join((REPOSITORY / name).read_text(encoding="utf-8") for name in names)
 
 
 def exists(word: str) -> bool:

@@ -11,7 +11,6 @@ from linkwright.cli.command import help_texts
 from linkwright.diagnostics.extras import APART, EXTRAS
 from tests.docs.pages import DOCS
 from tests.repository_tools import load_tool
-from tests.toml_files import PROJECT
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +46,7 @@ def test_each_extra_has_a_purpose_and_packages(tool) -> None:
     table = tool.extras(chinese=False)
     assert {name for name in EXTRAS if re.search(rf"`{name}` \| .*; not in `all` \|", table)} == APART
     for name, extra in tool.EXTRAS.items():
-        assert any(line.startswith(extra.main) for line in PROJECT["optional-dependencies"][name]), name
+        assert any(required.name == extra.main for required in tool._required(name)), name
 
 
 def test_where_there_is_no_wheel_of_dds_the_table_has_a_dash(tool) -> None:

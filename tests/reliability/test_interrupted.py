@@ -115,6 +115,7 @@ FIRST_MODULES = {
     "linkwright.cli",
     "linkwright.cli.entry",
     "linkwright.cli.tools",
+    "linkwright.process",
     "linkwright.process.interruption",
 }
 """What is loaded before Ctrl-C is taken care of: about a millisecond."""
