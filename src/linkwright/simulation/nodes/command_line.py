@@ -1,15 +1,17 @@
 """Converting the command lines of Gazebo's programs to parameters of the node that replaces them.
 
 Of the many options of `gazebo`, `gzserver` and `gz sim`, only the world, the paused start, the random seed and the ROS
-arguments have an effect here.
+arguments have an effect here. The parameters of the node are ``world``, ``pause``, ``seed``, and ``gui`` where a window
+comes with the server; the executable is ``gzclient`` for a window alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import Any
+
+from linkwright.nodes.node_command import NodeCommand
 
 _CLASSIC_VALUES = """-s --server-plugin -g --gui-plugin -e --physics -p --play -o --profile -P --property --iters --seed
 --record_path --record_encoding --record_period --record_filter --initial_sim_time --gui-client-plugin"""
@@ -22,37 +24,20 @@ _GZ_LEVEL = ("-v", "--verbose")
 _ROS_ARGUMENTS = "--ros-args"
 
 
-@dataclass(frozen=True)
-class SimulatorCommand:
-    """The settings of a command line.
-
-    Attributes:
-        package: the node's package.
-        executable: ``gzserver``, or ``gzclient`` for a window alone.
-        parameters: of the node: ``world``, ``pause``, ``seed``, and ``gui`` where a window comes with the server.
-        ros_arguments: those that it is given besides, with ``--ros-args``.
-    """
-
-    package: str
-    executable: str
-    parameters: Mapping[str, Any] = field(default_factory=dict)
-    ros_arguments: Sequence[str] = ()
-
-
-def simulator_command(words: Sequence[str]) -> SimulatorCommand | None:
+def simulator_command(words: Sequence[str]) -> NodeCommand | None:
     """Parse the command line of a program; None if it is not one of Gazebo's."""
     program, *rest = words
     name = PurePath(program).name
     if name in ("gazebo", "gzserver"):
         return classic_server(rest, window=name == "gazebo")
     if name == "gzclient":
-        return SimulatorCommand("gazebo_ros", "gzclient")
+        return NodeCommand("gazebo_ros", "gzclient")
     if (name, rest[:1]) in (("gz", ["sim"]), ("ign", ["gazebo"]), ("ign", ["sim"])):
         return gz_server(rest[1:])
     return None
 
 
-def classic_server(words: Sequence[str], *, window: bool = False) -> SimulatorCommand:
+def classic_server(words: Sequence[str], *, window: bool = False) -> NodeCommand:
     """Parse the words after ``gzserver``, or after ``gazebo``, which has a window."""
     own, ros = _divided(words)
     options, others = _read(own, _CLASSIC_VALUES.split())
@@ -61,19 +46,19 @@ def classic_server(words: Sequence[str], *, window: bool = False) -> SimulatorCo
         parameters["world"] = others[0]
     if "-u" in options or "--pause" in options:
         parameters["pause"] = True
-    return SimulatorCommand("gazebo_ros", "gzserver", parameters, ros)
+    return NodeCommand("gazebo_ros", "gzserver", parameters, ros)
 
 
-def gz_server(words: Sequence[str]) -> SimulatorCommand:
+def gz_server(words: Sequence[str]) -> NodeCommand:
     """Parse the words after ``gz sim``: without ``-r`` the simulation begins paused."""
     own, ros = _divided(words)
     options, others = _read(own, _GZ_VALUES.split())
     if "-g" in options:
-        return SimulatorCommand("ros_gz_sim", "gzclient")
+        return NodeCommand("ros_gz_sim", "gzclient")
     parameters = _seed(options) | {"pause": "-r" not in options, "gui": "-s" not in options}
     if any(others):
         parameters["world"] = next(filter(None, others))
-    return SimulatorCommand("ros_gz_sim", "gzserver", parameters, ros)
+    return NodeCommand("ros_gz_sim", "gzserver", parameters, ros)
 
 
 def _divided(words: Sequence[str]) -> tuple[list[str], list[str]]:

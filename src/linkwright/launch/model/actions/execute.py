@@ -344,40 +344,41 @@ class ExecuteProcess(ExecuteLocal):
         return parse_command_line(cmd, parser)
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Start the process, or our simulation for a program of Gazebo that is not installed.
+        """Start the process, or the node of ours that replaces a program that is not installed.
 
         Raises:
             RuntimeError: LAUNCH141, it was started before.
-            LinkwrightError: LAUNCH141, an invalid option of the process.
+            LinkwrightError: LAUNCH141, an invalid option of the process; NODE002, the package with the node that
+                replaces it cannot be imported.
         """
         if not context.is_shutdown:
             command = [perform_substitutions(context, part) for part in self._description.cmd]
-            if not self._is_simulated(context, command):
+            if not self._is_replaced(context, command):
                 self._start(context, command)
         return None
 
-    def _is_simulated(self, context: LaunchContext, command: list[str]) -> bool:
-        """Start our simulation if the command is one of Gazebo's, and return whether it is."""
-        from linkwright.launch.model.simulators import simulator_of
+    def _is_replaced(self, context: LaunchContext, command: list[str]) -> bool:
+        """Start the node that replaces the command, if there is one, and return whether there is."""
+        from linkwright.launch.model.replaced_programs import replacing_node
 
         try:
             words = shlex.split(" ".join(command)) if self._shell else command
         except ValueError:
             return False
-        simulator = simulator_of(words, context.environment)
-        if simulator is None:
+        replacement = replacing_node(words, context.environment)
+        if replacement is None:
             return False
         about = self._description
         plan = HostedPlan(
             self,
             context.session.number_process(about.base_name(context, words)),
-            simulator.package,
-            simulator.executable,
+            replacement.package,
+            replacement.executable,
             None,
             "/",
-            dict(simulator.parameters),
+            dict(replacement.parameters),
             [],
-            list(simulator.ros_arguments),
+            list(replacement.ros_arguments),
             destinations=self._destinations(context),
         )
         about.final_name, about.final_cmd = plan.process_name, list(words)

@@ -18,7 +18,7 @@ from linkwright.launch.model.declared_substitution import (
     TextLists,
     Texts,
 )
-from linkwright.launch.model.simulators import PROGRAMS
+from linkwright.launch.model.replaced_programs import replaced_programs
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -77,8 +77,8 @@ class PathJoinSubstitution(DeclaredSubstitution, tag="path-join", shown="PathJoi
 class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({name})"):
     """The path of a program on ``PATH``.
 
-    A program that `Command` runs in this process, or that our simulation replaces, is found even if it is not
-    installed; the result is its bare name then.
+    A program that `Command` runs in this process, or that a node of this process replaces, is found even
+    if it is not installed; the result is its bare name then.
     """
 
     name: Texts = Texts(kw_only=True)
@@ -93,7 +93,7 @@ class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({nam
         path = shutil.which(name, path=context.environment.get("PATH"))
         if path is not None:
             return path
-        known = IN_PROCESS_PROGRAMS | PROGRAMS
+        known = IN_PROCESS_PROGRAMS | replaced_programs().keys()
         if name in known:
             return name
         hint = did_you_mean(name, known) or phrase("install it, or add its folder to PATH")

@@ -1,0 +1,50 @@
+"""Programs that launch files start as processes, and that nodes of this process replace where they are not installed.
+
+They are found through the entry points ``linkwright.replaced_programs``, whose names are those of the programs. Each
+points to a `CommandParser`.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Mapping, Sequence
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.loading.extensions import EntryPoint, extensions
+
+if TYPE_CHECKING:
+    from linkwright.nodes.node_command import CommandParser, NodeCommand
+
+_INTERPRETERS = ("ruby",)
+"""Interpreters with which launch files run programs that are scripts."""
+
+
+def replaced_programs() -> Mapping[str, EntryPoint]:
+    """Return the parsers of command lines, by the names of the programs."""
+    return extensions("linkwright.replaced_programs")
+
+
+def replacing_node(words: Sequence[str], environment: Mapping[str, str]) -> NodeCommand | None:
+    """Return the node that replaces a command; None if there is none, or if the program is installed.
+
+    Args:
+        words: the words of the command line.
+        environment: the environment whose ``PATH`` is searched.
+
+    Raises:
+        LinkwrightError: NODE002, the package that brings the node cannot be imported.
+    """
+    if words and PurePath(words[0]).name in _INTERPRETERS:
+        words = words[1:]
+    entry = replaced_programs().get(PurePath(words[0]).name) if words else None
+    if entry is None or shutil.which(words[0], path=environment.get("PATH")):
+        return None
+    try:
+        parse: CommandParser = entry.load()
+    except Exception as error:
+        message = phrase("the node in place of '{program}' cannot be imported", program=entry.name)
+        hint = phrase("'{place}' brings it: {problem}", place=entry.distribution, problem=foreign(error))
+        raise LinkwrightError(Diagnostic("NODE002", message, hint=hint)) from error
+    return parse(words)

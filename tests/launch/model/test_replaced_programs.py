@@ -1,0 +1,60 @@
+"""Programs are replaced by nodes through entry points, ours like those of other packages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.launch.model.replaced_programs import replaced_programs, replacing_node
+from linkwright.loading import extensions
+from linkwright.nodes.node_command import NodeCommand
+
+NOWHERE = {"PATH": "/nowhere"}
+
+
+def sail(words: Sequence[str]) -> NodeCommand | None:
+    """Parse a command line of a simulator that is not ours."""
+    return NodeCommand("my_sea", "boat", {"wind": float(words[2])}) if words[1:2] == ["sail"] else None
+
+
+@pytest.fixture
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    metadata = tmp_path / "my_sea-1.0.dist-info"
+    metadata.mkdir()
+    (metadata / "entry_points.txt").write_text(
+        f"[linkwright.replaced_programs]\nsea = {__name__}:sail\nsunk = my_sea_that_is_not_there:sail\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    extensions._all_groups.cache_clear()
+    yield
+    extensions._all_groups.cache_clear()
+
+
+@pytest.mark.parametrize("name", [*replaced_programs()])
+def test_each_of_ours_can_be_imported(name: str) -> None:
+    assert callable(replaced_programs()[name].load())
+
+
+def test_a_program_of_another_package_is_replaced(installed: None) -> None:
+    assert replacing_node(["/opt/bin/sea", "sail", "3"], NOWHERE) == NodeCommand("my_sea", "boat", {"wind": 3.0})
+    assert replacing_node(["ruby", "sea", "sail", "3"], NOWHERE) == NodeCommand("my_sea", "boat", {"wind": 3.0})
+    assert replacing_node(["sea", "--version"], NOWHERE) is None
+    assert replacing_node(["lake", "sail", "3"], NOWHERE) is None
+    assert replacing_node([], NOWHERE) is None
+
+
+def test_an_installed_program_is_not_replaced(installed: None, tmp_path: Path) -> None:
+    program = tmp_path / "sea"
+    program.touch(mode=0o755)
+    assert replacing_node(["sea", "sail", "3"], {"PATH": str(tmp_path)}) is None
+    assert replacing_node([str(program), "sail", "3"], NOWHERE) is None
+
+
+def test_a_parser_that_cannot_be_imported_is_named_with_its_package(installed: None) -> None:
+    with pytest.raises(LinkwrightError, match="the node in place of 'sunk' cannot be imported") as caught:
+        replacing_node(["sunk"], NOWHERE)
+    assert caught.value.diagnostics[0].code == "NODE002"
+    assert "'my_sea' brings it" in str(caught.value.diagnostics[0].hint)
