@@ -10,10 +10,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.hosting.followed_files import FollowedFiles
 from linkwright.hosting.launch_log import SCREEN, output_destinations
 from linkwright.hosting.network import Network, SharedNames
 from linkwright.hosting.plans import HostedPlan, Supervisor
-from linkwright.hosting.simulator_reload import follow_files
 from linkwright.hosting.viewer_host import ViewerHost, load_viewer
 
 if TYPE_CHECKING:
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from linkwright.nodes import RunningNode
     from linkwright.viewer import Viewer
 
-_DESCRIPTION = "robot_description"
 _ON_SCREEN = output_destinations("screen")[2]
 
 
@@ -178,8 +177,7 @@ class NodeHost:
 
     def _start_node(self, plan: HostedPlan) -> None:
         from linkwright.nodes import EXECUTABLES
-        from linkwright.nodes.component_container import ComponentContainer
-        from linkwright.nodes.options import FinishingNode
+        from linkwright.nodes.options import FinishingNode, LoadingNode
 
         session = self._session
         session.log.say(plan.process_name, "started in the launcher's process")
@@ -192,7 +190,7 @@ class NodeHost:
             return
         self._running[plan.process_name] = plan, running
         self._register(plan.process_name, running, plan.parameters)
-        if isinstance(running, ComponentContainer):
+        if isinstance(running, LoadingNode):
             running.loading = lambda: self._speak_as(plan.process_name)
             running.on_loaded.append(lambda loaded, given: self._register(plan.process_name, loaded, given.parameters))
         session.node_started(plan)
@@ -200,9 +198,12 @@ class NodeHost:
             running.finished.add_done_callback(lambda done: self._finished(plan, running, done))
 
     def _register(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
+        from linkwright.nodes.options import NodeWithFiles
+
         self._process_of_logger[running.node.get_logger().name] = process_name
         self._bind_descriptions(process_name, running, parameters)
-        follow_files(running, self._session, lambda: self.launcher_node)
+        if isinstance(running, NodeWithFiles):
+            running.follow_files(FollowedFiles(self._session, lambda: self.launcher_node))
         self._viewers.attach_panel(running)
 
     def _not_started(self, plan: HostedPlan, error: LinkwrightError) -> None:
@@ -229,14 +230,14 @@ class NodeHost:
 
     def _bind_descriptions(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
         """Give the node every new text of its descriptions, and show the findings about the first."""
-        from linkwright.nodes.robot_state_publisher import RobotStatePublisher
+        from linkwright.nodes.options import NodeWithDescription
 
         session = self._session
         for name, value in parameters.items():
             call = session.descriptions.call_of(value) if isinstance(value, str) else None
             if call is not None:
                 session.reload.bind(call, partial(self._set, process_name, running, name))
-            if name == _DESCRIPTION and isinstance(running, RobotStatePublisher):
+            if isinstance(running, NodeWithDescription) and name == running.description_parameter:
                 reading = session.descriptions.library.read(value)
                 warnings = session.descriptions.warnings_of(call) if call else ()
                 session.reload.report(call or process_name, (*warnings, *reading.diagnostics))

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from linkwright.descriptions import Description, DescriptionLibrary
-    from linkwright.simulation.server.worlds import LoadedWorld
+    from linkwright.nodes.followed_files import ReadWorld
     from linkwright.urdf import Collision, Robot, Visual
 
 
@@ -35,7 +35,13 @@ class XacroCall:
 
 @dataclass(frozen=True)
 class WorldCall(XacroCall):
-    """The file of a world that is simulated."""
+    """The file of a world that is simulated.
+
+    Attributes:
+        read: reads it; raises LinkwrightError.
+    """
+
+    read: Callable[[str], ReadWorld] = field(kw_only=True, compare=False, repr=False)
 
 
 class DescriptionError(LinkwrightError):
@@ -69,7 +75,7 @@ class Descriptions:
         self._calls: dict[str, XacroCall] = {}
         self._files: dict[XacroCall, tuple[Path, ...]] = {}
         self._robots: dict[XacroCall, Robot] = {}
-        self._worlds: dict[XacroCall, LoadedWorld] = {}
+        self._worlds: dict[XacroCall, ReadWorld] = {}
         self._meshes: dict[XacroCall, tuple[Path, ...]] = {}
         self._known: set[tuple[str, str]] = set()
         self._library: DescriptionLibrary | None = None
@@ -91,15 +97,20 @@ class Descriptions:
         """
         return self.remember(call, self.read(call))
 
-    def begin_with(self, world: LoadedWorld) -> WorldCall:
-        """Take a world that was read already; its findings are known and are not reported again."""
-        call = WorldCall(world.path.absolute())
+    def begin_with(self, world: ReadWorld, read: Callable[[str], ReadWorld]) -> WorldCall:
+        """Take a world that was read already; its findings are known and are not reported again.
+
+        Args:
+            world: the world.
+            read: reads it again.
+        """
+        call = WorldCall(world.path.absolute(), read=read)
         self._read_ns[call] = world.read_ns
         self._known |= {_essence(diagnostic) for diagnostic in world.diagnostics}
         self._set_world(call, world)
         return call
 
-    def _set_world(self, call: WorldCall, world: LoadedWorld) -> None:
+    def _set_world(self, call: WorldCall, world: ReadWorld) -> None:
         self._files[call], self._worlds[call] = world.files, world
         self._meshes.pop(call, None)
 
@@ -107,7 +118,7 @@ class Descriptions:
         """Expand and read, without remembering anything; may run in another thread.
 
         Returns:
-            The `Description` of a robot, the `LoadedWorld` of a world.
+            The `Description` of a robot, the `ReadWorld` of a world.
 
         Raises:
             DescriptionError: the errors of the file, or of one that it includes, with the findings of its valid
@@ -170,17 +181,12 @@ class Descriptions:
         if call in self._robots and call not in self._meshes:
             self._meshes[call] = _mesh_files(self._robots[call], self.finder, call.path.parent)
         if call in self._worlds and call not in self._meshes:
-            from linkwright.sdf.mesh_files import mesh_files
-
-            loaded = self._worlds[call]
-            self._meshes[call] = mesh_files(loaded.world.models, loaded.finder)
+            self._meshes[call] = self._worlds[call].mesh_files
         return (*self._files.get(call, (call.path,)), *self._meshes.get(call, ()))
 
-    def _read_world(self, call: WorldCall) -> LoadedWorld:
-        from linkwright.simulation.server.worlds import load_world
-
+    def _read_world(self, call: WorldCall) -> ReadWorld:
         self.begin(call)
-        loaded = load_world(str(call.path))
+        loaded = call.read(str(call.path))
         wrong = [diagnostic for diagnostic in self._new(loaded.diagnostics) if diagnostic.severity is Severity.ERROR]
         if wrong:
             raise DescriptionError(call, wrong)

@@ -14,8 +14,6 @@ from linkwright.messages import get_service
 from linkwright.nodes.options import NodeOptions, RunningNode, SingleNode, create_node, starting
 from linkwright.nodes.registry import COMPONENTS
 
-OnLoaded = Callable[[RunningNode, NodeOptions], None]
-
 
 class ComponentContainer(SingleNode):
     """The running node.
@@ -40,7 +38,7 @@ class ComponentContainer(SingleNode):
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._loaded: dict[int, RunningNode] = {}
         self._last_id = 0
-        self.on_loaded: list[OnLoaded] = []
+        self.on_loaded: list[Callable[[RunningNode, NodeOptions], None]] = []
         self.loading: Callable[[], AbstractContextManager[object]] = nullcontext
         with starting(self._node):
             for name, kind, callback in (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, runtime_checkable
 
@@ -18,6 +18,7 @@ from linkwright.graph.parameters.rules import ParameterRules
 
 if TYPE_CHECKING:
     from linkwright.descriptions import DescriptionLibrary
+    from linkwright.nodes.followed_files import FileFollower
     from linkwright.nodes.joint_panel import JointPanel
 
 N = TypeVar("N", bound=Node)
@@ -64,7 +65,7 @@ class NodeOptions:
 
 
 class RunningNode(Protocol):
-    """A running node; some have more, see `FinishingNode` and `NodeWithSliders`."""
+    """A running node; some have more, which their host asks for: see the protocols below."""
 
     @property
     def node(self) -> Node:
@@ -89,6 +90,33 @@ class NodeWithSliders(RunningNode, Protocol):
     @property
     def panel(self) -> JointPanel:
         """The sliders."""
+
+
+@runtime_checkable
+class LoadingNode(RunningNode, Protocol):
+    """A node that loads further nodes into its process."""
+
+    on_loaded: list[Callable[[RunningNode, NodeOptions], None]]
+    """Called with each loaded node and the options that it was loaded with."""
+    loading: Callable[[], AbstractContextManager[object]]
+    """Returns a context that is active while a node is created; the host replaces it."""
+
+
+@runtime_checkable
+class NodeWithDescription(RunningNode, Protocol):
+    """A node for which the host reports the findings about its robot description."""
+
+    @property
+    def description_parameter(self) -> str:
+        """The parameter with the description."""
+
+
+@runtime_checkable
+class NodeWithFiles(RunningNode, Protocol):
+    """A node that takes its files again when they are saved."""
+
+    def follow_files(self, host: FileFollower) -> None:
+        """Have the host watch its files; called once on the event loop, when the node has started."""
 
 
 class SingleNode:

@@ -66,6 +66,7 @@ class RobotStatePublisher(SingleNode):
     """
 
     DEFAULT_NAME = "robot_state_publisher"
+    description_parameter = "robot_description"
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._library = options.library

@@ -18,6 +18,7 @@ from linkwright.graph import Graph, Parameter, SetParametersResult
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
 if TYPE_CHECKING:
+    from linkwright.nodes.followed_files import FileFollower
     from linkwright.sdf.plugins import Plugin
 
 _EMPTY, _DESCRIPTION = "empty", "robot_description"
@@ -141,6 +142,12 @@ class Simulator(SingleNode):
             if parameters["pause"]:
                 self._node.get_logger().info(_PAUSED)
             self.runner.start()
+
+    def follow_files(self, host: FileFollower) -> None:
+        """Reload the world, and robots that were spawned, when their files are saved."""
+        from linkwright.simulation.nodes.saved_files import follow_files
+
+        follow_files(self._node, self.server, self.services, host)
 
     def close(self) -> None:
         """End it."""

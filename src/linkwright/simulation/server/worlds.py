@@ -37,6 +37,13 @@ class LoadedWorld(NamedTuple):
     files: tuple[Path, ...]
     read_ns: int
 
+    @property
+    def mesh_files(self) -> tuple[Path, ...]:
+        """The existing mesh files of its models."""
+        from linkwright.sdf.mesh_files import mesh_files
+
+        return mesh_files(self.world.models, self.finder)
+
 
 def load_world(name: str, text: str | None = None, environment: Mapping[str, str] | None = None) -> LoadedWorld:
     """Read the first world of a file.

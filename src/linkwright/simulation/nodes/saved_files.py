@@ -1,0 +1,67 @@
+"""The files of a running simulation, whoever started it: the simulator loads them when they are saved."""
+
+from __future__ import annotations
+
+import asyncio
+from functools import partial
+
+from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
+from linkwright.graph import Node
+from linkwright.messages import get_service
+from linkwright.nodes.followed_files import FileFollower
+from linkwright.simulation.server.server import SimulationServer
+from linkwright.simulation.server.services import Services
+from linkwright.simulation.server.worlds import load_world
+
+_LOAD_WORLD = "simulation_interfaces/srv/LoadWorld"
+
+
+def follow_files(node: Node, server: SimulationServer, services: Services, host: FileFollower) -> None:
+    """Reload the world, and robots that were spawned, when their files are saved.
+
+    The viewers show errors in their models.
+
+    A robot is followed where its description is a text that this process has expanded from a file.
+
+    Args:
+        node: the simulator's node.
+        server: its simulation.
+        services: its services.
+        host: watches the files.
+    """
+    loop, world = asyncio.get_running_loop(), services.worlds.loaded
+    about = f"simulation of {node.get_fully_qualified_name()}"
+
+    def show() -> None:
+        if not node.handle.is_destroyed:
+            host.show(about, server.findings)
+
+    def renew(name: str, text: str) -> None:
+        """Replace a robot at its current pose, if it still exists."""
+        if not node.handle.is_destroyed and name in server.simulation.scene.models:
+            services.renew(text, name)
+
+    def follow(name: str, text: str) -> None:
+        host.follow_text(text, name, partial(renew, name))
+
+    server.on_findings.append(lambda: loop.call_soon_threadsafe(show))
+    show()
+    if world.path.is_file():
+        host.follow_world(world, load_world, lambda path: _load_world(path, host.launcher_node, services))
+    services.on_spawned.append(lambda name, text: loop.call_soon_threadsafe(follow, name, text))
+
+
+async def _load_world(path: str, launcher: Node, services: Services) -> list[Diagnostic]:
+    """Load a saved world file, unless the page has unsaved changes; returns why not."""
+    if services.worlds.is_unsaved:
+        message = phrase("'{path}' has changed; the simulation continues with the edited world instead", path=path)
+        hint = phrase("save the edited world as another file, or undo its changes")
+        return [Diagnostic("SIM154", message, severity=Severity.WARNING, hint=hint)]
+    client = launcher.create_client(get_service(_LOAD_WORLD), "/load_world")
+    request = client.srv_type.Request(ignore_missing_or_unsupported_assets=True)
+    request.world_resource.uri = path
+    answer = await client.call_async(request)
+    if answer is not None and answer.result.result != answer.result.RESULT_OK:
+        message = phrase("the simulation continues unchanged: {reason}", reason=foreign(answer.result.error_message))
+        return [Diagnostic("SIM153", message)]
+    return []

@@ -1,0 +1,51 @@
+"""The host of nodes asks them by protocols, so that nodes of other packages have what ours have."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from linkwright.graph import Graph
+from linkwright.launch.ros import Node
+from linkwright.nodes import EXECUTABLES, NodeOptions
+from linkwright.nodes.followed_files import FileFollower
+from linkwright.nodes.options import SingleNode, create_node
+
+INCOMPLETE = (
+    "<robot name='boat'><link name='hull'/><joint name='mast' type='fixed'><parent link='hull'/></joint></robot>"
+)
+
+
+class Boat(SingleNode):
+    """A node that is not ours."""
+
+    DEFAULT_NAME = "boat"
+    description_parameter = "plan"
+
+    def __init__(self, graph: Graph, options: NodeOptions, hosts: list[FileFollower]) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME, any_parameters=True)
+        self._hosts = hosts
+        self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+
+    def follow_files(self, host: FileFollower) -> None:
+        self._hosts.append(host)
+        self._node.get_logger().info(f"called by {host.launcher_node.get_name().rstrip('0123456789')}")
+        self.finished.set_result(0)
+
+
+async def test_a_node_of_another_package_has_its_files_followed_and_its_description_checked(
+    launch: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hosts: list[FileFollower] = []
+    entry = type("EntryPoint", (), {"load": staticmethod(lambda: lambda graph, options: Boat(graph, options, hosts))})()
+    monkeypatch.setitem(EXECUTABLES.entry_points, ("my_sea", "boat"), entry)
+    launched = await launch(
+        Node(package="my_sea", executable="boat", parameters=[{"plan": INCOMPLETE, "other": "<x/>"}])
+    )
+    assert len(hosts) == 1
+    assert "called by launch_ros_" in launched.err
+    assert "joint 'mast'" in launched.err
+    assert launched.err.count("error[") == 1
