@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.launch.errors.missing_modules import ROS_MODULES
 from linkwright.messages import catalogue
+from linkwright.packages.programs.missing_modules import ROS_MODULES
 from linkwright.standins import table
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"

@@ -87,7 +87,7 @@ class _ModulesOfWorkspace:
 
 def _asking_file() -> Path | None:
     """Return the user's file with the running import; None for a library, whose import may be optional."""
-    from linkwright.launch.errors.user_code import is_users
+    from linkwright.packages.programs.code_files import is_users
 
     frame = sys._getframe(2)
     while frame.f_back is not None and frame.f_code.co_filename.startswith("<frozen importlib"):

@@ -16,12 +16,11 @@ from typing import Any, TypeVar
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, SourceText, Span
 from linkwright.launch.errors.exceptions import as_ros_error
+from linkwright.packages.programs.code_files import is_ours
 
 T = TypeVar("T", bound="Placed")
 
-_OURS = str(Path(__file__).parents[2]) + os.sep
-_SHIPPED_PACKAGES = _OURS + "robots" + os.sep
-_STARTERS = (_OURS + "cli" + os.sep, str(Path(asyncio.__file__).parent) + os.sep)
+_STARTERS = (str(Path(__file__).parents[2] / "cli") + os.sep, str(Path(asyncio.__file__).parent) + os.sep)
 """Folders of the programs that may have started our code: the command line, the event loop."""
 
 
@@ -172,11 +171,6 @@ class CodePlace(Place):
             start = _characters(source.line(line), start)
             end = _characters(source.line(end_line), end)
         return Span(self.file, line, start + 1, end_line, end + 1)
-
-
-def is_ours(filename: str) -> bool:
-    """Return whether a program file belongs to Linkwright itself, not to a robot package that it ships."""
-    return filename.startswith(_OURS) and not filename.startswith(_SHIPPED_PACKAGES)
 
 
 def read_source(filename: str) -> SourceText | None:

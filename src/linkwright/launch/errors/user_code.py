@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import re
 import sys
-import sysconfig
 from collections.abc import Iterable
 from traceback import walk_tb
 from types import FrameType, ModuleType, TracebackType
@@ -26,14 +25,13 @@ from linkwright.diagnostics import (
     quoted_names,
 )
 from linkwright.launch.errors.exceptions import as_ros_error
-from linkwright.launch.errors.places import CodePlace, Place, error_at, is_ours, located, read_source
+from linkwright.launch.errors.places import CodePlace, Place, error_at, located, read_source
+from linkwright.packages.programs.code_files import is_users
 
 DEEPEST = 300
 """The maximum nesting of launch actions: files that include files, groups in groups, functions that return actions.
 Python's own limit would be reached a little later, at an unrelated place."""
 
-_LIBRARY = tuple({sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")})
-_CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")
 _PATH_OF_MODULE = re.compile(r" \((?:/|[A-Z]:|unknown location).*\)$")
 _MISSING_ARGUMENT = re.compile(r"\(\) missing \d+ required .*arguments?: (.*)$")
 _UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argument '([^']+)'")
@@ -97,13 +95,6 @@ def _user_places(traceback: TracebackType | None) -> Iterable[Place]:
         current = current.tb_next
 
 
-def is_users(filename: str) -> bool:
-    """Return whether a code file is the user's: neither Linkwright's nor of an installed library."""
-    if filename.startswith("<") or is_ours(filename):
-        return False
-    return not filename.startswith(tuple(folder for folder in _LIBRARY if folder))
-
-
 def _hint(error: BaseException, source: SourceText | None, span: Span | None) -> Phrase | None:
     """Return a hint on what the user may have meant."""
     if isinstance(error, ImportError):
@@ -131,9 +122,11 @@ def _offered(owner: object) -> list[str]:
 
 
 def _import_hint(error: ImportError) -> Phrase | None:
-    found = _CANNOT_IMPORT.search(str(error))
+    from linkwright.packages.programs.missing_modules import missing_name, provider_hint, where_it_is
+
+    found = missing_name(error)
     if found:
-        name, module = found.groups()
+        name, module = found
         return where_it_is(error) or did_you_mean(name, _offered(sys.modules.get(module)))
     missing = error.name or ""
     parent, _, name = missing.rpartition(".")
@@ -147,20 +140,7 @@ def _import_hint(error: ImportError) -> Phrase | None:
     known = did_you_mean(missing, ("launch", "launch_ros", "ament_index_python"))
     if known or not missing:
         return known
-    from linkwright.launch.errors.missing_modules import provider_hint
-
     return provider_hint(missing)
-
-
-def where_it_is(error: ImportError) -> Phrase | None:
-    """Return the other module that has a missing name; None if the module, like real ones, does not know it."""
-    words = _CANNOT_IMPORT.search(str(error))
-    if words is None:
-        return None
-    name, module = words.groups()
-    homes = getattr(getattr(sys.modules.get(module), "__loader__", None), "homes", None)
-    found = homes(name) if homes else []
-    return phrase("it is in {modules}", modules=quoted_names(found, " or ")) if found else None
 
 
 def _keyword_hint(error: TypeError) -> Phrase | None:

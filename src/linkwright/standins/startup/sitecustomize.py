@@ -184,8 +184,7 @@ def _report_with_hint(kind: type[BaseException], error: BaseException, traceback
     if isinstance(error, ImportError) and name and not _stand_ins.has_real_ros():
         try:
             _make_importable()
-            from linkwright.launch.errors.missing_modules import known_provider_hint
-            from linkwright.launch.errors.user_code import where_it_is
+            from linkwright.packages.programs.missing_modules import known_provider_hint, where_it_is
 
             hint = known_provider_hint(name) if isinstance(error, ModuleNotFoundError) else where_it_is(error)
         except Exception:  # noqa: BLE001 - the program's own error is reported

@@ -1,8 +1,11 @@
-"""The ROS package or PyPI distribution of a missing Python module, for the hint of an import error."""
+"""Where a Python module or name that cannot be imported is: its ROS package, its PyPI distribution, another module."""
 
 from __future__ import annotations
 
-from linkwright.diagnostics import Phrase, package_hint, phrase
+import re
+import sys
+
+from linkwright.diagnostics import Phrase, package_hint, phrase, quoted_names
 
 _ROS_PACKAGES = {
     "as2_core": "Aerostack2",
@@ -71,6 +74,25 @@ _ENDINGS = (
     "_ros",
     "_utils",
 )
+
+_CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")
+
+
+def missing_name(error: ImportError) -> tuple[str, str] | None:
+    """Return the name that a module lacks, and the module; None if the module itself is missing."""
+    found = _CANNOT_IMPORT.search(str(error))
+    return None if found is None else (found[1], found[2])
+
+
+def where_it_is(error: ImportError) -> Phrase | None:
+    """Return the other module that has a missing name; None if the module, like real ones, does not know it."""
+    missing = missing_name(error)
+    if missing is None:
+        return None
+    name, module = missing
+    homes = getattr(getattr(sys.modules.get(module), "__loader__", None), "homes", None)
+    found = homes(name) if homes else []
+    return phrase("it is in {modules}", modules=quoted_names(found, " or ")) if found else None
 
 
 def provider_hint(module: str) -> Phrase:

@@ -1,0 +1,23 @@
+"""Whose program a file of code is."""
+
+from __future__ import annotations
+
+import os
+import sysconfig
+from pathlib import Path
+
+_OURS = str(Path(__file__).parents[2]) + os.sep
+_SHIPPED_PACKAGES = _OURS + "robots" + os.sep
+_LIBRARY = tuple({sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")})
+
+
+def is_ours(filename: str) -> bool:
+    """Return whether a program file belongs to Linkwright itself, not to a robot package that it ships."""
+    return filename.startswith(_OURS) and not filename.startswith(_SHIPPED_PACKAGES)
+
+
+def is_users(filename: str) -> bool:
+    """Return whether a code file is the user's: neither Linkwright's nor of an installed library."""
+    if filename.startswith("<") or is_ours(filename):
+        return False
+    return not filename.startswith(tuple(folder for folder in _LIBRARY if folder))
