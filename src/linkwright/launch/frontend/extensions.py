@@ -12,6 +12,7 @@ from importlib.util import module_from_spec
 from pathlib import Path
 from typing import Any
 
+from linkwright.loading.extensions import extensions
 from linkwright.packages import PackageFinder, current_finder, install_prefix, is_installed
 from linkwright.packages.programs.python_modules import find_module
 from linkwright.packages.programs.workspace_environment import python_folders
@@ -31,16 +32,17 @@ _OURS = {
     },
     PARSERS: {"xml": "linkwright.launch.frontend.xml:Parser", "yaml": "linkwright.launch.frontend.yaml:Parser"},
 }
-_STAND_INS = {ACTIONS: {"ros_gz_sim": "linkwright.launch.ros.gazebo"}, PARSERS: {}}
-"""Our replacements for packages that are not installed."""
+_STAND_INS = "linkwright.launch_extensions"
+"""The group of modules that replace launch extensions, each by the name of one, where it is not installed."""
 
 
 def load(group: str) -> Iterator[tuple[str, Any]]:
     """Yield the name and object of each entry point of a group, ours first; one that fails yields a warning instead."""
     installed = entry_points(group=group)
-    stand_ins = {name: value for name, value in _STAND_INS[group].items() if name not in installed.names}
-    ours = (EntryPoint(name, value, group) for name, value in {**_OURS[group], **stand_ins}.items())
-    for entry_point in (*ours, *installed):
+    ours = (EntryPoint(name, value, group) for name, value in _OURS[group].items())
+    stand_ins = extensions(_STAND_INS).values() if group == ACTIONS else ()
+    missing = (entry_point for entry_point in stand_ins if entry_point.name not in installed.names)
+    for entry_point in (*ours, *missing, *installed):
         try:
             loaded = entry_point.load()
         except Exception:  # noqa: BLE001, PERF203 - a broken package must not stop the others

@@ -1,7 +1,7 @@
 """Actions of ``launch_testing`` in launch files of tests.
 
 Such a launch file can be launched as any other. ``launch_test`` runs its tests; see
-`linkwright.standins.launch_testing_api`.
+`linkwright.launch.standins.launch_testing_api`.
 """
 
 from __future__ import annotations

@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from typing import Any
 
 from linkwright.launch.model.actions.execute import ExecuteLocal
-from linkwright.standins.launch_testing_api.processes import ProcessRecords, name_of, resolveProcesses
-from linkwright.standins.launch_testing_api.text import build_text_match
+from linkwright.launch.standins.launch_testing_api.processes import ProcessRecords, name_of, resolveProcesses
+from linkwright.launch.standins.launch_testing_api.text import build_text_match
 from linkwright.standins.terminal_color import remove_ansi_escape_sequences
 
 EXIT_OK = 0

@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from linkwright.standins.launch_testing_api.runner import LaunchTestRunner
-from linkwright.standins.launch_testing_api.test_runs import LoadTestsFromPythonModule, TestRun
+from linkwright.launch.standins.launch_testing_api.runner import LaunchTestRunner
+from linkwright.launch.standins.launch_testing_api.test_runs import LoadTestsFromPythonModule, TestRun
 
 
 @pytest.hookspec(firstresult=True)

@@ -21,7 +21,7 @@ from linkwright.launch.engine.service import LaunchService
 from linkwright.launch.model.actions.testing import ReadyToTest, ready_actions
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.entity import LaunchDescriptionEntity
-from linkwright.standins.launch_pytest_api.fixtures import (
+from linkwright.launch.standins.launch_pytest_api.fixtures import (
     FIXTURES,
     LaunchOptions,
     event_loop,

@@ -12,8 +12,12 @@ from typing import Any
 
 from linkwright.launch.model import events
 from linkwright.launch.model.actions.execute import ExecuteLocal
-from linkwright.standins.launch_testing_api.asserts import assertInStream
-from linkwright.standins.launch_testing_api.processes import NoMatchingProcessException, name_of, resolveProcesses
+from linkwright.launch.standins.launch_testing_api.asserts import assertInStream
+from linkwright.launch.standins.launch_testing_api.processes import (
+    NoMatchingProcessException,
+    name_of,
+    resolveProcesses,
+)
 
 
 class IoHandler:

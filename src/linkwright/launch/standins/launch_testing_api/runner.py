@@ -20,10 +20,10 @@ from linkwright.launch.model.actions import RegisterEventHandler
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.process_event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
 from linkwright.launch.ros2launch_api import parse_launch_arguments
-from linkwright.standins.launch_testing_api.asserts import text_of
-from linkwright.standins.launch_testing_api.records import ActiveIoHandler, ActiveProcInfoHandler
-from linkwright.standins.launch_testing_api.results import FailResult, SkipResult, TestResult
-from linkwright.standins.launch_testing_api.test_runs import TestRun
+from linkwright.launch.standins.launch_testing_api.asserts import text_of
+from linkwright.launch.standins.launch_testing_api.records import ActiveIoHandler, ActiveProcInfoHandler
+from linkwright.launch.standins.launch_testing_api.results import FailResult, SkipResult, TestResult
+from linkwright.launch.standins.launch_testing_api.test_runs import TestRun
 
 
 class _LaunchDiedError(Exception):

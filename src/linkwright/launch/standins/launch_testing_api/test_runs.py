@@ -10,7 +10,7 @@ from typing import Any
 
 from linkwright.launch.model.actions.testing import ReadyToTest, ready_actions
 from linkwright.launch.model.description import LaunchDescription
-from linkwright.standins.launch_testing_api.marks import AFTER_SHUTDOWN, MARKERS, PARAMETRIZED, TIMEOUT
+from linkwright.launch.standins.launch_testing_api.marks import AFTER_SHUTDOWN, MARKERS, PARAMETRIZED, TIMEOUT
 
 _READY_SECONDS = 15.0
 """The default seconds that a launch may take until its tests may start."""

@@ -11,9 +11,9 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.faults import ExternalShutdownException
+from linkwright.launch.standins.launch_testing_api import text
+from linkwright.launch.standins.launch_testing_api.runner import LaunchTestRunner as _LaunchTestRunner
 from linkwright.packages.ament_resources import get_resource, has_resource
-from linkwright.standins.launch_testing_api import text
-from linkwright.standins.launch_testing_api.runner import LaunchTestRunner as _LaunchTestRunner
 from linkwright.standins.rclpy_api.context import Context
 from linkwright.standins.rclpy_api.executors import SingleThreadedExecutor
 from linkwright.standins.rclpy_api.node import Node

@@ -11,9 +11,9 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
+from linkwright.launch.standins.launch_testing_api.asserts import SequentialTextChecker
+from linkwright.launch.standins.launch_testing_api.text import build_line_match, build_text_match, expect_output
 from linkwright.standins import process
-from linkwright.standins.launch_testing_api.asserts import SequentialTextChecker
-from linkwright.standins.launch_testing_api.text import build_line_match, build_text_match, expect_output
 
 HEAD = """\
 import sys, unittest

@@ -12,9 +12,9 @@ from typing import Any
 from linkwright.launch.arguments import argument_listing
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.ros2launch_api import parse_launch_arguments
-from linkwright.standins.launch_testing_api.results import unittestResultsToXml
-from linkwright.standins.launch_testing_api.runner import LaunchTestRunner
-from linkwright.standins.launch_testing_api.test_runs import LoadTestsFromPythonModule
+from linkwright.launch.standins.launch_testing_api.results import unittestResultsToXml
+from linkwright.launch.standins.launch_testing_api.runner import LaunchTestRunner
+from linkwright.launch.standins.launch_testing_api.test_runs import LoadTestsFromPythonModule
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -10,8 +10,8 @@ from linkwright.launch.engine.service import LaunchService
 from linkwright.launch.model import events
 from linkwright.launch.model.actions.execute import ExecuteProcess
 from linkwright.launch.model.description import LaunchDescription
-from linkwright.standins.launch_testing_api.asserts import text_of
-from linkwright.standins.launch_testing_api.records import ActiveIoHandler, ActiveProcInfoHandler
+from linkwright.launch.standins.launch_testing_api.asserts import text_of
+from linkwright.launch.standins.launch_testing_api.records import ActiveIoHandler, ActiveProcInfoHandler
 
 
 class Outcome:

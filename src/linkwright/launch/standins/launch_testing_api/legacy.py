@@ -88,7 +88,7 @@ class LaunchTestService:
         Args:
             launch_description: the description with the process.
             action: the process.
-            output_test: a test from `linkwright.standins.launch_testing_api.legacy_output`.
+            output_test: a test from `linkwright.launch.standins.launch_testing_api.legacy_output`.
             test_suffix: a suffix that distinguishes several tests of one process.
             output_filter: a function to filter the output.
             side_effect: ``shutdown`` ends the launch once the test has passed.
