@@ -27,12 +27,13 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import Graph, Node
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.nodes.simulator import Simulator
 from linkwright.simulation.server.entities import entity_from
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.simulation.server.worlds import load_world
-from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.simulation.simulation import Simulation
 from linkwright.xacro import expand
 
 WORLDS = REPOSITORY / "robots" / "my_robot_gazebo" / "worlds"
@@ -43,7 +44,7 @@ TURNS = 60
 _LEAST = 5
 _LONGEST = 10.0
 """At most so many turns are measured of each, at least so many, and no more after so many seconds."""
-_SLICE = NANOSECONDS // 10
+_SLICE = NANOSECONDS_PER_SECOND // 10
 _BESIDE = 1.5
 """Metres from one robot to the next."""
 _LISTENED = {
@@ -179,7 +180,7 @@ async def _row(case: Case) -> Row:
         _drive(listener, case.robots)
     try:
         with _made_by(case.way):
-            for _ in range(NANOSECONDS // _SLICE):  # things fall to the ground
+            for _ in range(NANOSECONDS_PER_SECOND // _SLICE):  # things fall to the ground
                 await _pass(graph, server)
                 _advance(bullet)
             turns = await _take_turns(graph, server, bullet)
@@ -188,7 +189,7 @@ async def _row(case: Case) -> Row:
         await graph.close()
         if bullet is not None:
             bullet.close()
-    ours, *others = (statistics.median(turn) * 1000 * NANOSECONDS / _SLICE for turn in turns if turn)
+    ours, *others = (statistics.median(turn) * 1000 * NANOSECONDS_PER_SECOND / _SLICE for turn in turns if turn)
     names = ("MuJoCo", "pybullet")
     beside: dict[str, float | None] = dict(zip(names, others, strict=False))
     return Row(case.what, ours, "ms", case.target, beside | ({"pybullet": None} if case.bullet and not bullet else {}))
@@ -286,7 +287,7 @@ def _mujoco_alone(simulation: Simulation) -> float:
 
 def _advance(bullet: BulletWorld | None) -> None:
     if bullet is not None:
-        bullet.advance(_SLICE * 1000 // NANOSECONDS)
+        bullet.advance(_SLICE * 1000 // NANOSECONDS_PER_SECOND)
 
 
 def _timed(function: Callable[[], object]) -> float:

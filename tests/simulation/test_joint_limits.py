@@ -7,7 +7,8 @@ from math import asin, inf
 import pytest
 
 from linkwright.messages import get_message
-from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+from linkwright.simulation.simulation import Simulation
 from tests.simulation.test_plugins import served
 from tests.simulation.worlds import simulated
 
@@ -38,7 +39,7 @@ def arm(limit: str, plugin: str = "", axis: str = "0 1 0", more: str = "") -> st
 def speed_when_pushed(simulation: Simulation, force: float, seconds: float = 0.5) -> float:
     for _ in range(round(seconds * 1000)):
         simulation.push_joint("arm::turn", force)
-        simulation.advance(NANOSECONDS // 1000)
+        simulation.advance(NANOSECONDS_PER_SECOND // 1000)
     return simulation.joint_state("arm::turn")[1]
 
 
@@ -53,7 +54,7 @@ async def test_a_controller_lifts_no_more_than_the_effort_of_the_joint():
             get_message("std_msgs/msg/Float64")(data=1.5)
         )
         await graph.settle()
-        server.advance(4 * NANOSECONDS)
+        server.advance(4 * NANOSECONDS_PER_SECOND)
         assert server.simulation.joint_state("arm::turn")[0] == pytest.approx(asin(5 / 9.81), abs=0.02)
 
 
@@ -90,5 +91,5 @@ def test_zero_and_less_are_no_limits(limit: str):
 async def test_a_motor_of_gz_turns_as_fast_as_the_joint_may(velocity: float, wanted: float):
     limit = f"<velocity>{velocity}</velocity>"
     async with served(arm(limit, MOTOR, axis="0 0 1")) as (server, _, _log):
-        server.advance(NANOSECONDS)
+        server.advance(NANOSECONDS_PER_SECOND)
         assert server.simulation.joint_state("arm::turn")[1] == pytest.approx(wanted, rel=0.01)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.server.overlaps import overlaps
-from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.simulation.simulation import Simulation
 from tests.simulation.test_plugins import served
 from tests.simulation.worlds import GROUND, box, model, simulated
 
@@ -37,7 +38,7 @@ def fastest(simulation: Simulation, seconds: float, *links: str) -> float:
     """The greatest speed of links in m/s."""
     greatest = 0.0
     for _ in range(round(seconds * 100)):
-        simulation.advance(NANOSECONDS // 100)
+        simulation.advance(NANOSECONDS_PER_SECOND // 100)
         greatest = max(greatest, *(float(np.linalg.norm(simulation.link_velocity(link)[0])) for link in links))
     return greatest
 
@@ -61,7 +62,7 @@ def test_things_that_begin_in_each_other_part_slowly(shape: str):
 def test_what_is_put_into_a_wall_while_time_passes_leaves_it_slowly():
     wall = box("wall", "3 0 1 0 0 0", "1 4 2").replace("<link", "<static>true</static><link", 1)
     simulation = simulated(GROUND, wall, free("crate", "box", "0 0 0.5 0 0 0"))
-    simulation.advance(2 * NANOSECONDS)
+    simulation.advance(2 * NANOSECONDS_PER_SECOND)
     simulation.set_model_pose("crate", (2.6, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0))
     assert fastest(simulation, 3.0, "crate::link") < FASTEST
     assert simulation.link_pose("crate::link")[0] == pytest.approx(2.0, abs=0.05)
@@ -82,7 +83,7 @@ def test_a_joint_beyond_its_limit_returns_slowly():
     )
     speeds = []
     for _ in range(200):
-        simulation.advance(NANOSECONDS // 100)
+        simulation.advance(NANOSECONDS_PER_SECOND // 100)
         speeds.append(simulation.joint_state("arm::turn")[1])
     assert 0.9 < max(speeds) < 1.05
     assert simulation.joint_state("arm::turn")[0] == pytest.approx(1.2, abs=0.01)
@@ -95,7 +96,7 @@ def test_a_servo_is_as_fast_as_ever_while_something_else_parts():
     servo = simulation.add_servo("arm::turn", speed=3.0)
     for _ in range(30):
         servo.move(2.0, 0.01)
-        simulation.advance(NANOSECONDS // 100)
+        simulation.advance(NANOSECONDS_PER_SECOND // 100)
     assert simulation.joint_state("arm::turn")[0] == pytest.approx(0.9, abs=0.2)
 
 
@@ -103,17 +104,17 @@ def test_deep_things_take_the_same_bits_twice():
     simulation = simulated(
         GROUND, *[free(f"t{number}", shape, f"0.{number} 0 0 0.2 0 0") for number, shape in enumerate(SHAPES)]
     )
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     once = simulation.data.qpos.tobytes()
     simulation.reset()
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     assert simulation.data.qpos.tobytes() == once
 
 
 def test_the_bound_is_looked_for_no_more_once_nothing_is_deep():
     simulation = simulated(GROUND, free("thing", "box", "0 0 0.3 0 0 0"))
     assert simulation._stepper._recovery.is_expected
-    simulation.advance(2 * NANOSECONDS)
+    simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert not simulation._stepper._recovery.is_expected
 
 

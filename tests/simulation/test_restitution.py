@@ -7,10 +7,11 @@ from math import sqrt
 
 import pytest
 
-from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+from linkwright.simulation.simulation import Simulation
 from tests.simulation.worlds import simulated
 
-MILLISECOND = NANOSECONDS // 1000
+MILLISECOND = NANOSECONDS_PER_SECOND // 1000
 RADIUS = 0.1
 G = 9.81
 BALL = f"<sphere><radius>{RADIUS}</radius></sphere>"
@@ -103,7 +104,7 @@ def test_equal_balls_change_their_speeds():
 def test_twice_the_same_bounces_give_the_same_bits():
     def run() -> bytes:
         simulation = simulated(floor(), thing("0 0 0.7 0.3 0.2 0", 0.8, BLOCK))
-        simulation.advance(NANOSECONDS)
+        simulation.advance(NANOSECONDS_PER_SECOND)
         return bytes(simulation.data.qpos.tobytes())
 
     assert run() == run()

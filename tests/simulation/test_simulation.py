@@ -8,15 +8,16 @@ from math import isfinite
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.simulation.simulation import NANOSECONDS, Simulation, UnstableError
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+from linkwright.simulation.simulation import Simulation, UnstableError
 from tests.simulation.worlds import GROUND, box, finder, mbot, model, simulated, world
 
-MILLISECOND = NANOSECONDS // 1000
+MILLISECOND = NANOSECONDS_PER_SECOND // 1000
 
 
 def test_a_body_falls_as_galileo_says():
     simulation = simulated(box("ball", "0 0 100 0 0 0"))
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     # The semi-implicit step is behind by half a step: g t dt / 2.
     assert simulation.model_pose("ball")[2] == pytest.approx(100 - 9.81 / 2, abs=9.81 * 0.001 / 2 + 1e-9)
     assert simulation.link_velocity("ball::link")[0][2] == pytest.approx(-9.81, abs=1e-9)
@@ -39,7 +40,7 @@ def test_a_robot_drives_straight_on():
         for motor in motors:
             motor.target = hundredth / 100 * 0.5 / 0.06
         simulation.advance(5 * MILLISECOND)
-    simulation.advance(9 * NANOSECONDS)
+    simulation.advance(9 * NANOSECONDS_PER_SECOND)
     x, y, _z, *_ = simulation.model_pose("mbot")
     turned = simulation.joint_state("mbot::left_joint")[0] - wheel
     assert x == pytest.approx(turned * 0.06, abs=1e-3)
@@ -66,7 +67,7 @@ def test_the_same_twice():
         simulation = simulated(GROUND, mbot(), box("box", "0.5 0.05 0.2 0 0 0", "0.2 0.2 0.2"))
         motors = [simulation.add_velocity_motor(f"mbot::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
         motors[0].target, motors[1].target = 5.0, 6.0
-        simulation.advance(2 * NANOSECONDS)
+        simulation.advance(2 * NANOSECONDS_PER_SECOND)
         return simulation.model_pose("mbot") + simulation.model_pose("box")
 
     assert run() == run()
@@ -109,7 +110,7 @@ def test_an_explosion_is_said_with_the_link():
     simulation.advance(10 * MILLISECOND)
     simulation.push("two::link", (0.0, 1e300, 0.0))
     with pytest.raises(UnstableError, match="'two::link'"):
-        simulation.advance(NANOSECONDS)
+        simulation.advance(NANOSECONDS_PER_SECOND)
     assert all(isfinite(each) for name in ("one", "two") for each in simulation.model_pose(name))
 
 
@@ -117,7 +118,7 @@ def test_a_force_that_is_no_number_is_said_with_the_link():
     simulation = simulated(box("one", "0 0 5 0 0 0"), box("two", "0 3 5 0 0 0"))
     simulation.push("two::link", (0.0, float("nan"), 0.0))
     with pytest.raises(UnstableError, match="'two::link'"):
-        simulation.advance(NANOSECONDS)
+        simulation.advance(NANOSECONDS_PER_SECOND)
 
 
 def test_a_second_model_of_a_name_is_left_out():

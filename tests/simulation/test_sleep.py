@@ -6,7 +6,8 @@ from math import cos, pi, sin, sqrt
 
 import pytest
 
-from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+from linkwright.simulation.simulation import Simulation
 from tests.simulation.worlds import GROUND, box, simulated
 
 NO_GRAVITY = "0 0 0"
@@ -33,7 +34,7 @@ def are_asleep(simulation: Simulation) -> bool:
 def test_a_pendulum_swings_on(amplitude: float):
     simulation = simulated(swinging())
     simulation.set_joint_position("swing::joint", amplitude)
-    half = round(pi / sqrt(9.81) * NANOSECONDS)
+    half = round(pi / sqrt(9.81) * NANOSECONDS_PER_SECOND)
     simulation.advance(9 * half)
     assert simulation.joint_state("swing::joint")[0] == pytest.approx(-amplitude, rel=0.01)
 
@@ -41,7 +42,7 @@ def test_a_pendulum_swings_on(amplitude: float):
 @pytest.mark.parametrize("damping", [2.0, 40.0])
 def test_a_mass_on_a_spring_comes_to_rest_where_force_and_weight_are_equal(damping: float):
     simulation = simulated(swinging(kind="prismatic", axis="0 0 1", stiffness=100.0, damping=damping))
-    simulation.advance(15 * NANOSECONDS)
+    simulation.advance(15 * NANOSECONDS_PER_SECOND)
     assert simulation.joint_state("swing::joint")[0] == pytest.approx(-0.0981, abs=1e-5)
     assert are_asleep(simulation)
 
@@ -49,7 +50,7 @@ def test_a_mass_on_a_spring_comes_to_rest_where_force_and_weight_are_equal(dampi
 @pytest.mark.parametrize("gravity", [0.05, 0.002])
 def test_things_fall_however_little_they_weigh(gravity: float):
     simulation = simulated(box("crate", "0 0 5 0 0 0"), gravity=f"0 0 {-gravity}")
-    simulation.advance(2 * NANOSECONDS)
+    simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert 5.0 - simulation.link_pose("crate::link")[2] == pytest.approx(2 * gravity, rel=0.01)
 
 
@@ -61,34 +62,34 @@ def test_a_ball_rolls_down_a_hardly_sloping_ground():
         '<collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link></model>'
     )
     simulation = simulated(GROUND, ball, gravity=f"{9.81 * sin(slope)} 0 {-9.81 * cos(slope)}")
-    simulation.advance(4 * NANOSECONDS)
+    simulation.advance(4 * NANOSECONDS_PER_SECOND)
     assert simulation.link_velocity("ball::link")[0][0] == pytest.approx(5 / 7 * 9.81 * slope * 4, rel=0.01)
 
 
 @pytest.mark.parametrize("speed", [1.0, 1e-4])
 def test_what_floats_asleep_goes_where_it_is_set_off_to(speed: float):
     simulation = simulated(box("crate", "0 0 5 0 0 0"), gravity=NO_GRAVITY)
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     assert are_asleep(simulation)
     simulation.set_model_velocity("crate", (speed, 0.0, 0.0), (0.0, 0.0, speed))
-    simulation.advance(2 * NANOSECONDS)
+    simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert simulation.link_pose("crate::link")[0] == pytest.approx(2 * speed)
 
 
 @pytest.mark.parametrize("force", [10.0, 1e-3])
 def test_what_floats_asleep_goes_where_it_is_pushed(force: float):
     simulation = simulated(box("crate", "0 0 5 0 0 0", mass=1.0), gravity=NO_GRAVITY)
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     simulation.push("crate::link", (force, 0.0, 0.0))
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     assert simulation.link_pose("crate::link")[0] == pytest.approx(force / 2, rel=0.01)
 
 
 def test_what_sleeps_falls_when_gravity_comes():
     simulation = simulated(box("crate", "0 0 5 0 0 0"), gravity=NO_GRAVITY)
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     simulation.set_gravity((0.0, 0.0, -0.01))
-    simulation.advance(2 * NANOSECONDS)
+    simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert 5.0 - simulation.link_pose("crate::link")[2] == pytest.approx(0.02, rel=0.01)
 
 
@@ -96,10 +97,10 @@ def test_boxes_that_lie_fall_asleep_and_stay_where_they_are():
     simulation = simulated(
         GROUND, *[box(f"b{each}", f"0 0 {0.1 + 0.2 * each} 0 0 0", "0.2 0.2 0.2") for each in range(4)]
     )
-    simulation.advance(2 * NANOSECONDS)
+    simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert are_asleep(simulation)
     heights = simulation.data.qpos.copy()
-    simulation.advance(10 * NANOSECONDS)
+    simulation.advance(10 * NANOSECONDS_PER_SECOND)
     assert (simulation.data.qpos == heights).all()
 
 
@@ -107,8 +108,8 @@ def test_a_box_falls_when_what_it_lies_on_is_taken_away():
     simulation = simulated(
         GROUND, box("lower", "0 0 0.1 0 0 0", "0.2 0.2 0.2"), box("upper", "0 0 0.3 0 0 0", "0.2 0.2 0.2")
     )
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     assert are_asleep(simulation)
     simulation.delete("lower")
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     assert simulation.link_pose("upper::link")[2] == pytest.approx(0.1, abs=1e-3)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.simulation.simulation import Simulation
 from linkwright.simulation.solving import Solving
 from tests.simulation.worlds import GROUND, box, mbot, simulated
 
 ROBOTS = 9
-LOOK = 20 * NANOSECONDS // 1000
+LOOK = 20 * NANOSECONDS_PER_SECOND // 1000
 
 
 def driving(*more: str, robots: int = ROBOTS) -> Simulation:
@@ -44,11 +45,11 @@ def test_many_robots_drive_the_same_way_together(monkeypatch):
     together = driving()
     together.advance(5 * LOOK)
     assert is_together(together)
-    together.advance(NANOSECONDS)
+    together.advance(NANOSECONDS_PER_SECOND)
     with monkeypatch.context() as patch:
         patch.setattr(Solving, "_look", lambda _: None)
         alone = driving()
-        alone.advance(5 * LOOK + NANOSECONDS)
+        alone.advance(5 * LOOK + NANOSECONDS_PER_SECOND)
         assert not is_together(alone)
     assert together.model_pose("mbot8")[0] > 0.3
     np.testing.assert_allclose(together.data.qpos, alone.data.qpos, atol=1e-7)
@@ -65,11 +66,11 @@ def test_what_rests_falls_asleep_though_many_robots_drive():
     simulation = driving(*boxes)
     simulation.advance(2 * LOOK)
     assert is_together(simulation)  # the boxes have not come to rest yet
-    simulation.advance(2 * NANOSECONDS)
+    simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert not is_together(simulation)
     assert simulation.data.ntree_awake == ROBOTS
     simulation.push("box0::link", (0.0, 0.0, 20.0))
-    simulation.advance(100 * NANOSECONDS // 1000)
+    simulation.advance(100 * NANOSECONDS_PER_SECOND // 1000)
     assert simulation.link_pose("box0::link")[2] > 0.11
 
 
@@ -83,23 +84,23 @@ def test_what_slept_is_awake_when_it_is_hit_while_all_are_solved_for_together():
     simulation.advance(LOOK // 2)
     assert is_together(simulation)
     assert simulation.link_pose("wall::link")[0] == pytest.approx(1.2, abs=1e-4)
-    simulation.advance(2 * NANOSECONDS)
+    simulation.advance(2 * NANOSECONDS_PER_SECOND)
     ahead = simulation.link_pose("wall::link")[0]
     assert ahead > simulation.model_pose("mbot8")[0] > 1.2
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     assert simulation.link_pose("wall::link")[0] > ahead + 0.1
 
 
 def test_a_reset_gives_the_same_bits_again():
     simulation = driving()
-    simulation.advance(NANOSECONDS // 2)
+    simulation.advance(NANOSECONDS_PER_SECOND // 2)
     once = simulation.data.qpos.tobytes()
     simulation.reset()
     assert not is_together(simulation)
     for number in range(ROBOTS):
         assert simulation.model_pose(f"mbot{number}")[0] == pytest.approx(0.0)
     simulation.data.ctrl[:] = np.repeat(1.0 + np.arange(ROBOTS), 2)
-    simulation.advance(NANOSECONDS // 2)
+    simulation.advance(NANOSECONDS_PER_SECOND // 2)
     assert simulation.data.qpos.tobytes() == once
 
 

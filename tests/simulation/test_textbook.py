@@ -8,11 +8,12 @@ from math import atan, cos, hypot, pi, sin, sqrt
 import pytest
 
 from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.actuators import Motor
-from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.simulation.simulation import Simulation
 from tests.simulation.worlds import GROUND, box, mbot, simulated
 
-MILLISECOND = NANOSECONDS // 1000
+MILLISECOND = NANOSECONDS_PER_SECOND // 1000
 G = 9.81
 
 
@@ -67,7 +68,7 @@ def test_a_block_on_a_slope_sticks_or_slides(mu, slides):
     simulation = simulated(
         slope(angle, mu), box("block", f"0 0 {height} 0 {angle} 0", "0.1 0.1 0.1", surface=friction(2.0))
     )
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     x, _, z = simulation.model_pose("block")[:3]
     gone = hypot(x, z - height)
     if slides:
@@ -82,7 +83,7 @@ def test_a_ball_rolls_down_a_slope():
     link = part(1.0, 0.4 * radius**2, shape, friction(1.0))
     ball = f'<model name="ball"><pose>0 0 {radius / cos(angle)} 0 0 0</pose><link name="l">{link}</link></model>'
     simulation = simulated(slope(angle), ball)
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     speed = simulation.link_velocity("ball::l")[0]
     assert hypot(*speed) == pytest.approx(5 / 7 * G * sin(angle), rel=0.01)
 
@@ -95,7 +96,7 @@ def test_momentum_stays_in_a_collision():
     simulation.advance(100 * MILLISECOND)
     simulation.push("one::link", (0.0, 0.0, 0.0))
     assert simulation.link_velocity("one::link")[0][0] == pytest.approx(1.0)
-    simulation.advance(2 * NANOSECONDS)
+    simulation.advance(2 * NANOSECONDS_PER_SECOND)
     one, two = (simulation.link_velocity(f"{name}::link")[0][0] for name in ("one", "two"))
     assert two > 0.5
     assert 2.0 * one + 1.0 * two == pytest.approx(2.0, abs=1e-6)
@@ -128,9 +129,9 @@ def test_a_four_bar_linkage_stays_closed():
 
 def test_a_robot_at_rest_stays_where_it_is():
     simulation = simulated(GROUND, mbot())
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     x, y, z, *_ = simulation.model_pose("mbot")
-    simulation.advance(60 * NANOSECONDS)
+    simulation.advance(60 * NANOSECONDS_PER_SECOND)
     assert simulation.model_pose("mbot")[:3] == pytest.approx((x, y, z), abs=1e-4)
 
 
@@ -173,7 +174,7 @@ class Driver:
 )
 def test_a_robot_drives_as_its_wheels_turn(forward, turning, off, turned):
     driver = Driver(forward, turning)
-    driver.simulation.advance(10 * NANOSECONDS + 500 * MILLISECOND)
+    driver.simulation.advance(10 * NANOSECONDS_PER_SECOND + 500 * MILLISECOND)
     distance, angle = driver.errors()
     assert distance < off
     assert abs(angle) < turned

@@ -18,8 +18,7 @@ from linkwright.bag.shrinking import Packed, Shrinker, whole
 from linkwright.bag.stillness import Content, clock_between
 from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import TFMessage, deserialize
-
-_SECOND = 1_000_000_000
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _OVERHEAD = 200
 """Bytes that a message takes besides its own: its tuple, two numbers, two places in lists."""
@@ -117,7 +116,7 @@ class _Track:
     def thin(self, wanted: int) -> int:
         """Drop messages that are closer to their neighbours than their age requires; return the freed bytes."""
         kept = self.kept[self.first :]
-        now_ns = kept[-1][0] + _SECOND
+        now_ns = kept[-1][0] + NANOSECONDS_PER_SECOND
         gaps = [
             ((after[0] - before[0]) / (now_ns - each[0]), place)
             for place, (before, each, after) in enumerate(zip(kept, kept[1:], kept[2:], strict=False), 1)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.bag.lookup import McapLookup
 from linkwright.bag.rows import RowLookup
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
@@ -21,7 +22,7 @@ TRANSFORMS_NS = 2_000_000_000
 _MOST_COUNTED = 100_000
 """Messages whose times are looked up, so that they are counted in the part of the recording in which they came."""
 
-_FIRST_WINDOW_NS = 1_000_000_000
+_FIRST_WINDOW_NS = NANOSECONDS_PER_SECOND
 _WIDER = 8
 """The factor between the lengths of two looks back, in files without an index by topic."""
 

@@ -13,8 +13,8 @@ from linkwright.bag.selection import TopicSelection
 from linkwright.graph import Node, Publisher, QoSProfile
 from linkwright.graph.time.timebase import Alarm
 from linkwright.messages import Time, get_message
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_NANOSECONDS_PER_SECOND = 1_000_000_000
 _AT_ONCE = 200
 """Messages that are due are published this many at a time, so that the loop can serve others in between."""
 
@@ -80,10 +80,10 @@ class Player:
         self._logger = node.get_logger()
         self._publishers = self._make_publishers()
         self._clock = self._start_clock()
-        self._begin_ns = bag.start_ns + round(options.start_offset * _NANOSECONDS_PER_SECOND)
+        self._begin_ns = bag.start_ns + round(options.start_offset * NANOSECONDS_PER_SECOND)
         ends = [] if options.until_ns is None else [options.until_ns]
         if options.duration is not None:
-            ends.append(self._begin_ns + round(options.duration * _NANOSECONDS_PER_SECOND))
+            ends.append(self._begin_ns + round(options.duration * NANOSECONDS_PER_SECOND))
         self._end_ns = min(ends, default=None)
         self._stream: Iterator[tuple[str, int, bytes]] = iter(())
         self._next: tuple[str, int, bytes] | None = None
@@ -186,7 +186,7 @@ class Player:
 
     def _begin(self, not_before_ns: int = 0) -> None:
         self._read_from(self._begin_ns)
-        delay_ns = round(self._options.delay * _NANOSECONDS_PER_SECOND)
+        delay_ns = round(self._options.delay * NANOSECONDS_PER_SECOND)
         self._since_ns = max(not_before_ns, self._steady_ns() + delay_ns)
         self._end_or_schedule()
 

@@ -83,7 +83,7 @@ class PlayerServices:
         return response
 
     def _seek(self, request: Any, response: Any) -> Any:
-        self._player.seek(request.time.sec * 1_000_000_000 + request.time.nanosec)
+        self._player.seek(request.time.nanoseconds)
         response.success = True
         return response
 

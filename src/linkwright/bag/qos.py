@@ -17,11 +17,11 @@ from linkwright.graph import (
     QoSProfile,
     ReliabilityPolicy,
 )
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Qos
 
-_NANOSECONDS_PER_SECOND = 1_000_000_000
 _RECORDING_DEPTH = 1000
 """The depth of recording subscriptions. rosbag2 has 10, and a queue of its own behind it in C++."""
 
@@ -42,7 +42,7 @@ def to_bag(qos: QoSProfile) -> Qos:
     from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
 
     def time(duration: Duration) -> QosTime:
-        return QosTime(*divmod(duration.nanoseconds, _NANOSECONDS_PER_SECOND))
+        return QosTime(*divmod(duration.nanoseconds, NANOSECONDS_PER_SECOND))
 
     return Qos(
         QosHistory[qos.history.name],
@@ -64,7 +64,7 @@ def from_bag(qos: Qos) -> QoSProfile:
         return kind.__members__.get(value.name, kind.SYSTEM_DEFAULT)
 
     def duration(value: Any) -> Duration:
-        return Duration(nanoseconds=value.sec * _NANOSECONDS_PER_SECOND + value.nsec)
+        return Duration(nanoseconds=value.sec * NANOSECONDS_PER_SECOND + value.nsec)
 
     # Fast DDS does not announce the history depth of a publisher.
     history = policy(HistoryPolicy, qos.history)

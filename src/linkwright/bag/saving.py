@@ -12,6 +12,7 @@ from linkwright.bag.writing import BagWriter
 from linkwright.graph import QoSProfile
 from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import deserialize, get_message
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _TOLD_EVERY = 1000
 """Messages between two reports of progress."""
@@ -83,4 +84,4 @@ def in_simulated_time(messages: Sequence[Recorded]) -> list[Recorded]:
 
 def _clock_ns(data: bytes) -> int:
     clock = deserialize(data, get_message("rosgraph_msgs/msg/Clock")).clock
-    return int(clock.sec) * 1_000_000_000 + int(clock.nanosec)
+    return int(clock.sec) * NANOSECONDS_PER_SECOND + int(clock.nanosec)

@@ -9,10 +9,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+
 _TRANSFORMS = "tf2_msgs/msg/TFMessage"
 _CLOCK = "rosgraph_msgs/msg/Clock"
 _TOLD = struct.Struct("<iI")
-_SECOND = 1_000_000_000
 _SAME_PLACE = 1e-9
 """m, and the same for the numbers of a quaternion: a simulated robot at rest moves by 1e-12 in each step."""
 
@@ -66,14 +67,14 @@ def content_of(type_name: str, data: bytes) -> Content | None:
 def clock_between(earlier: bytes, later: bytes, share: float) -> bytes:
     """A message of a clock between two others, whose times passed evenly: after a share of the way, 0 to 1."""
     (first, last) = (content.clock_ns or 0 for content in map(_content_of_clock, (earlier, later)) if content)
-    return earlier[:_CAPSULE] + _TOLD.pack(*divmod(first + round(share * (last - first)), _SECOND))
+    return earlier[:_CAPSULE] + _TOLD.pack(*divmod(first + round(share * (last - first)), NANOSECONDS_PER_SECOND))
 
 
 def _content_of_clock(data: bytes) -> Content | None:
     if len(data) < _CAPSULE + _TOLD.size or data[1] != _LITTLE:
         return None
     seconds, nanoseconds = _TOLD.unpack_from(data, _CAPSULE)
-    return Content("", b"", clock_ns=seconds * _SECOND + nanoseconds)
+    return Content("", b"", clock_ns=seconds * NANOSECONDS_PER_SECOND + nanoseconds)
 
 
 @cache

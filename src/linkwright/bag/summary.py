@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from linkwright.bag.reading import BagReader, BagTopic
-
-_NANOSECONDS_PER_SECOND = 1_000_000_000
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 def summary_text(bag: BagReader, *, topic_names_only: bool = False) -> str:
@@ -54,13 +53,13 @@ def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, in
 
 
 def _moment(stamp_ns: int) -> str:
-    seconds, rest = divmod(stamp_ns, _NANOSECONDS_PER_SECOND)
+    seconds, rest = divmod(stamp_ns, NANOSECONDS_PER_SECOND)
     day = datetime.fromtimestamp(seconds).astimezone()
     return f"{day:%b} {day.day:2} {day:%Y %H:%M:%S}.{rest:09d} ({seconds}.{rest:09d})"
 
 
 def _seconds(duration_ns: int) -> str:
-    seconds, rest = divmod(duration_ns, _NANOSECONDS_PER_SECOND)
+    seconds, rest = divmod(duration_ns, NANOSECONDS_PER_SECOND)
     return f"{seconds}.{rest:09d}"
 
 

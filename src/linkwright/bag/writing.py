@@ -16,6 +16,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, fo
 from linkwright.files import unfinished
 from linkwright.messages import type_hash
 from linkwright.messages.schema_text import schema_of
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -35,7 +36,6 @@ _SMALLEST_SPLITS = {"mcap": 1024, "sqlite3": 86016}
 _REFUSALS = (OSError, sqlite3.Error)
 """The errors of a full disk."""
 
-_NANOSECONDS_PER_SECOND = 1_000_000_000
 
 _LONGEST_WRITE = 30.0
 """Seconds that `BagWriter.finish` waits for another thread to finish its write: disks may be slow."""
@@ -88,7 +88,7 @@ class BagWriter:
         self._is_file = single_file
         self._suffix = next(suffix for suffix, name in SUFFIXES.items() if name == storage)
         self._compression = compression
-        self._max_size, self._max_ns = max_size, round(max_seconds * _NANOSECONDS_PER_SECOND)
+        self._max_size, self._max_ns = max_size, round(max_seconds * NANOSECONDS_PER_SECOND)
         self._custom_data = dict(custom_data or {})
         self._latest = LatestMessages(snapshot_size) if snapshot_size else None
         self._topics: dict[str, tuple[str, str, str, list[Any]]] = {}

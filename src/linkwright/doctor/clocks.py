@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.doctor.record import Observation, StampSeen, listed, nodes_of
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_SECOND = 1_000_000_000
-_FAR_NS = 5 * _SECOND
+_FAR_NS = 5 * NANOSECONDS_PER_SECOND
 """From here on a stamp is far from now: tf2 keeps transforms for ten seconds, and displays give up before."""
 _CLOCK = "/clock"
 
@@ -40,7 +40,7 @@ def _simulated(seen: Observation) -> Iterator[Diagnostic]:
     elif on and seen.clock is not None and seen.clock.ticks > 1 and seen.clock.first_ns == seen.clock.last_ns:
         yield Diagnostic(
             "DOC603",
-            phrase("/clock stays at {last_ns:.3f} s", last_ns=seen.clock.last_ns / _SECOND),
+            phrase("/clock stays at {last_ns:.3f} s", last_ns=seen.clock.last_ns / NANOSECONDS_PER_SECOND),
             severity=Severity.WARNING,
             notes=(Note(phrase("it is published by {senders}", senders=listed(senders))),),
             hint=phrase("is the simulation paused?"),
@@ -99,14 +99,14 @@ def _stamps(seen: Observation) -> Iterator[Diagnostic]:
                 "the stamps of '{sender}' on {where} are {seconds:.1f} s behind the clock here",
                 sender=sender,
                 where=where,
-                seconds=worst.behind_ns / _SECOND,
+                seconds=worst.behind_ns / NANOSECONDS_PER_SECOND,
             )
             if worst.behind_ns > 0
             else phrase(
                 "the stamps of '{sender}' on {where} are {seconds:.1f} s ahead of the clock here",
                 sender=sender,
                 where=where,
-                seconds=-worst.behind_ns / _SECOND,
+                seconds=-worst.behind_ns / NANOSECONDS_PER_SECOND,
             ),
             severity=Severity.WARNING,
             notes=_why(sender, seen),

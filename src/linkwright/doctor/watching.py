@@ -29,6 +29,7 @@ from linkwright.graph.endpoints.drivers import Dispute, drivers_of, publishers_o
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.names.rules import join
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.wire.joining import middleware
 from linkwright.wire.unfollowed import DISCOVERY_SERVERS, MIDDLEWARE, SECURITY, ZENOH
 
@@ -65,7 +66,6 @@ _LOOK_AGAIN = 0.01
 _TRANSFORMS_WITHIN = 5.0
 """How much longer than asked for it looks, in seconds, where transforms are published and none came."""
 _LENGTH_TOLERANCE = 1e-3
-_SECOND = 1_000_000_000
 _STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
 """The stamp of a header that comes first, by the second byte of the CDR header, which tells the order of bytes."""
 _CDR_HEADER = 4
@@ -267,7 +267,7 @@ class _Watcher:
         self.descriptions[topic, sender] = DescriptionSeen(topic, sender, message.data)
 
     def _on_clock(self, message: Any) -> None:
-        now_ns = message.clock.sec * _SECOND + message.clock.nanosec
+        now_ns = message.clock.nanoseconds
         before = self.clock
         self.clock = (
             ClockSeen(1, now_ns, now_ns) if before is None else ClockSeen(before.ticks + 1, before.first_ns, now_ns)
@@ -289,7 +289,7 @@ class _Watcher:
         """Record the stamp of a message; a latched one, such as a map, may have any age."""
         if topic in self._latched and (seconds or nanoseconds):
             return
-        self._stamps[topic, sender] = (seconds * _SECOND + nanoseconds, time.time_ns())
+        self._stamps[topic, sender] = (seconds * NANOSECONDS_PER_SECOND + nanoseconds, time.time_ns())
 
     # --- what is made of it ------------------------------------------------------------------------------------------
 

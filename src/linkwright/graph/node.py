@@ -34,7 +34,7 @@ from linkwright.graph.qos.compatibility import best_available
 from linkwright.graph.qos.profile import PARAMETER_EVENTS_QOS, ROSOUT_QOS, SERVICES_QOS, QoSProfile
 from linkwright.graph.simulated_time import SimulatedTime
 from linkwright.graph.time.clock import Clock, ROSClock
-from linkwright.graph.time.values import NANOSECONDS_PER_SECOND
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from typing_extensions import Self

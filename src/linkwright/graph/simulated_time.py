@@ -10,7 +10,7 @@ from linkwright.graph.parameters.node_parameters import NodeParameters
 from linkwright.graph.parameters.parameter import SetParametersResult
 from linkwright.graph.qos.profile import CLOCK_QOS
 from linkwright.graph.time.clock import ROSClock
-from linkwright.graph.time.values import NANOSECONDS_PER_SECOND
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 PARAMETER = "use_sim_time"
 

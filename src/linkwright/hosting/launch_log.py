@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase, print_diagnostics, wants_colour
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from linkwright.graph import LogRecord
@@ -273,7 +274,7 @@ def new_log_folder(base: Path) -> Path:
     """
     while True:
         # Local time, as in ROS's names of these folders, so that a user finds the launch of this morning.
-        seconds, nanoseconds = divmod(time.time_ns(), 1_000_000_000)
+        seconds, nanoseconds = divmod(time.time_ns(), NANOSECONDS_PER_SECOND)
         stamp = f"{time.strftime('%Y-%m-%d-%H-%M-%S', time.localtime(seconds))}-{nanoseconds // 1000:06d}"
         folder = base / f"{stamp}-{socket.gethostname()}-{os.getpid()}"
         try:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.messages.message import Message
-
-NANOSECONDS_PER_SECOND = 1_000_000_000
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _Self = TypeVar("_Self", bound="_Nanoseconds")
 

@@ -28,6 +28,7 @@ from linkwright.page.protocol.recording import (
     StopRecording,
 )
 from linkwright.panels.page_feature import FeatureHost, PageFeature
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from linkwright.bag import BagWriter, Recorder
@@ -42,7 +43,6 @@ LEFT_FREE = 256_000_000
 """Bytes of the disk that recordings from pages leave free."""
 
 _MOST_FILES = 20
-_NANO = 1_000_000_000
 
 
 class RecordingFeature(PageFeature):
@@ -161,8 +161,8 @@ class RecordingFeature(PageFeature):
     def _save(self, live: LiveHistory, start: float | None, end: float | None) -> None:
         history = live.history
         self._check_room(history.size)
-        start_ns = history.start_ns if start is None else round(start * _NANO)
-        end_ns = history.end_ns if end is None else round(end * _NANO)
+        start_ns = history.start_ns if start is None else round(start * NANOSECONDS_PER_SECOND)
+        end_ns = history.end_ns if end is None else round(end * NANOSECONDS_PER_SECOND)
         path = self._free_path("last_minutes")
         self._saved = 0.0
         self._saving = self._loop.create_task(self._write(live, live.topics(), path, start_ns, end_ns))
@@ -183,7 +183,7 @@ class RecordingFeature(PageFeature):
             await asyncio.to_thread(save_messages, path, topics, messages, self._note)
         except LinkwrightError as error:
             self._refused(error.diagnostics)
-        self._add_file(path, (messages[-1][1] - messages[0][1]) / _NANO)
+        self._add_file(path, (messages[-1][1] - messages[0][1]) / NANOSECONDS_PER_SECOND)
 
     def _note(self, part: float) -> None:
         self._saved = part

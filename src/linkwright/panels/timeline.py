@@ -24,6 +24,7 @@ from linkwright.page.protocol.timeline import (
 )
 from linkwright.panels.live_history import LiveHistory
 from linkwright.panels.page_feature import FeatureHost, PageFeature
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from linkwright.bag.moments import Recorded
@@ -41,8 +42,6 @@ _KEPT_PERIOD = 1.0
 
 _CAUGHT_UP_NS = 100_000_000
 """The distance from the present, nanoseconds, at which playback of the last minutes becomes live."""
-
-_SECOND = 1_000_000_000
 
 
 class TimelineFeature(PageFeature):
@@ -80,7 +79,13 @@ class TimelineFeature(PageFeature):
         if self._live is not None:
             self._live.close()
             self._live = None
-        self._timeline = Timeline(bag.path.name, bag.start_ns / _SECOND, bag.end_ns / _SECOND, topics, live=False)
+        self._timeline = Timeline(
+            bag.path.name,
+            bag.start_ns / NANOSECONDS_PER_SECOND,
+            bag.end_ns / NANOSECONDS_PER_SECOND,
+            topics,
+            live=False,
+        )
         if findings := [*bag.findings, *untyped(bag)]:
             self._problem = in_one_line(findings)
         self._recorded = playback
@@ -138,7 +143,7 @@ class TimelineFeature(PageFeature):
             case SeekTime(position) if isfinite(position):
                 start = playback.start_ns
                 # Relative to the start, because a float of seconds since the epoch is off by a tenth of a microsecond.
-                playback.seek(start + round((position - start / _SECOND) * _SECOND))
+                playback.seek(start + round((position - start / NANOSECONDS_PER_SECOND) * NANOSECONDS_PER_SECOND))
             case StepTime(forward, topic):
                 playback.step(forward, topic)
             case SetPlayback(speed, loop) if SLOWEST <= speed <= FASTEST:
@@ -157,7 +162,7 @@ class TimelineFeature(PageFeature):
             return []
         source = self._recorded if self._live is None else self._live
         assert source is not None
-        return source.before(topics, round(seconds * _SECOND), most_bytes)
+        return source.before(topics, round(seconds * NANOSECONDS_PER_SECOND), most_bytes)
 
     def close(self) -> None:
         """Stop playing."""
@@ -208,18 +213,18 @@ class TimelineFeature(PageFeature):
                 self._timer = self._loop.call_later(_PERIOD, self._changed)
 
     def _playhead(self, playback: Playback) -> Playhead:
-        position = playback.position_ns / _SECOND
+        position = playback.position_ns / NANOSECONDS_PER_SECOND
         live = self._live is not None and self._live.live
         return Playhead(position, playback.playing, playback.speed, playback.loop, playback.seeks, self._problem, live)
 
     def _live_playhead(self, live: LiveHistory) -> Playhead:
         if live.has_playback:
             return self._playhead(live.playback)
-        return Playhead(live.span_ns[0] / _SECOND, False, 1.0, False, 0, self._problem, live=True)
+        return Playhead(live.span_ns[0] / NANOSECONDS_PER_SECOND, False, 1.0, False, 0, self._problem, live=True)
 
     def _extent(self, live: LiveHistory) -> Kept:
         start_ns, end_ns = live.span_ns
-        return Kept(start_ns / _SECOND, end_ns / _SECOND, live.size, live.most_bytes)
+        return Kept(start_ns / NANOSECONDS_PER_SECOND, end_ns / NANOSECONDS_PER_SECOND, live.size, live.most_bytes)
 
     def _publish_extent_later(self) -> None:
         if self._publish_timer is None:

@@ -12,6 +12,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import IDENTITY, Transform, compose, invert, quaternion_inverse, rotate
 from linkwright.geometry.vectors import Vector3
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import as_saved
@@ -27,8 +28,6 @@ from linkwright.simulation.scene.scene import Scene
 from linkwright.simulation.schedule import Schedule, Task
 from linkwright.simulation.sleep import Sleep
 from linkwright.simulation.solving import Solving
-
-NANOSECONDS = 1_000_000_000
 
 _BEYOND = 1e10
 """A position or velocity from this on, in m, rad, m/s or rad/s, counts as an explosion, as in MuJoCo."""
@@ -97,7 +96,7 @@ class Simulation:
     @property
     def seconds(self) -> float:
         """Simulated seconds since the start."""
-        return self.time / NANOSECONDS
+        return self.time / NANOSECONDS_PER_SECOND
 
     def spawn(self, model: Model, name: str, pose: Transform = IDENTITY) -> None:
         """Add a model to the world; all others keep their state.
@@ -136,7 +135,7 @@ class Simulation:
         before, self.world, self.finder = self.world, as_saved(world), finder
         self._meshes.look_in(finder)
         self.scene.set_physics(self.world, self._given_step or self.scene.step_of(self.world))
-        self.step = round(self.scene.step * NANOSECONDS)
+        self.step = round(self.scene.step * NANOSECONDS_PER_SECOND)
         if _outlook(before) != _outlook(self.world):
             self.set_altered()
 
@@ -503,7 +502,7 @@ class Simulation:
         if isfinite(speed_limit):
             _, speed = self.joint_state(name)
             mass = 1.0 / float(model.dof_invweight0[model.jnt_dofadr[number]])
-            needed = mass * NANOSECONDS / self.step  # for a difference of 1 rad/s (1 m/s) within a step
+            needed = mass * NANOSECONDS_PER_SECOND / self.step  # for a difference of 1 rad/s (1 m/s) within a step
             force = min(max(force, min(-(speed_limit + speed) * needed, 0.0)), max((speed_limit - speed) * needed, 0.0))
         return force
 

@@ -13,6 +13,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.time.values import ClockType, Duration, Time
 from linkwright.messages import type_hash
 from linkwright.messages.schema_text import schema_of
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.standins.recording_storage import (
     BagMetadata,
     ConverterOptions,
@@ -29,7 +30,7 @@ from linkwright.standins.recording_storage import (
 
 _Message = tuple[str, int, bytes]
 
-_STEP_NS = 1_000_000_000
+_STEP_NS = NANOSECONDS_PER_SECOND
 """The size of a block when messages are read backwards."""
 
 

@@ -18,13 +18,14 @@ from linkwright.messages import Time, get_message
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.packages import PackageFinder
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.variation import with_friction, with_mass, with_noise
 from linkwright.sdf.worlds import World
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.simulation.server.services import Services
-from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.simulation.simulation import Simulation
 from linkwright.testing.scenes import read_model, read_world
 from linkwright.testing.stepped import AsyncSteppedGraph
 from linkwright.testing.stepped_sync import SteppedGraph
@@ -80,7 +81,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             *([] if self._path is None else [self._path.parent]),
             Path(world).absolute().parent,
         ]
-        self._period = round(period * NANOSECONDS)
+        self._period = round(period * NANOSECONDS_PER_SECOND)
         self._left = 0
         self._server: SimulationServer | None = None
 
@@ -182,7 +183,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             Exception: the error of a callback; time has passed all the same.
         """
         await self.settle()
-        self._left += round(seconds * NANOSECONDS)
+        self._left += round(seconds * NANOSECONDS_PER_SECOND)
         server, simulation = self.server, self.simulation
         while self._left > 0:
             server.exchange.work()
@@ -192,7 +193,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
                 simulation.advance(passed)
                 passed = simulation.time - before
             self._left -= passed
-            await self.clock.advance(passed / NANOSECONDS, is_settled=True)
+            await self.clock.advance(passed / NANOSECONDS_PER_SECOND, is_settled=True)
             self._publish_time()
             server.exchange.deliver()
             await self.graph.settle()
@@ -209,7 +210,9 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         await self.settle()
 
     def _publish_time(self) -> None:
-        self._clock_topic.publish(get_message(_CLOCK)(clock=Time(*divmod(self.simulation.time, NANOSECONDS))))
+        self._clock_topic.publish(
+            get_message(_CLOCK)(clock=Time(*divmod(self.simulation.time, NANOSECONDS_PER_SECOND)))
+        )
 
 
 def _taking_what(

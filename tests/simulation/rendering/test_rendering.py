@@ -9,12 +9,13 @@ import pytest
 from PIL import Image
 
 from linkwright.geometry.single import IDENTITY
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.cameras import Camera, Clip, Distortion, ImageFormat, Intrinsics
 from linkwright.sdf.optics import Optics, distorted, optics_of, undistorted
 from linkwright.simulation.rendering import opengl
 from linkwright.simulation.rendering.choice import WAYS, make_renderer
 from linkwright.simulation.rendering.renderer import Wanted
-from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.simulation.simulation import Simulation
 from tests.simulation.sensors.rooms import block
 from tests.simulation.worlds import model, simulated
 
@@ -375,7 +376,7 @@ def test_what_rests_and_moves_again_is_where_it_is(make):
         for _ in range(3):
             known, new = seen()
             assert (known == new).all()
-            simulation.advance(NANOSECONDS // 5)
+            simulation.advance(NANOSECONDS_PER_SECOND // 5)
     assert np.isfinite(known).any()
     simulation.reset()
     known, new = seen()
@@ -390,4 +391,4 @@ def test_a_box_that_rests_around_a_camera_hides_nothing_from_it(make):
     for _ in range(3):
         assert renderer.render(optics, IDENTITY, Wanted.DEPTH).depth[60, 80] == pytest.approx(3.0, abs=1e-3)
         assert renderer.render(optics, beside, Wanted.DEPTH).depth[60, 80] == pytest.approx(1.97, abs=1e-3)
-        simulation.advance(NANOSECONDS // 5)
+        simulation.advance(NANOSECONDS_PER_SECOND // 5)

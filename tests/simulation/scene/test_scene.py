@@ -11,10 +11,11 @@ from PIL import Image
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.images.heights import read_heights
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.shapes import Heightmap
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
-from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.simulation.simulation import Simulation
 from tests.simulation.worlds import GROUND, box, finder, simulated, world
 
 ROOM = """solid room
@@ -63,7 +64,7 @@ def mesh_model(path, *, static: bool = True, pose: str = "0 0 0 0 0 0", scale: s
 def test_a_room_of_a_mesh_has_room_inside(room):
     simulation = simulated(GROUND, mesh_model(room), box("box", "0 0 0.1 0 0 0", "0.2 0.2 0.2"))
     simulation.push("box::link", (15.0, 0.0, 0.0))
-    simulation.advance(3 * NANOSECONDS)
+    simulation.advance(3 * NANOSECONDS_PER_SECOND)
     x, y, z, *_ = simulation.model_pose("box")
     assert 1.5 < x < 1.95
     assert abs(y) < 0.1
@@ -73,7 +74,7 @@ def test_a_room_of_a_mesh_has_room_inside(room):
 def test_a_mesh_that_moves_is_its_hull(room):
     simulation = simulated(GROUND, mesh_model(room, static=False, pose="0 0 1 0 0 0", scale="0.1 0.1 0.1"))
     assert sum(geom.type == mujoco.mjtGeom.mjGEOM_MESH for geom in simulation.scene.spec.geoms) == 2
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     assert simulation.model_pose("mesh")[2] == pytest.approx(0.0, abs=2e-3)
 
 
@@ -83,7 +84,7 @@ def test_a_mesh_that_is_not_there_is_told_once(tmp_path):
     assert found.code == "SIM112"
     assert "none.stl" in found.message
     assert found.span is not None
-    simulation.advance(NANOSECONDS // 10)
+    simulation.advance(NANOSECONDS_PER_SECOND // 10)
 
 
 def test_a_mesh_of_too_many_triangles_is_left_out(room, monkeypatch):
@@ -92,7 +93,7 @@ def test_a_mesh_of_too_many_triangles_is_left_out(room, monkeypatch):
     (found,) = simulation.scene.diagnostics
     assert found.code == "SIM115"
     assert "has 8 triangles, and at most 7 are simulated" in found.message
-    simulation.advance(NANOSECONDS // 10)
+    simulation.advance(NANOSECONDS_PER_SECOND // 10)
 
 
 def test_heights_of_an_image_bear(tmp_path):
@@ -107,7 +108,7 @@ def test_heights_of_an_image_bear(tmp_path):
         f'<model name="g"><static>true</static><link name="l"><collision name="c">{shape}</collision></link></model>'
     )
     simulation = simulated(ground, box("high", "2 0 4 0 0 0", "0.2 0.2 0.2"), box("low", "-2 0 4 0 0 0", "0.2 0.2 0.2"))
-    simulation.advance(3 * NANOSECONDS)
+    simulation.advance(3 * NANOSECONDS_PER_SECOND)
     assert simulation.model_pose("high")[2] == pytest.approx(2.6, abs=0.01)
     assert simulation.model_pose("low")[2] == pytest.approx(0.6, abs=0.01)
     assert read_heights(path).values.max() == 1.0
@@ -137,7 +138,7 @@ def test_a_polygon_is_raised():
     simulation = simulated(
         GROUND, ground, box("on", "0 -0.5 1 0 0 0", "0.1 0.1 0.1"), box("in", "0 0.6 1 0 0 0", "0.1 0.1 0.1")
     )
-    simulation.advance(2 * NANOSECONDS)
+    simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert simulation.model_pose("on")[2] == pytest.approx(0.55, abs=1e-3)
     assert simulation.model_pose("in")[2] == pytest.approx(0.05, abs=1e-3)
 
@@ -157,7 +158,7 @@ def test_mass_that_no_body_has_is_told():
     </link></model>"""
     simulation = simulated(model)
     assert [found.code for found in simulation.scene.diagnostics] == ["SIM110", "SIM111"]
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
 
 
 def moments(ixx: float, iyy: float, izz: float) -> Simulation:
@@ -193,7 +194,7 @@ def test_a_joint_follows_another():
     mimic = '<mimic joint="a"><multiplier>-2</multiplier><offset>0.5</offset><reference>0</reference></mimic>'
     simulation = simulated(arm(mimic))
     simulation.push("arm::one", (0.0, 0.0, 0.0), (0.0, 0.0, 0.1))
-    simulation.advance(2 * NANOSECONDS)
+    simulation.advance(2 * NANOSECONDS_PER_SECOND)
     leader, follower = (simulation.joint_state(f"arm::{name}")[0] for name in ("a", "b"))
     assert leader > 0.05
     assert follower == pytest.approx(0.5 - 2 * leader, abs=0.02)
@@ -206,7 +207,7 @@ def test_links_of_one_model_pass_through_each_other_unless_they_say_otherwise():
     apart = {}
     for said in ("false", "true"):
         simulation = simulated(text.format(said), gravity="0 0 0")
-        simulation.advance(NANOSECONDS)
+        simulation.advance(NANOSECONDS_PER_SECOND)
         apart[said] = simulation.link_pose("m::b")[2] - simulation.link_pose("m::a")[2]
     assert apart["false"] == pytest.approx(0.15)
     assert apart["true"] > 0.17

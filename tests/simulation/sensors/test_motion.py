@@ -7,6 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.sensors import ForceTorque
 from linkwright.sdf.worlds import SphericalCoordinates
 from linkwright.simulation.sensors.contact import ContactSensor
@@ -20,7 +21,7 @@ from linkwright.simulation.sensors.earth import (
 from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
 from linkwright.simulation.sensors.imu import ImuSensor
 from linkwright.simulation.sensors.mount import Mount
-from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.simulation.simulation import Simulation
 from tests.simulation.sensors.rooms import sensor
 from tests.simulation.worlds import GROUND, box, mbot, simulated
 
@@ -35,7 +36,7 @@ def imu(simulation: Simulation, link: str, text: str = "", *, seed: int = 0, ini
 def test_an_imu_at_rest_feels_the_reaction_to_gravity():
     simulation = simulated(GROUND, mbot(), gravity="0 0 -9.8")
     sensor = imu(simulation, "mbot::base_link")
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     measured = sensor.measure()
     assert measured.linear_acceleration == pytest.approx([0, 0, 9.8], abs=1e-3)
     assert measured.angular_velocity == pytest.approx([0, 0, 0], abs=1e-4)
@@ -44,7 +45,7 @@ def test_an_imu_at_rest_feels_the_reaction_to_gravity():
 
 def test_an_imu_that_falls_feels_nothing():
     simulation = simulated(box("box", "0 0 9 0.3 0.2 0.1"))
-    simulation.advance(NANOSECONDS // 10)
+    simulation.advance(NANOSECONDS_PER_SECOND // 10)
     assert imu(simulation, "box::link").measure().linear_acceleration == pytest.approx([0, 0, 0], abs=1e-9)
 
 
@@ -55,8 +56,8 @@ def test_an_imu_in_a_turn_feels_the_acceleration_towards_the_centre():
     for hundredth in range(1, 101):
         for motor, side in zip(motors, (-0.19, 0.19), strict=True):
             motor.target = hundredth / 100 * (forwards + turning * side) / 0.06
-        simulation.advance(NANOSECONDS // 100)
-    simulation.advance(NANOSECONDS)
+        simulation.advance(NANOSECONDS_PER_SECOND // 100)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     measured = imu(simulation, "mbot::base_link").measure()
     assert measured.angular_velocity == pytest.approx([0, 0, turning], abs=1e-3)
     assert measured.linear_acceleration == pytest.approx([0, forwards * turning, 9.81], abs=2e-3)
@@ -92,7 +93,7 @@ def test_a_bias_wanders_within_its_deviation():
     simulation = simulated(box("box", "0 0 9 0 0 0"))
     unit, seen = imu(simulation, "box::link", text), []
     for _ in range(1000):
-        simulation.advance(NANOSECONDS // 1000)
+        simulation.advance(NANOSECONDS_PER_SECOND // 1000)
         seen.append(unit.measure().angular_velocity[0])
     assert len(set(seen)) == 1000
     assert 0 < np.std(seen) < 0.5
@@ -101,7 +102,7 @@ def test_a_bias_wanders_within_its_deviation():
 def test_contacts_carry_the_weight_of_what_stands():
     simulation = simulated(GROUND, box("box", "0 0 0.5 0 0 0", mass=2.0))
     sensor = ContactSensor(Mount(simulation, "box::link"), ["collision"])
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     (contact,) = sensor.measure()
     assert (contact.collision1, contact.collision2) == ("box::link::collision", "ground::link::collision")
     assert contact.forces.sum(axis=0) == pytest.approx([0, 0, 2 * 9.81], abs=0.05)
@@ -113,7 +114,7 @@ def test_contacts_carry_the_weight_of_what_stands():
 
 def test_nothing_touches_what_flies_and_other_collisions_do_not_count():
     simulation = simulated(GROUND, box("box", "0 0 5 0 0 0"), box("low", "9 0 0.5 0 0 0"))
-    simulation.advance(NANOSECONDS // 10)
+    simulation.advance(NANOSECONDS_PER_SECOND // 10)
     assert ContactSensor(Mount(simulation, "box::link")).measure() == []
     assert ContactSensor(Mount(simulation, "low::link"), ["another"]).measure() == []
 
@@ -129,7 +130,7 @@ ARM = """
 @pytest.mark.parametrize(("direction", "sign"), [("parent_to_child", 1), ("child_to_parent", -1)])
 def test_a_joint_carries_what_hangs_on_it(direction: str, sign: int):
     simulation = simulated(ARM)
-    simulation.advance(NANOSECONDS // 100)
+    simulation.advance(NANOSECONDS_PER_SECOND // 100)
     said = ForceTorque(measure_direction=direction)
     force, torque = ForceTorqueSensor(simulation, "arm::wrist", said, CHANCE).measure()
     assert sign * force == pytest.approx([0, 0, 2 * 9.81], abs=1e-6)
@@ -156,7 +157,7 @@ def test_a_world_may_be_turned_on_the_earth():
 
 def test_a_receiver_tells_how_fast_it_goes():
     simulation = simulated(box("box", "0 0 500 0 0 0"))
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     fix = NavsatSensor(Mount(simulation, "box::link"), None, SphericalCoordinates(elevation=100.0), CHANCE).measure()
     assert fix.altitude == pytest.approx(600 - 9.81 / 2, abs=0.01)
     assert fix.velocity == pytest.approx([0, 0, -9.81], abs=1e-6)
@@ -170,7 +171,7 @@ def test_the_pressure_of_the_air_is_that_of_the_standard_atmosphere(altitude: fl
 def test_an_altimeter_counts_from_where_it_began():
     simulation = simulated(box("box", "0 0 500 0 0 0"))
     altimeter = AltimeterSensor(Mount(simulation, "box::link"), None, CHANCE)
-    simulation.advance(NANOSECONDS)
+    simulation.advance(NANOSECONDS_PER_SECOND)
     assert altimeter.measure() == pytest.approx((-9.81 / 2, -9.81), abs=0.01)
 
 

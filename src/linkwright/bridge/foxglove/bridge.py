@@ -155,7 +155,7 @@ class FoxgloveBridge(SingleNode):
                 session.client.send({"op": "parameterValues", "parameters": wanted})
 
     def _ticked(self, message: Any) -> None:
-        frame = time_frame(message.clock.sec * 1_000_000_000 + message.clock.nanosec)
+        frame = time_frame(message.clock.nanoseconds)
         for session in self._sessions:
             session.client.send_data(frame)
 

@@ -16,6 +16,7 @@ from linkwright.cli.qos import add_subscription_qos_arguments, fitting_profile
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.cli.topic.filters import compile_filter
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -26,7 +27,6 @@ _DELAY_WINDOW = 10_000
 _STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
 """Seconds and nanoseconds, by the second byte of the CDR header, which is the byte order."""
 _CDR_HEADER = 4
-_SECOND = 1_000_000_000
 _SIZE_WINDOW = 100
 _PERIOD = 1.0
 
@@ -115,7 +115,7 @@ def run_delay(arguments: argparse.Namespace) -> int:
                 seconds, nanoseconds = _STAMP[message[1] & 1].unpack_from(message, _CDR_HEADER)
             else:
                 seconds, nanoseconds = message.header.stamp.sec, message.header.stamp.nanosec
-            window.add(clock.now_ns(), seconds * _SECOND + nanoseconds)
+            window.add(clock.now_ns(), seconds * NANOSECONDS_PER_SECOND + nanoseconds)
 
         _subscribe(session, arguments, kind, name, count, raw=raw)
         return await _report_until_finished(session, window.text)

@@ -8,8 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 from linkwright.graph.introspection.traffic import TrafficWindow
-
-_SECOND = 1_000_000_000
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,13 +40,13 @@ class Spread:
     @property
     def rate(self) -> float:
         """Return the rate in hertz, taking the durations as times between messages."""
-        return _SECOND / self.mean if self.mean > 0 else 0.0
+        return NANOSECONDS_PER_SECOND / self.mean if self.mean > 0 else 0.0
 
     def bounds(self) -> str:
         """Return the second line of ``topic hz`` and ``topic delay``."""
         return (
-            f"\tmin: {self.least / _SECOND:.3f}s max: {self.most / _SECOND:.3f}s "
-            f"std dev: {self.deviation / _SECOND:.5f}s window: {self.count}"
+            f"\tmin: {self.least / NANOSECONDS_PER_SECOND:.3f}s max: {self.most / NANOSECONDS_PER_SECOND:.3f}s "
+            f"std dev: {self.deviation / NANOSECONDS_PER_SECOND:.5f}s window: {self.count}"
         )
 
 
@@ -109,7 +108,7 @@ class DelayWindow:
             return "no new messages"
         self._new = False
         spread = Spread.of(self._delays)
-        return f"average delay: {spread.mean / _SECOND:.3f}\n{spread.bounds()}"
+        return f"average delay: {spread.mean / NANOSECONDS_PER_SECOND:.3f}\n{spread.bounds()}"
 
 
 class BandwidthWindow(TrafficWindow):
@@ -149,9 +148,9 @@ def rate_table(spreads: Mapping[str, Spread]) -> str:
         (
             topic,
             f"{spread.rate:.3f}",
-            f"{spread.least / _SECOND:.3f}",
-            f"{spread.most / _SECOND:.3f}",
-            f"{spread.deviation / _SECOND:.5f}",
+            f"{spread.least / NANOSECONDS_PER_SECOND:.3f}",
+            f"{spread.most / NANOSECONDS_PER_SECOND:.3f}",
+            f"{spread.deviation / NANOSECONDS_PER_SECOND:.5f}",
             str(spread.count),
         )
         for topic, spread in spreads.items()

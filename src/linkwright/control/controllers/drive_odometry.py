@@ -10,8 +10,8 @@ from linkwright.control.motion.odometer import Odometer
 from linkwright.control.odometry import OdometryTopics, Variances, transforms_topic
 from linkwright.diagnostics import phrase
 from linkwright.messages import Time
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_NANOSECONDS = 1_000_000_000
 _AXES = 6
 
 
@@ -85,7 +85,7 @@ class DriveOdometry:
         self._topics = OdometryTopics(frame, child, output, None, of_pose, of_velocity)
         self._transforms = OdometryTopics(frame, child, None, tf_output if publishes_transforms else None)
         self._nowhere = None if publishes_pose else Odometer().place.transform
-        self._period = round(_NANOSECONDS / rate) if rate > 0.0 else 0
+        self._period = round(NANOSECONDS_PER_SECOND / rate) if rate > 0.0 else 0
         self._published_ns: int | None = None
 
     def publish(self, time_ns: int) -> None:
@@ -95,7 +95,7 @@ class DriveOdometry:
         wanted = self._topics.is_wanted
         if not wanted and not self._transforms.is_wanted:
             return
-        stamp, pose = Time(*divmod(time_ns, _NANOSECONDS)), self.odometer.place.transform
+        stamp, pose = Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), self.odometer.place.transform
         if wanted:
             self._topics.publish(stamp, self._nowhere or pose, *self.odometer.velocity)
         self._transforms.publish(stamp, pose, 0.0, 0.0, 0.0)

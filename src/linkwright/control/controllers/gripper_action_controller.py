@@ -22,8 +22,7 @@ from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
 from linkwright.control.motion.pid import Pid
 from linkwright.diagnostics import phrase
 from linkwright.messages import JointState, get_action
-
-_SECOND = 1_000_000_000
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,12 +109,12 @@ class Gripper(Controller[P]):
         if goal is None:
             return
         if time_ns >= self._next_feedback_ns:
-            self._next_feedback_ns = time_ns + round(_SECOND / self.parameters.action_monitor_rate)
+            self._next_feedback_ns = time_ns + round(NANOSECONDS_PER_SECOND / self.parameters.action_monitor_rate)
             goal.feedback(self._report(self._feedback(), position, velocity, effort))
         if abs(velocity) > self.parameters.stall_velocity_threshold:
             self._moved_ns = time_ns
         reached = abs(self._wanted - position) < self.parameters.goal_tolerance
-        stalled = not reached and time_ns - self._moved_ns > self.parameters.stall_timeout * _SECOND
+        stalled = not reached and time_ns - self._moved_ns > self.parameters.stall_timeout * NANOSECONDS_PER_SECOND
         if not reached and not stalled:
             return
         result = self._report(self._result(), position, velocity, effort)

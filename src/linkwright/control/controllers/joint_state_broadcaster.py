@@ -14,8 +14,7 @@ from linkwright.control.controllers.controller import Controller, InterfaceNames
 from linkwright.control.controllers.parameters import parameter
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY, Interfaces, StateInterface
 from linkwright.messages import Header, JointState, Time, get_message
-
-_NANOSECONDS = 1_000_000_000
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +93,7 @@ class JointStateBroadcaster(Controller[Parameters]):
         return set(self.robot.joints) if self.robot is not None else None
 
     def _header(self, time_ns: int) -> Header:
-        return Header(stamp=Time(*divmod(time_ns, _NANOSECONDS)), frame_id=self.parameters.frame_id)
+        return Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), frame_id=self.parameters.frame_id)
 
     def _joint_states(self, header: Header) -> JointState:
         position, velocity, effort = (_values(column) if fixed is None else fixed[:] for column, fixed in self._columns)

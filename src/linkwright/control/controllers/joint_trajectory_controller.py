@@ -34,8 +34,8 @@ from linkwright.control.motion.tolerances import StateTolerance
 from linkwright.control.motion.trajectory import Sample, Trajectory, TrajectoryPoint, shortest_turn
 from linkwright.diagnostics import phrase
 from linkwright.messages import Header, Time, get_action, get_message
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_SECOND = 1_000_000_000
 _ACTION = "control_msgs/action/FollowJointTrajectory"
 
 
@@ -68,7 +68,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._wrapped = [self._turns(joint) for joint in parameters.joints]
         self._has_pid = parameters.has_pid
         self._tune(parameters)
-        self._period_ns = round(_SECOND / self.update_rate)
+        self._period_ns = round(NANOSECONDS_PER_SECOND / self.update_rate)
         state_type = "control_msgs/msg/JointTrajectoryControllerState"
         self._point = get_message("trajectory_msgs/msg/JointTrajectoryPoint")
         self._state_message = get_message(state_type)
@@ -289,7 +289,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._publish(time_ns, desired.state)
 
     def _judge(self, time_ns: int, period_s: float, desired: MotionState, following: Sample, *, first: bool) -> None:
-        tolerances, late_s = self._tolerances, (time_ns - following.point_ns) / _SECOND
+        tolerances, late_s = self._tolerances, (time_ns - following.point_ns) / NANOSECONDS_PER_SECOND
         strayed = missed = False
         if not self._is_held:
             strayed = (first or not following.ended) and not self._holds(tolerances.path)
@@ -385,10 +385,10 @@ class JointTrajectoryController(Controller[Parameters]):
     def _publish_feedback(self, goal: Goal, time_ns: int, desired: MotionState) -> None:
         if time_ns < self._next_feedback_ns:
             return
-        self._next_feedback_ns = time_ns + round(_SECOND / self.parameters.action_monitor_rate)
+        self._next_feedback_ns = time_ns + round(NANOSECONDS_PER_SECOND / self.parameters.action_monitor_rate)
         goal.feedback(
             self._feedback(
-                header=Header(stamp=Time(*divmod(time_ns, _SECOND))),
+                header=Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND))),
                 joint_names=list(self.parameters.joints),
                 desired=self._message(desired),
                 actual=self._message(self._current),
@@ -400,14 +400,14 @@ class JointTrajectoryController(Controller[Parameters]):
         rate = self.parameters.state_publish_rate
         if rate and time_ns < self._next_state_ns:
             return
-        self._next_state_ns = time_ns + (round(_SECOND / rate) if rate else 0)
+        self._next_state_ns = time_ns + (round(NANOSECONDS_PER_SECOND / rate) if rate else 0)
         outputs = [output for output in self._outputs if output.is_wanted]
         if not outputs:
             return
         reference, feedback = self._message(desired), self._message(self._current)
         commands = {kind: [interface.value for interface in given] for kind, given in self._command.items()}
         message = self._state_message(
-            header=Header(stamp=Time(*divmod(time_ns, _SECOND))),
+            header=Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND))),
             joint_names=list(self.parameters.joints),
             reference=reference,
             feedback=feedback,

@@ -14,15 +14,15 @@ from linkwright.control.controllers.joint_trajectory_parameters import Parameter
 from linkwright.control.motion.splines import MotionState
 from linkwright.control.motion.tolerances import Tolerances, resolved
 from linkwright.control.motion.trajectory import Trajectory, TrajectoryPoint
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_SECOND = 1_000_000_000
 _STANDING = 1.1920929e-07
 """The greatest velocity that counts as none, in rad/s or m/s: the distance of 1 to the next number of 32 bits."""
 
 
 def nanoseconds(time: Any) -> int:
     """A time or duration message in nanoseconds."""
-    return int(time.sec) * _SECOND + int(time.nanosec)
+    return int(time.sec) * NANOSECONDS_PER_SECOND + int(time.nanosec)
 
 
 def objection(message: Any, parameters: Parameters, now_ns: int) -> str | None:
@@ -44,8 +44,8 @@ def objection(message: Any, parameters: Parameters, now_ns: int) -> str | None:
     end = start + nanoseconds(last.time_from_start)
     if start and end < now_ns:
         return (
-            f"Received trajectory with non-zero start time ({start / _SECOND:f}) that ends in the past "
-            f"({end / _SECOND:f})"
+            f"Received trajectory with non-zero start time ({start / NANOSECONDS_PER_SECOND:f}) that ends in the past "
+            f"({end / NANOSECONDS_PER_SECOND:f})"
         )
     for number, name in enumerate(names):
         if name not in parameters.joints:
@@ -66,7 +66,7 @@ def _objection_to_points(points: Sequence[Any], count: int, *, integrated: bool)
         if number and time <= before:
             return (
                 f"Time between points {number - 1} and {number} is not strictly increasing, "
-                f"it is {before / _SECOND:f} and {time / _SECOND:f} respectively"
+                f"it is {before / NANOSECONDS_PER_SECOND:f} and {time / NANOSECONDS_PER_SECOND:f} respectively"
             )
         before = time
         lists = {each: getattr(point, each) for each in ("positions", "velocities", "accelerations")}
@@ -140,7 +140,7 @@ def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, tell: C
             change = tolerances.with_path if field == "path_tolerance" else tolerances.with_goal
             tolerances = change(index, changed)
     try:
-        time = resolved(tolerances.goal_time_s, nanoseconds(goal.goal_time_tolerance) / _SECOND)
+        time = resolved(tolerances.goal_time_s, nanoseconds(goal.goal_time_tolerance) / NANOSECONDS_PER_SECOND)
     except ValueError:
         tell("goal.goal_time_tolerance is negative and not -1. Using default tolerances.")
         return default

@@ -17,8 +17,8 @@ from linkwright.control.controllers.parameters import HUMBLE, parameter
 from linkwright.control.controllers.speed_limits import NO_LIMITS, SpeedLimits
 from linkwright.control.controllers.velocity_input import VelocityInput
 from linkwright.messages import Header, Time, Vector3, get_message
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_NANOSECONDS = 1_000_000_000
 _NONE = (0.0,) * 6
 
 
@@ -120,5 +120,5 @@ class LimitedDrive(Controller[P], Generic[P]):
         self._odometry.publish(time_ns)
         if self._limited is not None and self._limited.is_wanted:
             twist = get_message("geometry_msgs/msg/Twist")(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, angular))
-            header = Header(Time(*divmod(time_ns, _NANOSECONDS)), "")
+            header = Header(Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), "")
             self._limited.publish(get_message("geometry_msgs/msg/TwistStamped")(header, twist))

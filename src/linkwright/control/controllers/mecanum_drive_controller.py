@@ -19,8 +19,8 @@ from linkwright.control.controllers.velocity_input import REFERENCE_QOS, Velocit
 from linkwright.control.hardware.interfaces import VELOCITY
 from linkwright.kinematics.drives import MecanumDrive
 from linkwright.messages import Header, Time, Vector3, get_message
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_NANOSECONDS = 1_000_000_000
 _DIAGONAL = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
 
 
@@ -190,7 +190,7 @@ class MecanumDriveController(Controller[Parameters]):
     def _publish_state(self, time_ns: int, measured: list[float], wanted: list[float]) -> None:
         front_left, front_right, rear_right, rear_left = measured
         state = get_message("control_msgs/msg/MecanumDriveControllerState")(
-            header=Header(Time(*divmod(time_ns, _NANOSECONDS)), self._frame),
+            header=Header(Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), self._frame),
             front_left_wheel_velocity=front_left,
             front_right_wheel_velocity=front_right,
             back_right_wheel_velocity=rear_right,

@@ -19,8 +19,8 @@ from linkwright.control.motion.trajectory import shortest_turn
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.graph.qos.profile import QoSProfile, ReliabilityPolicy
 from linkwright.messages import Header, Time, get_message
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_SECOND = 1_000_000_000
 _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
@@ -216,4 +216,4 @@ class PidController(Controller[Parameters]):
                     output=self.commands[number].value,
                 )
             )
-        self._output.publish(message(Header(stamp=Time(*divmod(time_ns, _SECOND))), states))
+        self._output.publish(message(Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND))), states))

@@ -16,8 +16,7 @@ from linkwright.control.controllers.parameters import parameter
 from linkwright.control.hardware.interfaces import Interfaces, StateInterface
 from linkwright.control.motion.splines import MotionState
 from linkwright.control.motion.trajectory import Trajectory
-
-_SECOND = 1_000_000_000
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +58,7 @@ class ScaledJointTrajectoryController(JointTrajectoryController):
     def update(self, time_ns: int, period_s: float) -> None:
         """Command the point that is due at the scaled time, which starts with the trajectory."""
         if self._factor is not None and isfinite(self._factor.value):
-            self._behind_ns += round((1.0 - max(self._factor.value, 0.0)) * period_s * _SECOND)
+            self._behind_ns += round((1.0 - max(self._factor.value, 0.0)) * period_s * NANOSECONDS_PER_SECOND)
         super().update(time_ns - self._behind_ns, period_s)
 
     def _follow(self, trajectory: Trajectory) -> None:

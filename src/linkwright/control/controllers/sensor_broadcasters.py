@@ -16,8 +16,8 @@ from linkwright.control.controllers.controller import Controller, ControllerErro
 from linkwright.control.controllers.parameters import at_least, not_empty, parameter
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.messages import Header, Quaternion, Time, Transform, TransformStamped, Vector3, get_message
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_SECOND = 1_000_000_000
 _UNKNOWN = (0.0,) * 9
 
 
@@ -178,7 +178,7 @@ class SensorBroadcaster(Controller[P]):
     def header(self, time_ns: int) -> Header:
         """The time, and the frame of the parameters."""
         frame: str = self.parameters.frame_id  # type: ignore[attr-defined]  # all of them have one
-        return Header(stamp=Time(*divmod(time_ns, _SECOND)), frame_id=frame)
+        return Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), frame_id=frame)
 
 
 def _six(wrench: WrenchNames | Offset | Multiplier) -> list[Any]:
@@ -327,7 +327,7 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
         if not self._transforms.is_wanted or not all(map(isfinite, values)):
             return
         rate = self.parameters.tf.publish_rate
-        self._next_transform_ns = time_ns + (round(_SECOND / rate) if rate else 0)
+        self._next_transform_ns = time_ns + (round(NANOSECONDS_PER_SECOND / rate) if rate else 0)
         transform = Transform(_vector(values), Quaternion(*values[3:]))
         stamped = TransformStamped(self.header(time_ns), self._child, transform)
         self._transforms.publish(get_message("tf2_msgs/msg/TFMessage")([stamped]))

@@ -22,8 +22,8 @@ from linkwright.control.hardware.interfaces import POSITION, VELOCITY
 from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import CarDrive
 from linkwright.messages import Header, Time, get_message
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_NANOSECONDS = 1_000_000_000
 _DIAGONAL = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
 _NEAR, _FAR = pi / 6.0, 1.5608
 """The steering errors in rad above which wheels slow down, and above which they do not slow down further."""
@@ -254,7 +254,7 @@ class SteeringController(Controller[P], Generic[P]):
         wheels: list[float] = states[:driving]
         by_position = self._settings.position_feedback
         status = get_message("control_msgs/msg/SteeringControllerStatus")(
-            header=Header(Time(*divmod(time_ns, _NANOSECONDS)), self._settings.odom_frame_id),
+            header=Header(Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), self._settings.odom_frame_id),
             traction_wheels_position=wheels if by_position else [],
             traction_wheels_velocity=[] if by_position else wheels,
             steer_positions=states[driving:],

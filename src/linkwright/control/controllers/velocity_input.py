@@ -9,8 +9,7 @@ from linkwright.control.controllers.node import ControllerNode
 from linkwright.control.motion.odometer import Velocity
 from linkwright.diagnostics import phrase
 from linkwright.graph import QoSProfile, ReliabilityPolicy
-
-_NANOSECONDS = 1_000_000_000
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 """The profile of controllers' subscriptions to ``~/reference``."""
@@ -38,7 +37,7 @@ class VelocityInput:
         self, node: ControllerNode, topic: str, *, timeout_s: float, unstamped: str = "", qos: QoSProfile | int = 10
     ) -> None:
         self._logger = node.logger
-        self._timeout = round(timeout_s * _NANOSECONDS)
+        self._timeout = round(timeout_s * NANOSECONDS_PER_SECOND)
         self._is_open = False
         self.forget()
         commander = node.commander(self._lose)
@@ -83,7 +82,7 @@ class VelocityInput:
 
     def _receive_stamped(self, message: Any) -> None:
         stamp = message.header.stamp
-        nanoseconds = stamp.sec * _NANOSECONDS + stamp.nanosec
+        nanoseconds = stamp.sec * NANOSECONDS_PER_SECOND + stamp.nanosec
         if not nanoseconds and self._is_open:
             self._logger.warning(
                 phrase(
@@ -112,8 +111,8 @@ class VelocityInput:
                 phrase(
                     "Ignoring the received message (timestamp {stamp:.3f}) because it is older than the current time "
                     "by {age:.3f} seconds, which exceeds the allowed timeout ({timeout:.3f})",
-                    stamp=stamp / _NANOSECONDS,
-                    age=(now - since) / _NANOSECONDS,
-                    timeout=self._timeout / _NANOSECONDS,
+                    stamp=stamp / NANOSECONDS_PER_SECOND,
+                    age=(now - since) / NANOSECONDS_PER_SECOND,
+                    timeout=self._timeout / NANOSECONDS_PER_SECOND,
                 )
             )

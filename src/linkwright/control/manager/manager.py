@@ -26,8 +26,7 @@ from linkwright.graph import Node, Parameter
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
 from linkwright.graph.stepped.exchange import Exchange
 from linkwright.messages.distribution import is_before_iron
-
-_NANOSECONDS = 1_000_000_000
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,7 +235,7 @@ class ControllerManager:
 
     def _set_rate(self, loaded: Loaded) -> None:
         rate, mine = loaded.controller.update_rate, self.update_rate
-        loaded.period_ns = 0 if rate >= mine or rate <= 0 else round(_NANOSECONDS / rate)
+        loaded.period_ns = 0 if rate >= mine or rate <= 0 else round(NANOSECONDS_PER_SECOND / rate)
         if rate > mine:
             self._logger.warning(
                 f"The controller : {loaded.name} update rate : {rate:g} Hz should be less than or equal to controller "
@@ -439,7 +438,7 @@ class ControllerManager:
             if loaded.period_ns:
                 if time_ns < loaded.next_ns:
                     continue
-                step_s = loaded.period_ns / _NANOSECONDS
+                step_s = loaded.period_ns / NANOSECONDS_PER_SECOND
                 loaded.next_ns = max(loaded.next_ns or time_ns, time_ns - loaded.period_ns) + loaded.period_ns
             else:
                 step_s = period_s

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from math import pi, tau
 
 from linkwright.control.motion.splines import MotionState, Segment
-
-_SECOND = 1_000_000_000
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 @dataclass(slots=True)
@@ -77,7 +76,7 @@ class Trajectory:
         due_ns, state = time_ns, before
         for point in self.points:
             next_ns = self._start_ns + point.time_ns
-            point.state = _deduced(state, point.state, max(next_ns - due_ns, 0) / _SECOND)
+            point.state = _deduced(state, point.state, max(next_ns - due_ns, 0) / NANOSECONDS_PER_SECOND)
             due_ns, state = next_ns, point.state
         for joint, turns in enumerate(wrapped):
             if turns:
@@ -121,9 +120,9 @@ class Trajectory:
         begin_ns, end_ns = self._starts[index], self._starts[index + 1]
         if segment is None:
             start = self.points[index - 1].state if index else self._before
-            segment = Segment(start, self.points[index].state, (end_ns - begin_ns) / _SECOND)
+            segment = Segment(start, self.points[index].state, (end_ns - begin_ns) / NANOSECONDS_PER_SECOND)
             self._segments[index] = segment
-        return segment.at((time_ns - begin_ns) / _SECOND)
+        return segment.at((time_ns - begin_ns) / NANOSECONDS_PER_SECOND)
 
 
 def shortest_turn(start: float, end: float) -> float:

@@ -15,6 +15,7 @@ from linkwright.graph import Node, Parameter
 from linkwright.messages import get_message, get_service
 from linkwright.nodes.answers import answered, is_served
 from linkwright.nodes.options import SingleNode
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _LOOK_AGAIN = 10.0
 """Seconds between two log lines about a service that is not available."""
@@ -58,7 +59,7 @@ class ManagerClient:
 
     async def switch(self, activate: Sequence[str], deactivate: Sequence[str], timeout: float, *, asap: bool) -> Any:
         """Switch controllers, strictly."""
-        duration = get_message("builtin_interfaces/msg/Duration")(*divmod(round(timeout * 1e9), 1_000_000_000))
+        duration = get_message("builtin_interfaces/msg/Duration")(*divmod(round(timeout * 1e9), NANOSECONDS_PER_SECOND))
         return await self.ask(
             "switch_controller",
             activate_controllers=list(activate),

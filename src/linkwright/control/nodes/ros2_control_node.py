@@ -25,8 +25,8 @@ from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import String
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_NANOSECONDS = 1_000_000_000
 _DEFAULT_RATE = 100
 _SIMULATED = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem")
 """Hardware of gazebo_ros2_control, gz_ros2_control and their forks, which only runs in a simulator."""
@@ -134,7 +134,7 @@ class Ros2ControlNode(SingleNode):
         services = ManagerServices(manager, node)
         self._node.create_timer(1.0, services.publish_diagnostics)
         self._clock = self._node.get_clock()
-        self._period_ns = round(_NANOSECONDS / manager.update_rate)
+        self._period_ns = round(NANOSECONDS_PER_SECOND / manager.update_rate)
         self._was_simulated = self._clock.ros_time_is_active
         self._took_ns = 0
         self._last_ns = self._clock.timer_ns()
@@ -155,7 +155,7 @@ class Ros2ControlNode(SingleNode):
         if simulated is not self._was_simulated or period_ns < 0:  # the time is another one
             self._was_simulated, period_ns = simulated, self._period_ns
         self._last_ns = timer_ns
-        self._manager.cycle(clock.now_ns(), period_ns / _NANOSECONDS)
+        self._manager.cycle(clock.now_ns(), period_ns / NANOSECONDS_PER_SECOND)
         self._took_ns = clock.timer_ns() - timer_ns
 
     def _missed(self, count: int) -> None:

@@ -25,7 +25,8 @@ from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.loop.timer import Timer
 from linkwright.graph.node import Node
 from linkwright.graph.qos.profile import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICES_QOS, QoSProfile
-from linkwright.graph.time.values import NANOSECONDS_PER_SECOND, Time
+from linkwright.graph.time.values import Time
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 ERROR_NONE, ERROR_REJECTED, ERROR_UNKNOWN_GOAL_ID, ERROR_GOAL_TERMINATED = range(4)
 """The return codes of a cancel request (action_msgs/srv/CancelGoal)."""

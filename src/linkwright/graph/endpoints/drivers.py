@@ -11,12 +11,12 @@ from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageI
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.time.clock import Clock
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _GAP_S = 2.5
 """A dispute is over after this long without a takeover: of two that send once a second each takes over twice in it."""
 _QUIET_S = 10.0
 """A dispute of the same parties is reported again after this long without one."""
-_NANOSECONDS = 1e9
 
 
 class Dispute:
@@ -122,7 +122,7 @@ class DriverWatch:
     def hear(self, message: Any, info: MessageInfo) -> None:
         """Note a message; of a message with a header the twist counts."""
         command = getattr(message, "twist", message)
-        if self._dispute.hear(info.publisher_gid, command, self._now_ns() / _NANOSECONDS):
+        if self._dispute.hear(info.publisher_gid, command, self._now_ns() / NANOSECONDS_PER_SECOND):
             self._warn()
 
     def _warn(self) -> None:

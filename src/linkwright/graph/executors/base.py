@@ -24,6 +24,7 @@ from linkwright.graph.loop.entity import Entity
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.loop.self_waits import report_self_wait
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-_NANOSECONDS_PER_SECOND = 1_000_000_000
 _POSTPONED_AT_MOST = 2
 
 
@@ -57,7 +57,7 @@ def deadline_after(timeout_sec: float | None) -> int | None:
     """The count of ``time.monotonic_ns`` at which a timeout in seconds is over; None and negative numbers have none."""
     if timeout_sec is None or timeout_sec < 0:
         return None
-    return time.monotonic_ns() + int(timeout_sec * _NANOSECONDS_PER_SECOND)
+    return time.monotonic_ns() + int(timeout_sec * NANOSECONDS_PER_SECOND)
 
 
 class Executor:
@@ -171,7 +171,7 @@ class Executor:
             if deadline_ns is None:
                 self.spin_once_until_future_complete(future)
                 continue
-            left_sec = max(deadline_ns - time.monotonic_ns(), 0) / _NANOSECONDS_PER_SECOND
+            left_sec = max(deadline_ns - time.monotonic_ns(), 0) / NANOSECONDS_PER_SECOND
             self.spin_once_until_future_complete(future, left_sec)
             if time.monotonic_ns() >= deadline_ns:
                 return
@@ -397,7 +397,7 @@ class Executor:
         with self._spinners_changed:
             while any(spinner != own for spinner in self._spinners):
                 self._work.wake()
-                left = None if deadline_ns is None else (deadline_ns - time.monotonic_ns()) / _NANOSECONDS_PER_SECOND
+                left = None if deadline_ns is None else (deadline_ns - time.monotonic_ns()) / NANOSECONDS_PER_SECOND
                 if left is not None and left <= 0:
                     return False
                 self._spinners_changed.wait(left)

@@ -18,9 +18,8 @@ from linkwright.graph.faults import (
     ShutdownException,
     TimeoutException,
 )
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.process.processors import usable_processors
-
-_NANOSECONDS_PER_SECOND = 1_000_000_000
 
 
 class MultiThreadedExecutor(SpinningExecutor):
@@ -72,7 +71,7 @@ class MultiThreadedExecutor(SpinningExecutor):
         if not wait_for_threads:
             self._workers.close(0.0)
             return ended
-        left = None if deadline_ns is None else max(deadline_ns - time.monotonic_ns(), 0) / _NANOSECONDS_PER_SECOND
+        left = None if deadline_ns is None else max(deadline_ns - time.monotonic_ns(), 0) / NANOSECONDS_PER_SECOND
         return self._workers.close(left) and ended
 
     def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:

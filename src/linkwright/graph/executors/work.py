@@ -11,10 +11,11 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+
 _LONGEST_WAIT_S = 0.1 if os.name == "nt" else 3600.0
 """Where a signal does not end a wait by itself (Windows), the wait is cut into pieces."""
 
-_NANOSECONDS_PER_SECOND = 1_000_000_000
 _MANY_CANCELLED = 64
 
 
@@ -147,7 +148,7 @@ class WorkQueue:
                 deadline_ns = self._first_of_alarm_and(deadline_ns)
             seconds = _LONGEST_WAIT_S
             if deadline_ns is not None:
-                seconds = min((deadline_ns - time.monotonic_ns()) / _NANOSECONDS_PER_SECOND, seconds)
+                seconds = min((deadline_ns - time.monotonic_ns()) / NANOSECONDS_PER_SECOND, seconds)
             if seconds > 0:
                 sleeper.acquire(timeout=seconds)
         finally:

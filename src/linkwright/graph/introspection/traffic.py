@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 
-_SECOND = 1_000_000_000
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +70,8 @@ class TrafficWindow:
         silent = now_ns - last > 2 * (last - first) / intervals or last == first
         span = (now_ns if silent else last) - first
         return Traffic(
-            messages_per_second=intervals * _SECOND / span,
-            bytes_per_second=sum(sizes) * _SECOND / (now_ns - first),
+            messages_per_second=intervals * NANOSECONDS_PER_SECOND / span,
+            bytes_per_second=sum(sizes) * NANOSECONDS_PER_SECOND / (now_ns - first),
             mean_size=sum(sizes) / len(sizes),
             least_size=min(sizes),
             most_size=max(sizes),

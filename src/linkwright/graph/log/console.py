@@ -17,10 +17,10 @@ from typing import TextIO
 
 from linkwright.graph.log.levels import LogLevel
 from linkwright.graph.log.record import LogRecord
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
 
-_NANOSECONDS_PER_SECOND = 1_000_000_000
 _MAX_FORMAT_LENGTH = 2047
 _TOKEN = re.compile(r"\{(\w+)\}")
 _ESCAPES = {"a": "\a", "b": "\b", "n": "\n", "r": "\r", "t": "\t", "x1b": "\x1b"}
@@ -54,12 +54,12 @@ def _fixed(text: str) -> Part:
 
 
 def _seconds(record: LogRecord) -> str:
-    seconds, nanoseconds = divmod(record.stamp_ns, _NANOSECONDS_PER_SECOND)
+    seconds, nanoseconds = divmod(record.stamp_ns, NANOSECONDS_PER_SECOND)
     return f"{seconds}.{nanoseconds:09d}"
 
 
 def _date_time(record: LogRecord) -> str:
-    seconds, nanoseconds = divmod(record.stamp_ns, _NANOSECONDS_PER_SECOND)
+    seconds, nanoseconds = divmod(record.stamp_ns, NANOSECONDS_PER_SECOND)
     moment = datetime.fromtimestamp(seconds).astimezone()
     return f"{moment:%Y-%m-%d %H:%M:%S}.{nanoseconds // 1_000_000:03d}"
 

@@ -6,9 +6,7 @@ from typing import Any, Protocol
 
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.log.record import LogRecord
-
-_NANOSECONDS_PER_SECOND = 1_000_000_000
-
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 LOG_TYPE = "rcl_interfaces/msg/Log"
 ROSOUT_TOPIC = "/rosout"
@@ -54,7 +52,7 @@ class Rosout:
         self._logger.rosout = None
 
     def _message(self, record: LogRecord) -> Any:
-        seconds, nanoseconds = divmod(record.stamp_ns, _NANOSECONDS_PER_SECOND)
+        seconds, nanoseconds = divmod(record.stamp_ns, NANOSECONDS_PER_SECOND)
         message = self._publisher.msg_type()
         message.stamp.sec = seconds
         message.stamp.nanosec = nanoseconds

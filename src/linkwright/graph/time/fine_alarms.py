@@ -19,12 +19,13 @@ from functools import partial
 from itertools import count
 from typing import TYPE_CHECKING
 
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+
 if TYPE_CHECKING:
     from ctypes import Array, c_long
 
 _CLOCK_MONOTONIC = 1
 _ABSOLUTE = 1
-_NANOSECONDS = 1_000_000_000
 
 
 def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
@@ -127,7 +128,7 @@ class FineAlarms:
     def _set(self) -> None:
         setting = self._setting
         # A time of 0 would stop it, as no alarm has; a time that has passed rings at once.
-        setting[2], setting[3] = divmod(self._alarms[0].steady_ns, _NANOSECONDS) if self._alarms else (0, 0)
+        setting[2], setting[3] = divmod(self._alarms[0].steady_ns, NANOSECONDS_PER_SECOND) if self._alarms else (0, 0)
         self._set_timer()
 
 

@@ -11,7 +11,8 @@ from itertools import count
 from typing import Protocol
 
 from linkwright.graph.time.fine_alarms import ScheduledAlarm, fine_alarms
-from linkwright.graph.time.values import NANOSECONDS_PER_SECOND, ClockType, Time
+from linkwright.graph.time.values import ClockType, Time
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _SHORT_NS = 20_000_000
 """Waits of up to this length end in time to some microseconds; longer ones may be a millisecond late."""

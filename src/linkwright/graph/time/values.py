@@ -7,10 +7,11 @@ from enum import IntEnum
 from math import isfinite
 from typing import TYPE_CHECKING, Any, overload
 
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+
 if TYPE_CHECKING:
     from linkwright import messages
 
-NANOSECONDS_PER_SECOND = 1_000_000_000
 _LIMIT = 2**63
 
 

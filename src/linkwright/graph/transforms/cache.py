@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Transform, interpolate
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-_NANOSECONDS_PER_SECOND = 1_000_000_000
 _COMPACT_FROM = 256
 """How many forgotten transforms stay in the list before it is cut: the cost of a cut is that of the rest's length."""
 
@@ -39,7 +39,7 @@ class NoDataError(Exception):
 
 def shown_time(stamp_ns: int) -> str:
     """A time as tf2 writes it: seconds with six digits."""
-    return f"{stamp_ns / _NANOSECONDS_PER_SECOND:.6f}"
+    return f"{stamp_ns / NANOSECONDS_PER_SECOND:.6f}"
 
 
 class FrameCache(ABC):

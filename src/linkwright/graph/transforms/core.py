@@ -31,10 +31,10 @@ from linkwright.graph.transforms.errors import (
 from linkwright.graph.transforms.report import FrameFacts, frames_as_dot, frames_as_text, frames_as_yaml
 from linkwright.graph.transforms.velocity import velocity
 from linkwright.graph.transforms.walk import Walker
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 DEFAULT_CACHE_TIME = Duration(seconds=10)
 _QUATERNION_TOLERANCE = 10e-3
-_NANOSECONDS_PER_SECOND = 1_000_000_000
 _OLD_DATA_PERIOD_S = 2.0
 """Between two complaints about transforms from the past: two publishers whose times differ give rise to all of them."""
 _PLANS_KEPT = 64
@@ -422,7 +422,7 @@ def nanoseconds_of(time: Any) -> int:
         TypeError: it is none of these; the text is tf2's.
     """
     if hasattr(time, "nanosec"):
-        return int(time.sec) * _NANOSECONDS_PER_SECOND + int(time.nanosec)
+        return int(time.sec) * NANOSECONDS_PER_SECOND + int(time.nanosec)
     if not hasattr(time, "nanoseconds"):
         raise TypeError(f"time must have sec and nanosec, or nanoseconds. It is {time!r}")
     return int(time.nanoseconds)
@@ -464,7 +464,7 @@ def _message(target: str, source: str, time_ns: int, pose: Transform) -> Any:
     from linkwright.messages import TransformStamped
 
     message = TransformStamped()
-    message.header.stamp.sec, message.header.stamp.nanosec = divmod(time_ns, _NANOSECONDS_PER_SECOND)
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(time_ns, NANOSECONDS_PER_SECOND)
     message.header.frame_id = target
     message.child_frame_id = source
     translation, rotation = message.transform.translation, message.transform.rotation

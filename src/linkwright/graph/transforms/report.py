@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from linkwright.graph.transforms.cache import shown_time
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_NANOSECONDS_PER_SECOND = 1_000_000_000
 _SHORTEST_SPAN_NS = 100_000
 """The time that counts between transforms that came at one moment (tf2: 100 microseconds)."""
 
@@ -41,7 +41,7 @@ class FrameFacts:
     @property
     def length_s(self) -> float:
         """Seconds between the oldest and the latest."""
-        return (self.latest_ns - self.oldest_ns) / _NANOSECONDS_PER_SECOND
+        return (self.latest_ns - self.oldest_ns) / NANOSECONDS_PER_SECOND
 
 
 def frames_as_text(frames: Sequence[FrameFacts]) -> str:
@@ -64,7 +64,7 @@ def frames_as_yaml(frames: Sequence[FrameFacts], now_ns: int) -> str:
             f"  oldest_transform: {shown_time(frame.oldest_ns)}",
         ]
         if now_ns:
-            lines.append(f"  transform_delay: {(now_ns - frame.latest_ns) / _NANOSECONDS_PER_SECOND:.3f}")
+            lines.append(f"  transform_delay: {(now_ns - frame.latest_ns) / NANOSECONDS_PER_SECOND:.3f}")
         lines.append(f"  buffer_length: {frame.length_s:.3f}")
     return "\n".join(lines) + "\n"
 
@@ -75,7 +75,7 @@ def frames_as_dot(frames: Sequence[FrameFacts], now_ns: int) -> str:
     if not frames:
         lines.append('"no tf data recieved"')  # tf2's spelling
     for frame in frames:
-        age = f"( {(now_ns - frame.latest_ns) / _NANOSECONDS_PER_SECOND:.3f} sec old)" if now_ns else ""
+        age = f"( {(now_ns - frame.latest_ns) / NANOSECONDS_PER_SECOND:.3f} sec old)" if now_ns else ""
         lines.append(
             f'"{frame.parent}" -> "{frame.name}"[label="Broadcaster: {frame.authority}\\n'
             f"Average rate: {frame.rate:.3f} Hz\\nMost recent transform: {shown_time(frame.latest_ns)} {age}\\n"

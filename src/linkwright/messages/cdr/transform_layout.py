@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.messages.cdr.values import TEXT4
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _HEADER = b"\x00\x01\x00\x00"
 _MOST_KEPT = 64
 _MOST_OF_ONE_LENGTH = 4
-_NS = 1_000_000_000
 
 _layouts: dict[tuple[tuple[str, ...], tuple[str, ...]], TransformLayout] = {}
 _by_length: dict[int, list[TransformLayout]] = {}
@@ -67,7 +67,7 @@ class TransformLayout:
         Raises:
             OverflowError: the seconds are more than 32 bits can hold.
         """
-        sec, nanosec = divmod(stamp_ns, _NS)
+        sec, nanosec = divmod(stamp_ns, NANOSECONDS_PER_SECOND)
         if not -(1 << 31) <= sec < 1 << 31:
             raise OverflowError(f"the stamp {stamp_ns} ns is more than 32 bits of seconds can hold")
         words = self._words.copy()
@@ -109,7 +109,7 @@ class TransformLayout:
     def stamps_in(self, words: NDArray[np.uint64]) -> NDArray[np.int64]:
         """The stamps in a message, nanoseconds since the epoch."""
         stamps = words.view(np.int32)[self._stamps].astype(np.int64)
-        stamps *= _NS
+        stamps *= NANOSECONDS_PER_SECOND
         stamps += words.view(np.uint32)[self._stamps + 1]
         return stamps
 

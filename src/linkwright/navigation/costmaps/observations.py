@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-_NANOSECONDS = 1e9
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +88,7 @@ class ObservationBuffer:
     def observations(self, time_ns: int) -> list[Observation]:
         """The observations that are valid at a time."""
         if self.source.observation_persistence:
-            oldest = time_ns - round(self.source.observation_persistence * _NANOSECONDS)
+            oldest = time_ns - round(self.source.observation_persistence * NANOSECONDS_PER_SECOND)
             while self._observations and self._observations[0].time_ns < oldest:
                 self._observations.popleft()
         return list(self._observations)
@@ -99,5 +99,5 @@ class ObservationBuffer:
             return True
         return (
             self._updated_ns is not None
-            and (time_ns - self._updated_ns) / _NANOSECONDS <= self.source.expected_update_rate
+            and (time_ns - self._updated_ns) / NANOSECONDS_PER_SECOND <= self.source.expected_update_rate
         )

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from linkwright.navigation.costmaps.costmap import FREE, LETHAL, UNKNOWN
 from linkwright.navigation.costmaps.layer import Moment, SeenLayer, Window
 from linkwright.navigation.grids.grid import Grid
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _CERTAIN: Final = 254.0
 _EVEN: Final = 127
@@ -26,7 +27,6 @@ _LEAST: Final = 0.02
 """Likelihoods count as no less, and no nearer to 1, so that nothing is certain for ever."""
 _BEYOND: Final = 1.2
 """The distance up to which cells are updated, as a factor of the reading."""
-_NANOSECONDS = 1e9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,7 +97,7 @@ class RangeLayer(SeenLayer):
     def is_current(self, time_ns: int) -> bool:
         """Whether a sensor published within the expected time."""
         most = self.settings.no_readings_timeout
-        return not most or (self._heard_ns is not None and (time_ns - self._heard_ns) / _NANOSECONDS <= most)
+        return not most or (self._heard_ns is not None and (time_ns - self._heard_ns) / NANOSECONDS_PER_SECOND <= most)
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
         """The window that new readings touch."""

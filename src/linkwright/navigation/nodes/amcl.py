@@ -27,6 +27,7 @@ from linkwright.navigation.localization.sensor_models import MapLikelihoods
 from linkwright.navigation.nodes.amcl_parameters import declare_parameters, read_parameters
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.map_server import MAP_QOS
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _POSE = "geometry_msgs/msg/PoseWithCovarianceStamped"
 _MOST_WAITING = 10
@@ -365,7 +366,7 @@ def _transform(pose: Pose) -> Transform:
 
 
 def _stamp(time_ns: int) -> Any:
-    return get_message("builtin_interfaces/msg/Time")(*divmod(time_ns, 1_000_000_000))
+    return get_message("builtin_interfaces/msg/Time")(*divmod(time_ns, NANOSECONDS_PER_SECOND))
 
 
 def _write_pose(message: Any, pose: Pose) -> None:

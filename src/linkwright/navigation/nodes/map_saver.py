@@ -18,6 +18,7 @@ from linkwright.navigation.nodes.map_server import MAP_QOS
 from linkwright.nodes.answers import answered
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import log_unknown
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _USAGE = """Usage:
   map_saver_cli [arguments] [--ros-args ROS remapping args]
@@ -76,7 +77,7 @@ class _Saving:
             return False
         io = self._node.graph.get_logger("map_io")
         if not name:
-            name = f"map_{self._node.get_clock().now().nanoseconds // 1_000_000_000}"
+            name = f"map_{self._node.get_clock().now().nanoseconds // NANOSECONDS_PER_SECOND}"
             io.warning(f"Map file unspecified. Map will be saved to {name} file")
         saved = SavedAs(name=name, occupied_thresh=occupied, free_thresh=free, image_format=kind, mode=mode)
         problem = self._write(message, saved, io)

@@ -29,8 +29,8 @@ from linkwright.navigation.nodes.plugins import declare_unread, declared, texts_
 from linkwright.navigation.nodes.slices import WAIT, SlicedWork
 from linkwright.navigation.planning.planner import PlanError, Settings, plan
 from linkwright.nodes.options import NodeOptions
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_NANOSECONDS = 1e9
 _NAVFN: Final = "nav2_navfn_planner/NavfnPlanner"
 _USUAL: Final = {"GridBased": _NAVFN}
 _OTHERS: Final = {
@@ -153,7 +153,7 @@ class PlannerNode(ManagedNode):
             path = path_message(poses, self.costmap.global_frame, self.get_clock().now().to_msg())
             self._plans.publish(path)
             took_ns = self.now_ns() - began_ns
-            self._complain_of_slowness(took_ns / _NANOSECONDS)
+            self._complain_of_slowness(took_ns / NANOSECONDS_PER_SECOND)
             server.succeed(path=path, planning_time=Duration(nanoseconds=took_ns).to_msg())
 
     def _complain_of_slowness(self, seconds: float) -> None:
@@ -192,7 +192,7 @@ class PlannerNode(ManagedNode):
         return np.concatenate(parts)
 
     def _until_current(self) -> Work:
-        timeout_ns = self.get_parameter("costmap_update_timeout").value * _NANOSECONDS
+        timeout_ns = self.get_parameter("costmap_update_timeout").value * NANOSECONDS_PER_SECOND
         began_ns = self.now_ns()
         while not self.costmap.is_current:
             if self.now_ns() - began_ns > timeout_ns:

@@ -22,9 +22,9 @@ from linkwright.messages import get_message
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.velocity_smoothing import Limits, smoothed
 from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DEPTH = 10
-_NANOSECONDS = 1e9
 _AXES = tuple((part, axis) for part in ("linear", "angular") for axis in "xyz")
 _PLANAR = (0, 1, 5)
 """The axes of limits with three entries: x, y and yaw."""
@@ -187,13 +187,13 @@ class _ManagedSmoother(ManagedNode):
     def _on_odometry(self, message: Any) -> None:
         now = self.get_clock().now().nanoseconds
         self._measured.append((now, _values(message.twist.twist)))
-        while now - self._measured[0][0] > self._duration * _NANOSECONDS:
+        while now - self._measured[0][0] > self._duration * NANOSECONDS_PER_SECOND:
             self._measured.popleft()
 
     def _smooth(self) -> None:
         if self._command is None:
             return
-        if (self.get_clock().now().nanoseconds - self._commanded_ns) / _NANOSECONDS > self._timeout:
+        if (self.get_clock().now().nanoseconds - self._commanded_ns) / NANOSECONDS_PER_SECOND > self._timeout:
             if self._stopped or not any(self._last):
                 self._stopped = True
                 return

@@ -17,6 +17,7 @@ from linkwright.diagnostics import did_you_mean, phrase
 from linkwright.messages import Message, definition_of, get_message
 from linkwright.messages.definitions.interfaces import Container, Field, FieldType
 from linkwright.page.protocol.monitor import PlotField
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 NAME_LISTS = ("name", "names", "joint_names")
 """Fields that name the elements of the arrays beside them, or of those of messages below."""
@@ -28,7 +29,6 @@ SECONDS = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 """Messages that represent a number of seconds."""
 
 _STEP = re.compile(r"([A-Za-z_]\w*)((?:\[[^\[\]]+\])*)")
-_NANO = 1e-9
 
 
 class FieldPathError(ValueError):
@@ -148,7 +148,7 @@ def _index_of(name: str, values: Any, owners: Sequence[Any]) -> int | None:
 
 def _number(value: Any) -> float:
     if isinstance(value, Message):
-        return float(value.nanoseconds) * _NANO  # type: ignore[attr-defined]  # a Time or a Duration
+        return float(value.nanoseconds) / NANOSECONDS_PER_SECOND  # type: ignore[attr-defined]  # a Time or a Duration
     return float(value[0]) if isinstance(value, bytes) else float(value)
 
 

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from linkwright.messages import deserialize
 from linkwright.panels.monitor.field_paths import FieldPath
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from linkwright.bag.moments import Recorded
 
-_NANO = 1e-9
 
 _MOST_READ = 3000
 """Most messages to read; of more, evenly spread ones: reading one takes some ten microseconds."""
@@ -30,7 +30,8 @@ def sample_of(path: FieldPath, message: Any, received_ns: int) -> tuple[float, f
     if value is None:
         return None
     stamp = getattr(getattr(message, "header", None), "stamp", None)
-    return received_ns * _NANO, math.nan if stamp is None else stamp.nanoseconds * _NANO, value
+    stamped = math.nan if stamp is None else stamp.nanoseconds / NANOSECONDS_PER_SECOND
+    return received_ns / NANOSECONDS_PER_SECOND, stamped, value
 
 
 def past_samples(path: FieldPath, cls: Any, messages: Sequence[Recorded]) -> NDArray[np.float64]:

@@ -24,6 +24,7 @@ from linkwright.page.protocol.monitor import (
 )
 from linkwright.panels.monitor.topic_tap import Paced, TopicTap
 from linkwright.panels.page_feature import FeatureHost, PageFeature
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.rviz.context import ViewerContext
 
 _MOST_ROWS = 1500
@@ -96,8 +97,6 @@ _WINDOW_NS = 5_000_000_000
 _LEAST_MEASURED_NS = 500_000_000
 """The least time that a topic is measured before its figures are sent: messages may arrive in bursts."""
 
-_NANO = 1e-9
-
 
 @dataclass(slots=True)
 class _Request:
@@ -142,7 +141,7 @@ class _Gauge:
 
     def _receive(self, data: Any, info: MessageInfo) -> None:
         self.window.add(time.monotonic_ns(), len(data))
-        self.last = (data, info.received_timestamp * _NANO)
+        self.last = (data, info.received_timestamp / NANOSECONDS_PER_SECOND)
         self._feature.came(self.topic)
 
 

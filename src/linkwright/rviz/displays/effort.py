@@ -105,7 +105,7 @@ class EffortDisplay(RecentDisplay):
         stamp = message.header.stamp
         joint = next((self._joints[name] for name in message.name if self._joints and name in self._joints), None)
         frame = self.host.frames.fixed_frame if joint is None else self._frame(joint)
-        return frame, stamp.sec * 1_000_000_000 + stamp.nanosec
+        return frame, stamp.nanoseconds
 
     def content(self, message: Any) -> DataContent | None:
         """Return a ring for each joint whose frame can be placed."""

@@ -241,7 +241,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         """Return the pose of the marker's frame at its time; None for a marker without a time."""
         fixed_frame = self.host.frames.fixed_frame
         stamp = marker.header.stamp
-        pose = self.context.transforms.pose(fixed_frame, frame, stamp.sec * 1_000_000_000 + stamp.nanosec)
+        pose = self.context.transforms.pose(fixed_frame, frame, stamp.nanoseconds)
         return None if _is_latest(marker) else pose
 
     def _relative(self, reference: str, frame: str) -> Transform:

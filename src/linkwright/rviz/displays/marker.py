@@ -35,7 +35,7 @@ class _Marker:
     def __init__(self, reading: MarkerReading, message: Any, expires_ns: int | None) -> None:
         self.reading = reading
         self.frame: str = message.header.frame_id.removeprefix("/")
-        self.stamp_ns: int = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+        self.stamp_ns: int = message.header.stamp.nanoseconds
         self.locked: bool = message.frame_locked
         self.expires_ns = expires_ns
 
@@ -146,7 +146,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         if message.ns not in self._namespaces:
             self._namespaces = sorted([*self._namespaces, message.ns])
             self.publish_properties()
-        life_ns = message.lifetime.sec * 1_000_000_000 + message.lifetime.nanosec
+        life_ns = message.lifetime.nanoseconds
         expires_ns = self._clock.now_ns() + life_ns if life_ns > _SHORTEST_LIFE_NS else None
         self._markers[identity] = marker = _Marker(reading, message, expires_ns)
         if expires_ns is not None:

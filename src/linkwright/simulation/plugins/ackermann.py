@@ -15,8 +15,8 @@ from linkwright.control.odometry import OdometryTopics, planar_variances, planar
 from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import steered_apart
 from linkwright.messages import get_message
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.simulation import NANOSECONDS
 
 _GAIN = 20.0
 """Torque of a motor in N m for each rad/s that its wheel is too slow."""
@@ -138,7 +138,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
 
     def _update(self) -> None:
         now = self.simulation.time
-        seconds, self._time = (now - self._time) / NANOSECONDS, now
+        seconds, self._time = (now - self._time) / NANOSECONDS_PER_SECOND, now
         self._drive(seconds)
         before, self._place = self._place, self.simulation.model_pose(self.place.path)
         self._distance += hypot(self._place[0] - before[0], self._place[1] - before[1])

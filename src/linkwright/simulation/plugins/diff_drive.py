@@ -24,6 +24,7 @@ from linkwright.graph.stepped.node import Output
 from linkwright.kinematics.drives import DifferentialDrive
 from linkwright.kinematics.planar import PlanarPose
 from linkwright.messages import Header
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.actuators import Motor
 from linkwright.simulation.plugins.gz_drive import (
@@ -36,7 +37,6 @@ from linkwright.simulation.plugins.gz_drive import (
 )
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.simulation import NANOSECONDS
 
 P = TypeVar("P")
 
@@ -256,7 +256,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
     @property
     def _interval(self) -> float:
         rate = self.parameters.update_rate
-        return 1.0 / rate if rate > 0 else self.simulation.step / NANOSECONDS
+        return 1.0 / rate if rate > 0 else self.simulation.step / NANOSECONDS_PER_SECOND
 
 
 class GzDiffDrive(_DiffDrive[GzParameters]):

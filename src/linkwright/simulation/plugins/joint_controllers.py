@@ -11,10 +11,10 @@ from math import inf
 from typing import Any, Generic, TypeVar
 
 from linkwright.diagnostics import phrase
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.pid import Gains, Pid
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.simulation import NANOSECONDS
 
 _GAIN = 20.0
 """Torque of a motor in N m for each rad/s that its joint is too slow."""
@@ -117,7 +117,7 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
 
     def _push(self, derivative: int) -> None:
         """Apply the PID controller's force for a step: to the errors of positions (0) or velocities (1)."""
-        seconds = self.simulation.step / NANOSECONDS
+        seconds = self.simulation.step / NANOSECONDS_PER_SECOND
         for joint, controller in zip(self._joints, self._controllers, strict=True):
             error = self._wanted - self.simulation.joint_state(joint)[derivative]
             self.simulation.push_joint(joint, controller.force(error, seconds))
@@ -158,7 +158,7 @@ class GzJointPosition(_JointController[PositionParameters]):
         if not self._servos:
             self._push(0)
         for servo in self._servos:
-            servo.move(self._wanted, self.simulation.step / NANOSECONDS)
+            servo.move(self._wanted, self.simulation.step / NANOSECONDS_PER_SECOND)
 
 
 class GzJointVelocity(_JointController[VelocityParameters]):

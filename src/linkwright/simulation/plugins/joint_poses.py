@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import WORLD
 from linkwright.simulation.plugins.entities import Entities
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.simulation import NANOSECONDS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +58,7 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
             self.simulation.keep_awake(self.simulation.scene.joints[joint].child)
         self._points = deque(message.points)
         stamp = message.header.stamp
-        self._due = max(int(stamp.sec) * NANOSECONDS + int(stamp.nanosec), self.simulation.time)
+        self._due = max(int(stamp.sec) * NANOSECONDS_PER_SECOND + int(stamp.nanosec), self.simulation.time)
 
     def _move(self) -> None:
         """Set the joints to the point of the trajectory that is due."""
@@ -67,4 +67,4 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
         point = self._points.popleft()
         for joint, position in zip(self._joints, point.positions, strict=False):
             self.simulation.set_joint_position(joint, float(position))
-        self._due += int(point.time_from_start.sec) * NANOSECONDS + int(point.time_from_start.nanosec)
+        self._due += int(point.time_from_start.sec) * NANOSECONDS_PER_SECOND + int(point.time_from_start.nanosec)

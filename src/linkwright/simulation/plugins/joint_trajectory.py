@@ -12,9 +12,9 @@ from typing import Any
 
 from linkwright.diagnostics import joined, phrase
 from linkwright.messages import get_message
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.pid import Gains, Pid
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.simulation import NANOSECONDS
 
 _ONE_AXIS = frozenset(("revolute", "continuous", "prismatic"))
 Many = tuple[float, ...]
@@ -172,7 +172,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
     def _move(self) -> None:
         if self._trajectory is not None and self._trajectory.advance(self.simulation.time):
             self._follow(self._trajectory)
-        seconds = self.simulation.step / NANOSECONDS
+        seconds = self.simulation.step / NANOSECONDS_PER_SECOND
         for joint in self._joints.values():
             force = joint.force(*self.simulation.joint_state(joint.name), seconds)
             self.simulation.push_joint(joint.name, force)
@@ -183,4 +183,4 @@ def _nth(values: Any, number: int, default: float) -> float:
 
 
 def _nanoseconds(time: Any) -> int:
-    return int(time.sec) * NANOSECONDS + int(time.nanosec)
+    return int(time.sec) * NANOSECONDS_PER_SECOND + int(time.nanosec)

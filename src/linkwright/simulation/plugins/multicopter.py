@@ -19,11 +19,11 @@ import numpy.typing as npt
 from linkwright.diagnostics import phrase
 from linkwright.geometry.arrays import rotation_matrix
 from linkwright.geometry.vectors import Vector3
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.entities import numbers
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.simulation import NANOSECONDS
 from linkwright.xmltree import Element
 
 Array = npt.NDArray[np.float64]
@@ -103,7 +103,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         parameters, simulation = self.parameters, self.simulation
         wanted = min(max(self.wanted, 0.0), parameters.max_rot_velocity)
         constant = parameters.time_constant_up if wanted > self.speed else parameters.time_constant_down
-        share = exp(-simulation.step / NANOSECONDS / constant) if constant > 0.0 else 0.0
+        share = exp(-simulation.step / NANOSECONDS_PER_SECOND / constant) if constant > 0.0 else 0.0
         self.speed = share * self.speed + (1.0 - share) * wanted
         thrust = parameters.motor_constant * self.speed**2
         axis = rotation_matrix(simulation.link_pose(self._link)[3:])[:, 2]

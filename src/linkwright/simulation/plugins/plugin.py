@@ -37,6 +37,7 @@ import numpy as np
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
 from linkwright.geometry.single import Transform
 from linkwright.messages import Time
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.models import Model
 from linkwright.sdf.plugins import Plugin
 from linkwright.sdf.poses import SEPARATOR
@@ -45,7 +46,7 @@ from linkwright.sdf.worlds import World
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.schedule import Task
-from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.simulation.simulation import Simulation
 from linkwright.xmltree import Element
 
 P = TypeVar("P")
@@ -198,7 +199,7 @@ class SimulatedPlugin(Generic[P]):
 
     def every(self, rate: float, function: Callable[[], None]) -> None:
         """Register a function to be called a number of times a simulated second; 0 for after each step."""
-        period = round(NANOSECONDS / rate) if rate > 0 else 0
+        period = round(NANOSECONDS_PER_SECOND / rate) if rate > 0 else 0
         self._tasks.append(self.simulation.call_every(period, partial(self.node.calls.make, function)))
 
     def stamp(self) -> Time:

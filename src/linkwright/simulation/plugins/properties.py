@@ -14,13 +14,13 @@ import numpy as np
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.validity import TOLERANCE, is_positive_definite, triangle_excess
 from linkwright.messages import Vector3
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.worlds import physics_of
 from linkwright.simulation.plugins.entities import Entities, answered, numbers, pose_message
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.scene.bodies import set_first
-from linkwright.simulation.simulation import NANOSECONDS
 
 _TYPES = {"revolute": 0, "continuous": 1, "prismatic": 2, "fixed": 3, "ball": 4, "universal": 5}
 """The joint types of GetJointProperties."""
@@ -125,7 +125,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
 
     def _physics(self, _: Any, response: Any) -> Any:
         self.simulation.refresh()
-        response.time_step = self.simulation.step / NANOSECONDS
+        response.time_step = self.simulation.step / NANOSECONDS_PER_SECOND
         response.max_update_rate = physics_of(self.place.world).real_time_update_rate
         response.gravity = Vector3(*np.asarray(self.simulation.model.opt.gravity).tolist())
         response.success, response.status_message = True, "GetPhysicsProperties: got properties"

@@ -9,6 +9,7 @@ from typing import Any
 from warnings import catch_warnings, simplefilter
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World, physics_of
@@ -16,7 +17,6 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 
-_NANOSECONDS = 1_000_000_000
 _MANY_LINKS, MOST_LINKS = 1000, 10_000
 """From how many links on MuJoCo is given memory for all pairs of them, and how many there may be."""
 _BYTES_A_PAIR, _BYTES = 3, 1 << 28
@@ -100,7 +100,7 @@ def whole_step(step: float, world: World) -> int:
     Raises:
         LinkwrightError: SIM106 no time passes in it.
     """
-    if not (isfinite(step) and round(step * _NANOSECONDS) > 0):
+    if not (isfinite(step) and round(step * NANOSECONDS_PER_SECOND) > 0):
         message = phrase("a time step of {step} s cannot be simulated", step=step)
         hint = phrase("0.001 is usual: <max_step_size>0.001")
         physics = physics_of(world)
@@ -109,4 +109,4 @@ def whole_step(step: float, world: World) -> int:
             raise LinkwrightError(Diagnostic("SIM106", message, hint=hint))
         place = element.first("max_step_size") or element
         raise LinkwrightError(Diagnostic("SIM106", message, place.span(), hint=hint, source=place.source))
-    return round(step * _NANOSECONDS)
+    return round(step * NANOSECONDS_PER_SECOND)

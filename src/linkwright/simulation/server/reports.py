@@ -17,13 +17,13 @@ from linkwright.graph import CLOCK_QOS, DurabilityPolicy, QoSProfile
 from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import Header, String, Time, get_message
 from linkwright.messages.tf_message import TFMessage, TransformBatch
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.frames import pose_of
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import WORLD, RawPose
 from linkwright.sdf.resources import Missing, ResourceFinder
 from linkwright.sdf.writer import WrittenModel, save_model_of_world, save_world
 from linkwright.simulation.server.server import SimulationServer
-from linkwright.simulation.simulation import NANOSECONDS
 
 T = TypeVar("T")
 _LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -58,7 +58,9 @@ class Reports:
         self._written: dict[tuple[int, str, Transform], tuple[Model, WrittenModel]] = {}  # keeps the models of the ids
         self._posed = self._measured = 0.0
         server.on_reset.append(self._publish_time)
-        server.simulation.call_every(round(NANOSECONDS / clock_rate) if clock_rate > 0 else 0, self._publish_time)
+        server.simulation.call_every(
+            round(NANOSECONDS_PER_SECOND / clock_rate) if clock_rate > 0 else 0, self._publish_time
+        )
 
     def begin(self) -> None:
         """Publish the description, now and after each change of the world."""

@@ -9,9 +9,9 @@ from math import inf
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import run_logged
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.worlds import physics_of
 from linkwright.simulation.server.server import SimulationServer
-from linkwright.simulation.simulation import NANOSECONDS
 
 _CHUNK = 0.005
 """Real seconds between two looks at the commands."""
@@ -60,7 +60,7 @@ class Runner:
         self._server = server
         self._given_factor = factor
         self._factor = 1.0
-        self._left = None if seconds is None else round(seconds * NANOSECONDS)
+        self._left = None if seconds is None else round(seconds * NANOSECONDS_PER_SECOND)
         self._watch, self._on_state, self._on_end = watch, on_state, on_end
         self._ends = False
         server.on_change.append(self._resume)
@@ -149,7 +149,7 @@ class Runner:
         real = _CHUNK * (self._factor if self._factor < inf else 1.0)
         if self._factor == inf:
             real = _CHUNK * max(self.real_time_factor, 1.0)
-        chunk = max(round(min(real, _LONGEST_CHUNK) * NANOSECONDS), simulation.step)
+        chunk = max(round(min(real, _LONGEST_CHUNK) * NANOSECONDS_PER_SECOND), simulation.step)
         if self._left is not None:
             chunk = min(chunk, self._left)
         before = simulation.time
@@ -167,7 +167,7 @@ class Runner:
             return 0.0
         real, simulated = self._began
         now = time.monotonic()
-        ahead = real + (self._server.simulation.time - simulated) / NANOSECONDS / self._factor - now
+        ahead = real + (self._server.simulation.time - simulated) / NANOSECONDS_PER_SECOND / self._factor - now
         if ahead < -_BEHIND:
             self._began = now, self._server.simulation.time
         return ahead
@@ -176,5 +176,5 @@ class Runner:
         now, simulated = time.monotonic(), self._server.simulation.time
         passed = now - self._measured[0]
         if passed >= _MEASURED:
-            self.real_time_factor = max(simulated - self._measured[1], 0) / NANOSECONDS / passed
+            self.real_time_factor = max(simulated - self._measured[1], 0) / NANOSECONDS_PER_SECOND / passed
             self._measured = now, simulated

@@ -29,7 +29,6 @@ from linkwright.simulation.server.loading import WorldLoader
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.server.worlds import LoadedWorld
 from linkwright.simulation.server.wrenches import Wrench, Wrenches
-from linkwright.simulation.simulation import NANOSECONDS
 
 _OK, _WRONG_STATE, _FAILED = 1, 3, 4
 """Results of simulation_interfaces/msg/Result."""
@@ -191,8 +190,8 @@ class Services:
             link = self._entities.link(request.link_name)
             turn = self._entities.frame(request.reference_frame)[3:]
             force, torque = (rotate(turn, numbers(each)) for each in (request.wrench.force, request.wrench.torque))
-            duration = request.duration.sec * NANOSECONDS + request.duration.nanosec
-            start = request.start_time.sec * NANOSECONDS + request.start_time.nanosec
+            duration = request.duration.nanoseconds
+            start = request.start_time.nanoseconds
             begin = max(start, self._server.simulation.time)
             end = None if duration < 0 else begin + duration
             self._wrenches.add(link, Wrench(force, torque, numbers(request.reference_point), begin, end))

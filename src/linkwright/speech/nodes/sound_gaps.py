@@ -6,13 +6,13 @@ and follows the clock slowly, so that a jump ahead means that sound was lost on 
 
 from __future__ import annotations
 
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.speech.sound.samples import RATE
 
-_SECOND = 10**9
-_MOST_BEHIND = 10 * _SECOND
+_MOST_BEHIND = 10 * NANOSECONDS_PER_SECOND
 """A suspended source publishes its backlog late; one that is later than this has restarted."""
 
-_MOST_AHEAD = _SECOND
+_MOST_AHEAD = NANOSECONDS_PER_SECOND
 _DRIFT = 0.01  # the share of a block by which stamps approach the clock with each block
 
 _STEADY = 5 * 10**6
@@ -39,11 +39,11 @@ class SampleStamps:
             lost: seconds that are missing in it or before it: the stamp jumps over them, but over no more than a second
                 that has not passed.
         """
-        length = samples * _SECOND // RATE
+        length = samples * NANOSECONDS_PER_SECOND // RATE
         began = max(0, now - length)
         if self._next is not None and -_MOST_AHEAD < (behind := began - self._next) < _MOST_BEHIND:
             most = round(_DRIFT * length)
-            jump = min(round(lost * _SECOND), max(behind, 0) + _MOST_AHEAD)
+            jump = min(round(lost * NANOSECONDS_PER_SECOND), max(behind, 0) + _MOST_AHEAD)
             began = self._next + min(max(behind, -most), most) + jump
         self._next = began + length
         return began
@@ -69,7 +69,7 @@ class SoundGaps:
             stamp: of its first sample, nanoseconds.
             samples: how many it has, at 16 kHz.
         """
-        length = samples * _SECOND // RATE
+        length = samples * NANOSECONDS_PER_SECOND // RATE
         jump = 0 if self._next is None else stamp - self._next
         self._next = stamp + length
         if jump <= _STEADY:
@@ -83,4 +83,4 @@ class SoundGaps:
         if self._small <= _JUMP:
             return 0.0
         missing, self._small = self._small, 0
-        return missing / _SECOND
+        return missing / NANOSECONDS_PER_SECOND

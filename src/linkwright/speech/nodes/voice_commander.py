@@ -184,7 +184,7 @@ class VoiceCommander(SingleNode):
             return
         samples = self._reader.read(message.audio.data)
         stamp = message.header.stamp
-        missing = self._gaps.missing(stamp.sec * 10**9 + stamp.nanosec, samples.size)
+        missing = self._gaps.missing(stamp.nanoseconds, samples.size)
         if missing:
             self._listener.note_gap(missing)
             self._presses.note_gap()

@@ -6,8 +6,7 @@ import sys
 from collections.abc import Sequence
 
 from linkwright.graph.command_line import ros_arguments
-
-_NANOSECONDS_PER_SECOND = 1_000_000_000
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
@@ -23,7 +22,7 @@ def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
     """Convert a timeout to nanoseconds; None and negative numbers mean no limit and give -1."""
     if timeout_sec is None or timeout_sec < 0:
         return -1
-    return int(float(timeout_sec) * _NANOSECONDS_PER_SECOND)
+    return int(float(timeout_sec) * NANOSECONDS_PER_SECOND)
 
 
 def get_rmw_implementation_identifier() -> str:

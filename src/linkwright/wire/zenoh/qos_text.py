@@ -15,9 +15,9 @@ from linkwright.graph.qos.profile import (
     ReliabilityPolicy,
 )
 from linkwright.graph.time.values import INFINITE, Duration
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DEFAULT_DEPTH = 42
-_SECOND = 1_000_000_000
 
 
 def write(profile: QoSProfile) -> str:
@@ -68,12 +68,12 @@ def _write_time(duration: Duration) -> str:
     nanoseconds = limit_ns(duration)
     if nanoseconds is None:
         return ","
-    seconds, rest = divmod(nanoseconds, _SECOND)
+    seconds, rest = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
     return f"{seconds},{rest}"
 
 
 def _read_time(seconds: str, nanoseconds: str) -> Duration:
     if not seconds and not nanoseconds:
         return INFINITE
-    total = int(seconds or 0) * _SECOND + int(nanoseconds or 0)
+    total = int(seconds or 0) * NANOSECONDS_PER_SECOND + int(nanoseconds or 0)
     return INFINITE if total <= 0 or total >= INFINITE.nanoseconds else Duration(nanoseconds=total)

@@ -22,10 +22,10 @@ from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.standstill import send_stop
 from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DEPTH = 10
 _MOST = 255
-_NANOSECONDS = 1e9
 
 
 class _Source:
@@ -45,7 +45,7 @@ class _Source:
         """Whether its last message is too old, or missing; never without a time-out."""
         if self.timeout == 0.0:
             return False
-        return self._heard_ns is None or (now_ns - self._heard_ns) / _NANOSECONDS > self.timeout
+        return self._heard_ns is None or (now_ns - self._heard_ns) / NANOSECONDS_PER_SECOND > self.timeout
 
     @property
     def silent(self) -> bool:

@@ -13,6 +13,7 @@ from linkwright.messages import get_message, get_service
 from linkwright.navigation.maps.map_files import SavedAs, save_map
 from linkwright.navigation.nodes.slam_toolbox.toolbox import Toolbox
 from linkwright.navigation.slam.storage import path_of, save_graph
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 class ToolboxServices:
@@ -112,7 +113,7 @@ class ToolboxServices:
             )
             response.result = response.RESULT_NO_MAP_RECEIEVD
             return response
-        name = request.name.data or f"map_{self._toolbox.node.get_clock().now_ns() // 1_000_000_000}"
+        name = request.name.data or f"map_{self._toolbox.node.get_clock().now_ns() // NANOSECONDS_PER_SECOND}"
         self._logger.info(f"SlamToolbox: Saving map as {Path(name).absolute()}.")
         try:
             save_map(grid, SavedAs(name=name), self._logger.warning)

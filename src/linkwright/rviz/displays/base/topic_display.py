@@ -167,7 +167,7 @@ class TopicDisplay(DataDisplay, ABC):
     def frame_of(self, message: Any) -> tuple[str, int]:
         """Return the frame of a message and its time in nanoseconds (0 for the latest), from its header."""
         stamp = message.header.stamp
-        return message.header.frame_id, stamp.sec * 1_000_000_000 + stamp.nanosec
+        return message.header.frame_id, stamp.nanoseconds
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
         """Return the type, topic and quality of service to subscribe with; an empty topic means no subscription."""

@@ -24,10 +24,10 @@ from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.files import read_parameter_file
 from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.graph.stepped.node import SteppedNode
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.plugins.ros2_control.hardware import SimulatedSystem
 from linkwright.simulation.plugins.ros_element import node_of
-from linkwright.simulation.simulation import NANOSECONDS
 
 _DEFAULT_RATE = 100
 
@@ -132,10 +132,10 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         system = SimulatedSystem(description, logger, self, holds=holds, gain=self._gain, values=self._values)
         self._systems.append(system)
         if system.has_pids:
-            self.every(0.0, lambda: system.push(self.simulation.step / NANOSECONDS))
+            self.every(0.0, lambda: system.push(self.simulation.step / NANOSECONDS_PER_SECOND))
         return system
 
     def _update(self) -> None:
         now = self.simulation.time
         period, self._last = now - self._last, now
-        self._manager.cycle(now, period / NANOSECONDS)
+        self._manager.cycle(now, period / NANOSECONDS_PER_SECOND)

@@ -6,6 +6,7 @@ import struct
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.wire.dds.rtps.values import (
     PREFIX,
     UNKNOWN,
@@ -187,7 +188,7 @@ def _read_data(kind: int, flags: int, order: str, body: bytes, context: _Context
 
 def _time(body: bytes, order: str) -> int:
     seconds, fraction = struct.unpack_from(order + "II", body)
-    return int(seconds) * 1_000_000_000 + (int(fraction) * 1_000_000_000 >> 32)
+    return int(seconds) * NANOSECONDS_PER_SECOND + (int(fraction) * NANOSECONDS_PER_SECOND >> 32)
 
 
 def _number(body: bytes, offset: int, order: str) -> int:
@@ -219,8 +220,8 @@ def message(prefix: bytes, *submessages: bytes, to: bytes = b"") -> bytes:
 
 def info_timestamp(nanoseconds: int) -> bytes:
     """INFO_TS: when the following submessages were written."""
-    seconds, rest = divmod(nanoseconds, 1_000_000_000)
-    return _submessage(_INFO_TS, 0, struct.pack("<II", seconds, (rest << 32) // 1_000_000_000))
+    seconds, rest = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
+    return _submessage(_INFO_TS, 0, struct.pack("<II", seconds, (rest << 32) // NANOSECONDS_PER_SECOND))
 
 
 def data(reader: bytes, writer: bytes, number: int, payload: bytes | None, inline: bytes = b"") -> bytes:

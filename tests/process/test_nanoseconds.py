@@ -1,0 +1,16 @@
+"""The number of nanoseconds in a second stands in one file."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import linkwright
+from linkwright.process import nanoseconds
+
+
+def test_no_other_file_defines_it() -> None:
+    number = re.compile(r"\b1_?000_?000_?000\b|^_?(?:SECOND|NANO|NANOSECONDS|NS) = ", re.MULTILINE)
+    sources = Path(linkwright.__file__).parent.rglob("*.py")
+    found = [path for path in sources if number.search(path.read_text(encoding="utf-8"))]
+    assert found == [Path(nanoseconds.__file__)]
