@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import Any
 
-from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.graph import LATCHED_QOS
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.graph.time.values import Duration
 from linkwright.messages import get_action, get_message, get_service
@@ -70,9 +70,8 @@ class BasicNavigator(Node):
         self.feedback: Any = None
         self.status: int | None = None
         self._actions: dict[str, Any] = {}
-        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, reliability=ReliabilityPolicy.RELIABLE)
         pose = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")
-        self.localization_pose_sub = self.create_subscription(pose, "amcl_pose", self._amclPoseCallback, kept)
+        self.localization_pose_sub = self.create_subscription(pose, "amcl_pose", self._amclPoseCallback, LATCHED_QOS)
         self.initial_pose_pub = self.create_publisher(pose, "initialpose", 10)
 
     def destroyNode(self) -> None:

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linkwright.graph import Graph, JumpClock, LogLevel, LogRecord
+from linkwright.graph import LATCHED_QOS, Graph, JumpClock, LogLevel, LogRecord
 from linkwright.messages import Time, get_message, get_service
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.occupancy import occupancy_message
 from linkwright.navigation.maps.map_files import SavedAs, load_map, save_map
 from linkwright.navigation.nodes.map_saver import MapSaver, MapSaverServer
-from linkwright.navigation.nodes.map_server import MAP_QOS, MapServer
+from linkwright.navigation.nodes.map_server import MapServer
 from linkwright.nodes import NodeOptions
 from tests.waiting import eventually
 
@@ -48,7 +48,7 @@ async def test_the_map_is_there_for_all_who_come_once_the_server_is_active(graph
     assert before.map.info.width == 0
     node.trigger_activate()
     maps: list[Any] = []
-    graph.create_node("audience").create_subscription(_GRID, "/map", maps.append, MAP_QOS)
+    graph.create_node("audience").create_subscription(_GRID, "/map", maps.append, LATCHED_QOS)
     await graph.settle()
     assert list(maps[0].data) == _CELLS.ravel().tolist()
     assert (maps[0].header.frame_id, maps[0].info.origin.position.x) == ("world", -1.0)
@@ -61,7 +61,7 @@ async def test_another_map_can_be_loaded(graph: Graph, log: list[LogRecord], tmp
     parameters = {"yaml_filename": _files(tmp_path), "topic_name": "floor", "autostart_node": True}
     server = MapServer(graph, NodeOptions(parameters=parameters))
     maps: list[Any] = []
-    graph.create_node("audience").create_subscription(_GRID, "/floor", maps.append, MAP_QOS)
+    graph.create_node("audience").create_subscription(_GRID, "/floor", maps.append, LATCHED_QOS)
     other = _files(tmp_path, "other", _CELLS.T)
 
     async def load(url: str) -> Any:
@@ -96,7 +96,7 @@ async def test_without_a_file_it_waits_for_one_and_with_a_wrong_one_it_is_not_co
 
 def _publish(graph: Graph, topic: str = "/map") -> None:
     node = graph.create_node("mapper")
-    node.create_publisher(_GRID, topic, MAP_QOS).publish(
+    node.create_publisher(_GRID, topic, LATCHED_QOS).publish(
         occupancy_message(Grid(cells=_CELLS, resolution=0.05), "map", Time())
     )
 

@@ -14,13 +14,12 @@ from linkwright.control.manager.loaded import Loaded
 from linkwright.control.manager.manager import ControllerManager
 from linkwright.control.manager.statistics import StatisticsTopics
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
-from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.graph.qos.profile import LATCHED_QOS
 from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import get_message, is_before_iron
 
 _PACKAGE = "controller_manager_msgs"
 _PLAIN, _CHAINABLE = "controller_interface::ControllerInterface", "controller_interface::ChainableControllerInterface"
-_LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _STATES = {state.state_id: state for state in (UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED)}
 
 
@@ -34,7 +33,7 @@ class ManagerServices:
 
     def __init__(self, manager: ControllerManager, node: SteppedNode) -> None:
         self._manager = manager
-        self._activity = node.publisher(f"{_PACKAGE}/msg/ControllerManagerActivity", "~/activity", _LATCHED)
+        self._activity = node.publisher(f"{_PACKAGE}/msg/ControllerManagerActivity", "~/activity", LATCHED_QOS)
         self._diagnostics = node.publisher("diagnostic_msgs/msg/DiagnosticArray", "/diagnostics")
         self._statistics = None if is_before_iron() else StatisticsTopics(manager, node)
         manager.on_change = self.publish_activity

@@ -12,11 +12,10 @@ from typing import Any
 
 from linkwright.control.hardware.timing import Timing
 from linkwright.control.manager.manager import ControllerManager
-from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
+from linkwright.graph.qos.profile import LATCHED_QOS
 from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import get_message
 
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _PACKAGE = "pal_statistics_msgs/msg"
 
 
@@ -31,7 +30,7 @@ class StatisticsTopics:
     def __init__(self, manager: ControllerManager, node: SteppedNode) -> None:
         self._manager = manager
         self._full = node.publisher(f"{_PACKAGE}/Statistics", "~/statistics/full")
-        self._names = node.publisher(f"{_PACKAGE}/StatisticsNames", "~/statistics/names", _LATCHED)
+        self._names = node.publisher(f"{_PACKAGE}/StatisticsNames", "~/statistics/names", LATCHED_QOS)
         self._values = node.publisher(f"{_PACKAGE}/StatisticsValues", "~/statistics/values")
         self._known: list[str] = []
         self._version = 0

@@ -375,7 +375,10 @@ STATIC_TF_PUBLISHER_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSI
 STATIC_TF_SUBSCRIPTION_QOS = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """For subscriptions to ``/tf_static`` (tf2_ros StaticListenerQoS)."""
 
-DESCRIPTION_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""For maps, states and whatever else a late subscriber gets as it was last published, both sides."""
+
+DESCRIPTION_QOS = LATCHED_QOS
 """For ``robot_description``, both sides."""
 
 

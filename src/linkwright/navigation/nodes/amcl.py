@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.geometry.single import Transform, compose, invert, quaternion_from_rpy, rpy_from_quaternion
-from linkwright.graph import SENSOR_DATA_QOS, TF_QOS, TransformException
+from linkwright.graph import LATCHED_QOS, SENSOR_DATA_QOS, TF_QOS, TransformException
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import TFMessage, TransformBatch, get_message, get_service
@@ -26,7 +26,6 @@ from linkwright.navigation.localization.particle_filter import Estimate, Particl
 from linkwright.navigation.localization.sensor_models import MapLikelihoods
 from linkwright.navigation.nodes.amcl_parameters import declare_parameters, read_parameters
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.navigation.nodes.map_server import MAP_QOS
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _POSE = "geometry_msgs/msg/PoseWithCovarianceStamped"
@@ -79,11 +78,11 @@ class AmclNode(ManagedNode):
             self.create_publisher(get_message("nav2_msgs/msg/ParticleCloud"), "particle_cloud", SENSOR_DATA_QOS)
         )
         pose, scan = get_message(_POSE), get_message("sensor_msgs/msg/LaserScan")
-        self._poses = register(self.create_publisher(pose, "amcl_pose", MAP_QOS))
+        self._poses = register(self.create_publisher(pose, "amcl_pose", LATCHED_QOS))
         self._transforms = register(self.create_publisher(TFMessage, "/tf", TF_QOS))
         register(self.create_subscription(pose, "initialpose", self._on_initial_pose, 10))
         grid = get_message("nav_msgs/msg/OccupancyGrid")
-        register(self.create_subscription(grid, settings.map_topic, self._on_map, MAP_QOS))
+        register(self.create_subscription(grid, settings.map_topic, self._on_map, LATCHED_QOS))
         register(self.create_subscription(scan, settings.scan_topic, self._on_scan, SENSOR_DATA_QOS))
         empty = get_service("std_srvs/srv/Empty")
         register(self.create_service(empty, "reinitialize_global_localization", self._on_global_localization))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.geometry.single import rpy_from_quaternion
-from linkwright.graph import DESCRIPTION_QOS, ParameterType
+from linkwright.graph import LATCHED_QOS, ParameterType
 from linkwright.graph.actions.goal import ServerGoalHandle
 from linkwright.graph.time.values import Duration, Time
 from linkwright.messages import get_message
@@ -115,7 +115,7 @@ class BehaviorNode(ManagedNode):
         """
         self._period = 1.0 / positive(self, "cycle_frequency", self._value("cycle_frequency"))
         raw, polygon = get_message("nav2_msgs/msg/Costmap"), get_message("geometry_msgs/msg/PolygonStamped")
-        self.register(self.create_subscription(raw, self._topic("costmap"), self._on_costmap, DESCRIPTION_QOS))
+        self.register(self.create_subscription(raw, self._topic("costmap"), self._on_costmap, LATCHED_QOS))
         self.register(self.create_subscription(polygon, self._topic("footprint"), self._on_footprint, _DEPTH))
         asked = self._value("cmd_vel_teleop")
         for kind in velocity_types(self, asked, self._stamped):

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.graph import DESCRIPTION_QOS, ActionClient, TransformException
+from linkwright.graph import LATCHED_QOS, ActionClient, TransformException
 from linkwright.graph.actions.goal import ServerGoalHandle
 from linkwright.graph.time.values import Duration
 from linkwright.graph.transforms.core import BufferCore
@@ -67,7 +67,7 @@ class NavigatorNode(StepNode):
         self.register(self.create_subscription(pose, "goal_pose", self._on_goal_pose, _DEPTH))
         self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
         raw = get_message("nav2_msgs/msg/Costmap")
-        self.register(self.create_subscription(raw, _COSTMAP_TOPIC, self._on_costmap, DESCRIPTION_QOS))
+        self.register(self.create_subscription(raw, _COSTMAP_TOPIC, self._on_costmap, LATCHED_QOS))
         self._clients = {
             name: self.register(ActionClient(self, f"nav2_msgs/action/{kind}", name)) for name, kind in _ACTIONS.items()
         }

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.graph import DESCRIPTION_QOS, Node
+from linkwright.graph import LATCHED_QOS, Node
 from linkwright.messages import get_message, is_before_iron
 from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, UNKNOWN, Costmap
 from linkwright.navigation.costmaps.layer import Costs, Window
@@ -18,7 +18,6 @@ from linkwright.navigation.costmaps.layered import LayeredCostmap
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.occupancy import occupancy_message
 
-_QOS = DESCRIPTION_QOS
 """For late subscribers: reliable, transient local, one message."""
 
 
@@ -63,14 +62,14 @@ class CostmapPublisher:
         self._pending = Window()
         self._sent: tuple[float, float, int, int] | None = None
         self._listeners = 0
-        self._full = node.create_publisher(get_message("nav_msgs/msg/OccupancyGrid"), "costmap", _QOS)
-        self._raw = node.create_publisher(get_message("nav2_msgs/msg/Costmap"), "costmap_raw", _QOS)
+        self._full = node.create_publisher(get_message("nav_msgs/msg/OccupancyGrid"), "costmap", LATCHED_QOS)
+        self._raw = node.create_publisher(get_message("nav2_msgs/msg/Costmap"), "costmap_raw", LATCHED_QOS)
         update = get_message("map_msgs/msg/OccupancyGridUpdate")
-        self._updates = node.create_publisher(update, "costmap_updates", _QOS)
+        self._updates = node.create_publisher(update, "costmap_updates", LATCHED_QOS)
         self._raw_updates: Any = None
         if not is_before_iron():
             self._raw_updates = node.create_publisher(
-                get_message("nav2_msgs/msg/CostmapUpdate"), "costmap_raw_updates", _QOS
+                get_message("nav2_msgs/msg/CostmapUpdate"), "costmap_raw_updates", LATCHED_QOS
             )
 
     def destroy(self) -> None:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from linkwright.geometry.arrays import rotation_matrix
 from linkwright.geometry.single import Transform
 from linkwright.graph import (
-    DESCRIPTION_QOS,
+    LATCHED_QOS,
     SENSOR_DATA_QOS,
     DurabilityPolicy,
     Node,
@@ -209,7 +209,7 @@ class MapTopic:
     ) -> None:
         self.frame: str | None = None
         self._node, self._layer, self._on_map = node, layer, on_map
-        qos = DESCRIPTION_QOS if transient_local else QoSProfile(10, durability=DurabilityPolicy.VOLATILE)
+        qos = LATCHED_QOS if transient_local else QoSProfile(10, durability=DurabilityPolicy.VOLATILE)
         message = get_message("nav_msgs/msg/OccupancyGrid")
         self._subscriptions = [node.create_subscription(message, topic, self._receive, qos)]
         if updates:

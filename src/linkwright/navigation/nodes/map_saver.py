@@ -6,7 +6,7 @@ import asyncio
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, render
-from linkwright.graph import Graph, Logger, Node, QoSProfile
+from linkwright.graph import LATCHED_QOS, Graph, Logger, Node, QoSProfile
 from linkwright.graph.command_line.ros_arguments import remove_ros_arguments
 from linkwright.graph.loop.callback_groups import ReentrantCallbackGroup
 from linkwright.messages import get_message, get_service
@@ -14,7 +14,6 @@ from linkwright.navigation.grids.occupancy import BadGridError, grid_of
 from linkwright.navigation.maps.map_files import FREE_THRESH, OCCUPIED_THRESH, SavedAs, save_map
 from linkwright.navigation.maps.map_yaml import MapMode
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.navigation.nodes.map_server import MAP_QOS
 from linkwright.nodes.answers import answered
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import log_unknown
@@ -109,7 +108,7 @@ class _Saving:
             if not come.done():
                 come.set_result(message)
 
-        qos = MAP_QOS if self._latched else QoSProfile(depth=10)
+        qos = LATCHED_QOS if self._latched else QoSProfile(depth=10)
         group = ReentrantCallbackGroup()  # the service that waits for the map holds the group of the node
         kind = get_message("nav_msgs/msg/OccupancyGrid")
         subscription = node.create_subscription(kind, topic, receive, qos, callback_group=group)

@@ -9,14 +9,11 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph import DurabilityPolicy, Parameter, ParameterType, QoSProfile, ReliabilityPolicy
+from linkwright.graph import LATCHED_QOS, Parameter, ParameterType
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.grids.occupancy import occupancy_message
 from linkwright.navigation.maps.map_files import load_map
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-
-MAP_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""The QoS profile of a map, which is published once, also for late subscriptions."""
 
 
 class MapServerNode(ManagedNode):
@@ -45,7 +42,9 @@ class MapServerNode(ManagedNode):
         self.register(self.create_service(get_service("nav_msgs/srv/GetMap"), f"{name}/map", self._on_get))
         self.register(self.create_service(get_service("nav2_msgs/srv/LoadMap"), f"{name}/load_map", self._on_load))
         kind = get_message("nav_msgs/msg/OccupancyGrid")
-        self._publisher = self.register(self.create_publisher(kind, self.get_parameter("topic_name").value, MAP_QOS))
+        self._publisher = self.register(
+            self.create_publisher(kind, self.get_parameter("topic_name").value, LATCHED_QOS)
+        )
 
     def activate(self) -> None:
         """Publish the map."""

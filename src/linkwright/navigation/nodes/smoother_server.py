@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from linkwright.graph import DESCRIPTION_QOS
+from linkwright.graph import LATCHED_QOS
 from linkwright.graph.actions.goal import ServerGoalHandle
 from linkwright.graph.time.values import Duration
 from linkwright.messages import get_message
@@ -54,7 +54,7 @@ class SmootherNode(ManagedNode):
         self.get_logger().info(f"Smoother Server has {' '.join(names)}  smoothers available.")
         raw, path = get_message("nav2_msgs/msg/Costmap"), get_message("nav_msgs/msg/Path")
         topic = self.get_parameter("costmap_topic").value
-        self.register(self.create_subscription(raw, topic, self._on_costmap, DESCRIPTION_QOS))
+        self.register(self.create_subscription(raw, topic, self._on_costmap, LATCHED_QOS))
         self._output = self.register(self.create_publisher(path, "plan_smoothed", 1))
         self._goals = self.register(GoalServer(self, "nav2_msgs/action/SmoothPath", "smooth_path", self._smooth))
 

@@ -13,7 +13,7 @@ from functools import partial
 from typing import Any
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.graph import Client, DurabilityPolicy, QoSProfile
+from linkwright.graph import ACTION_STATUS_QOS, Client
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.page.goal_outcome import accepted_at
 from linkwright.nodes.answers import answered
@@ -110,11 +110,10 @@ class _Watch:
         self._asked: set[str] = set()
         self._goal = b""
         feedback = get_message("nav2_msgs/action/NavigateToPose_FeedbackMessage")
-        lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._subscriptions = [
             self._node.create_subscription(feedback, f"{_ACTION}/feedback", self._progressed, 10),
             self._node.create_subscription(
-                "action_msgs/msg/GoalStatusArray", f"{_ACTION}/status", self._goals_changed, lasting
+                "action_msgs/msg/GoalStatusArray", f"{_ACTION}/status", self._goals_changed, ACTION_STATUS_QOS
             ),
         ]
         self._work: asyncio.Task[None] | None = None

@@ -19,7 +19,7 @@ from msgspec.structs import replace
 
 from linkwright.descriptions import examine, examine_world, is_world
 from linkwright.diagnostics import LinkwrightError, phrase
-from linkwright.graph import DurabilityPolicy, EndpointKind, QoSProfile
+from linkwright.graph import LATCHED_QOS, EndpointKind
 from linkwright.messages import get_message
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import ServerMessage
@@ -38,7 +38,6 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.simulation.page.services import SimulationServices, refuse
 
 _STATE = "/simulation_state"
-_LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _PAUSED = 2
 """The value of simulation_interfaces/msg/SimulationState for a paused simulation."""
 _VELOCITIES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
@@ -127,7 +126,7 @@ class SimulationFeature(PageFeature):
         if present and not self._subscriptions:
             node = self.context.node
             self._subscriptions = [
-                node.create_subscription("simulation_interfaces/msg/SimulationState", _STATE, self._state, _LATCHED),
+                node.create_subscription("simulation_interfaces/msg/SimulationState", _STATE, self._state, LATCHED_QOS),
                 node.create_subscription(
                     "gazebo_msgs/msg/PerformanceMetrics", "/performance_metrics", self._metrics, 10
                 ),

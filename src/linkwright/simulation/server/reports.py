@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from linkwright.descriptions.conversion import with_addresses
 from linkwright.geometry.single import Transform
-from linkwright.graph import CLOCK_QOS, DurabilityPolicy, QoSProfile
+from linkwright.graph import CLOCK_QOS, LATCHED_QOS
 from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import Header, String, Time, get_message
 from linkwright.messages.tf_message import TFMessage, TransformBatch
@@ -26,7 +26,6 @@ from linkwright.sdf.writer import WrittenModel, save_model_of_world, save_world
 from linkwright.simulation.server.server import SimulationServer
 
 T = TypeVar("T")
-_LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _CLOCK, _STATE = "rosgraph_msgs/msg/Clock", "simulation_interfaces/msg/SimulationState"
 _METRICS = "gazebo_msgs/msg/PerformanceMetrics"
 _POSES_PERIOD, _METRICS_PERIOD = 1 / 30, 0.5
@@ -47,8 +46,8 @@ class Reports:
     def __init__(self, server: SimulationServer, topics: SteppedNode, clock_rate: float) -> None:
         self._server = server
         self._clock = topics.publisher(_CLOCK, "/clock", CLOCK_QOS)
-        self._state = topics.publisher(_STATE, "/simulation_state", _LATCHED)
-        self._description = topics.publisher("std_msgs/msg/String", "/world_description", _LATCHED)
+        self._state = topics.publisher(_STATE, "/simulation_state", LATCHED_QOS)
+        self._description = topics.publisher("std_msgs/msg/String", "/world_description", LATCHED_QOS)
         self._poses = topics.publisher("tf2_msgs/msg/TFMessage", "/world_poses", 10)
         self._metrics = topics.publisher(_METRICS, "/performance_metrics", 10)
         self._names: tuple[str, ...] = ()

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
-from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.messages import get_message
 from linkwright.speech.sound.resampling import HIGHEST_RATE, LOWEST_RATE, Resampler, to_samples
 from linkwright.speech.sound.samples import RATE, Samples
@@ -27,7 +26,6 @@ AUDIO_INFO = "audio_common_msgs/msg/AudioInfo"
 AUDIO_DEPTH = 100
 """The depth of `AUDIO`'s queues: 10 s. audio_capture has 10, too few where a process is busy for 1 s."""
 
-INFO_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 WAVE = "wave"
 """The coding format of samples that are not compressed."""

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.graph import Node, Publisher, Time
+from linkwright.graph import LATCHED_QOS, Node, Publisher, Time
 from linkwright.speech.nodes.audio_messages import (
     AUDIO,
     AUDIO_DEPTH,
     AUDIO_INFO,
     AUDIO_STAMPED,
-    INFO_QOS,
     AudioForm,
     audio_data,
     audio_info,
@@ -34,7 +33,7 @@ class AudioTopics:
         self._node = node
         self._plain: Publisher[Any] = node.create_publisher(AUDIO, f"{namespace}/audio", AUDIO_DEPTH)
         self._stamped: Publisher[Any] = node.create_publisher(AUDIO_STAMPED, f"{namespace}/audio_stamped", AUDIO_DEPTH)
-        self._info: Publisher[Any] = node.create_publisher(AUDIO_INFO, f"{namespace}/audio_info", INFO_QOS)
+        self._info: Publisher[Any] = node.create_publisher(AUDIO_INFO, f"{namespace}/audio_info", LATCHED_QOS)
         self._info.publish(audio_info(AudioForm()))
         self._stamps = SampleStamps()
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.graph import Clock, ClockType, Graph, ParameterType, Publisher, Subscription
+from linkwright.graph import LATCHED_QOS, Clock, ClockType, Graph, ParameterType, Publisher, Subscription
 from linkwright.graph.endpoints.commander import Commander
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
@@ -25,7 +25,6 @@ from linkwright.speech.nodes.audio_messages import (
     AUDIO_DEPTH,
     AUDIO_INFO,
     AUDIO_STAMPED,
-    INFO_QOS,
     AudioForm,
     AudioReader,
 )
@@ -159,7 +158,7 @@ class VoiceCommander(SingleNode):
         self._listener = Listener(node, make, self._handle, self._press_heard, self._warn, self._failed)
         self._reader = AudioReader()
         self._gaps = SoundGaps()
-        node.create_subscription(AUDIO_INFO, "audio/audio_info", self._on_info, INFO_QOS)
+        node.create_subscription(AUDIO_INFO, "audio/audio_info", self._on_info, LATCHED_QOS)
         self._audio: Subscription[Any] = node.create_subscription(
             AUDIO_STAMPED, "audio/audio_stamped", self._on_audio, AUDIO_DEPTH
         )

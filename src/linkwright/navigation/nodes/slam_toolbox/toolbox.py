@@ -13,15 +13,13 @@ import numpy as np
 
 from linkwright.geometry.single import Transform, quaternion_from_rpy, rotation_matrix, rpy_from_quaternion
 from linkwright.graph import (
+    LATCHED_QOS,
     SENSOR_DATA_QOS,
     TF_QOS,
-    DurabilityPolicy,
     Duration,
     JumpThreshold,
     Node,
     Parameter,
-    QoSProfile,
-    ReliabilityPolicy,
     TransformException,
 )
 from linkwright.graph.transforms.core import BufferCore
@@ -39,7 +37,6 @@ from linkwright.navigation.slam.scan import PlanarScan, planar_scan
 from linkwright.navigation.slam.steps import Steps
 from linkwright.navigation.slam.storage import load_graph, path_of
 
-_MAP_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _LOOK_PERIOD = 0.05
 """Seconds between looks for a transform that a scan waits for, where no transforms are published."""
 _LONG_QUEUE = 10
@@ -89,8 +86,8 @@ class Toolbox:
         self._listener = TransformListener(self._buffer, node)
         message, name = get_message, settings.map_name
         self._poses = node.create_publisher(message("geometry_msgs/msg/PoseWithCovarianceStamped"), "pose", 10)
-        self._maps = node.create_publisher(message("nav_msgs/msg/OccupancyGrid"), name, _MAP_QOS)
-        self._sizes = node.create_publisher(message("nav_msgs/msg/MapMetaData"), f"{name}_metadata", _MAP_QOS)
+        self._maps = node.create_publisher(message("nav_msgs/msg/OccupancyGrid"), name, LATCHED_QOS)
+        self._sizes = node.create_publisher(message("nav_msgs/msg/MapMetaData"), f"{name}_metadata", LATCHED_QOS)
         kind = message("visualization_msgs/msg/MarkerArray")
         self._graphs = node.create_publisher(kind, "slam_toolbox/graph_visualization", 1)
         self._transforms = node.create_publisher(TFMessage, "/tf", TF_QOS)

@@ -13,7 +13,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.graph import DurabilityPolicy, QoSProfile
+from linkwright.graph import LATCHED_QOS
 from linkwright.messages import get_message, get_service
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import PageMessage, ServerMessage
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from linkwright.simulation.page.modelling.edited_world import EditedWorld
 
 _DESCRIPTION = "/world_description"
-_LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _EMPTY, _LOAD = "std_srvs/srv/Empty", "simulation_interfaces/srv/LoadWorld"
 _PATIENCE = 30.0
 """Seconds to wait for an answer of the simulation, or its description."""
@@ -233,7 +232,7 @@ class ModellingFeature(PageFeature):
             if not text.done():
                 text.set_result(message.data)
 
-        subscription = node.create_subscription(get_message("std_msgs/msg/String"), _DESCRIPTION, receive, _LATCHED)
+        subscription = node.create_subscription(get_message("std_msgs/msg/String"), _DESCRIPTION, receive, LATCHED_QOS)
         try:
             return await asyncio.wait_for(text, _PATIENCE if self._is_available() else 0)
         except asyncio.TimeoutError:
