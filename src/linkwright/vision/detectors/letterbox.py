@@ -1,7 +1,7 @@
 """Letterbox: an image scaled into the input of a network, with grey borders.
 
 As Ultralytics does it (`LetterBox`, `scale_boxes`): one scale for both directions, linear interpolation, the image in
-the middle, 114 around it. An input of any size is made no larger than it has to be for its stride.
+the middle, `GREY` around it. An input of any size is made no larger than it has to be for its stride.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from linkwright.vision.detectors.library import load_opencv
 
-_GREY = 114
+GREY = 114
+"""The level of the border around an image, in all three channels; networks are trained with it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +69,7 @@ def letterboxed(
     scaled = image
     if (rows, columns) != (height, width):
         scaled = cv2.resize(image, (columns, rows), interpolation=cv2.INTER_LINEAR)
-    whole = np.full((rows + vertical, columns + horizontal, 3), _GREY, np.uint8)
+    whole = np.full((rows + vertical, columns + horizontal, 3), GREY, np.uint8)
     whole[top : top + rows, left : left + columns] = scaled
     return whole, Letterbox(width, height, (columns / width, rows / height), left, top)
 

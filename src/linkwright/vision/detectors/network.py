@@ -15,7 +15,7 @@ from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.class_names import read_labels
 from linkwright.vision.detectors.layouts import Candidates, Form, find_layout, wrong_number
-from linkwright.vision.detectors.letterbox import letterboxed, tensor_of
+from linkwright.vision.detectors.letterbox import GREY, letterboxed, tensor_of
 from linkwright.vision.detectors.metadata import Metadata
 from linkwright.vision.detectors.options import LARGEST_SIZE, DetectorOptions
 from linkwright.vision.detectors.sessions import session_on
@@ -54,7 +54,7 @@ class NetworkDetector(Detector):
         if fixed and options.size not in (None, fixed):
             shown = phrase("{columns} x {rows}", columns=fixed[1], rows=fixed[0])
             self._notes.append(phrase("the input of '{file}' is always {size} pixels", file=file.name, size=shown))
-        grey = np.full((*self._size, 3), 114, np.uint8)
+        grey = np.full((*self._size, 3), GREY, np.uint8)
         shapes = [output.shape for output in self._run(tensor_of(grey, self._kind))]
         named = len(labels) if labels is not None else None
         self._layout = find_layout(shapes, self._size, metadata, file, named, options.labels)

@@ -11,13 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
-from linkwright.vision.detectors.letterbox import letterboxed
+from linkwright.vision.detectors.letterbox import GREY, letterboxed
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.training.options import View
 from linkwright.vision.training.reading import Labelled
 
-GREY = 114
-"""Around images of another shape, as trainers of the YOLO family do it."""
 _FEWEST_PIXELS = 3.0  # an object that is narrower after augmentation is ignored
 _LEAST_SHARE = 0.3  # as is one with a smaller remaining share
 
