@@ -32,10 +32,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from linkwright.control.controllers.node import ControllerNode
-from linkwright.control.controllers.parameters import NoParameters, ParameterTable
 from linkwright.control.hardware.interfaces import CommandInterface, Interfaces, StateInterface
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, joined, phrase
 from linkwright.graph.lifecycle.states import UNCONFIGURED, LifecycleState
+from linkwright.nodes.parameter_tables import NoParameters, ParameterTable
 
 if TYPE_CHECKING:
     from linkwright.urdf import Robot
@@ -113,8 +113,9 @@ class Controller(ABC, Generic[P]):
         self.time_ns = 0
         self.state: LifecycleState = UNCONFIGURED
         self._parameters: ParameterTable[P] = ParameterTable(place.node.graph_node, self.PARAMETERS)
-        for warning in self._parameters.unknown():
-            self.node.logger.warning(warning)
+        for name, hint in self._parameters.unknown():
+            message = phrase("'{name}' is not a parameter of this controller", name=name)
+            self.node.logger.warning(message if hint is None else joined((message, hint), "; "))
 
     @classmethod
     def variant(cls, given: Collection[str]) -> type[Controller[Any]]:  # noqa: ARG003 - for those that share a name

@@ -13,11 +13,11 @@ from math import isfinite, isnan
 
 from linkwright.control.controllers.controller import ControllerError, InterfaceNames
 from linkwright.control.controllers.limited_drive import LimitedDrive, LimitedDriveParameters
-from linkwright.control.controllers.parameters import HUMBLE, above, parameter
 from linkwright.control.controllers.speed_limits import NO_LIMITS, SpeedLimits
 from linkwright.control.hardware.interfaces import POSITION, VELOCITY
 from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import DifferentialDrive
+from linkwright.nodes.parameter_tables import HUMBLE, above, parameter
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
-from linkwright.control.controllers.parameters import parameter
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
+from linkwright.nodes.parameter_tables import parameter
 
 P = TypeVar("P")
 

@@ -16,12 +16,12 @@ from typing import Any, ClassVar, TypeVar
 
 from linkwright.control.controllers.action import ControllerAction, Goal
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
-from linkwright.control.controllers.parameters import at_least, for_each, not_empty, parameter
 from linkwright.control.controllers.pid_parameters import PidParameters
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
 from linkwright.control.motion.pid import Pid
 from linkwright.diagnostics import phrase
 from linkwright.messages import JointState, get_action
+from linkwright.nodes.parameter_tables import at_least, for_each, not_empty, parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 

@@ -15,10 +15,10 @@ from math import isfinite
 
 from linkwright.control.controllers.controller import ControllerError, InterfaceNames
 from linkwright.control.controllers.limited_drive import LimitedDrive, LimitedDriveParameters
-from linkwright.control.controllers.parameters import above, not_empty, parameter
 from linkwright.control.controllers.speed_limits import NO_LIMITS, SpeedLimits
 from linkwright.control.hardware.interfaces import POSITION, VELOCITY
 from linkwright.kinematics.drives import MecanumDrive
+from linkwright.nodes.parameter_tables import above, not_empty, parameter
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from linkwright.control.controllers.controller import Controller, InterfaceNames
-from linkwright.control.controllers.parameters import parameter
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY, Interfaces, StateInterface
 from linkwright.messages import Header, JointState, Time, get_message
+from linkwright.nodes.parameter_tables import parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from linkwright.control.controllers.parameters import HUMBLE, JAZZY, at_least, for_each, not_empty, one_of, parameter
 from linkwright.control.controllers.pid_parameters import PidParameters
 from linkwright.control.hardware.interfaces import ACCELERATION, EFFORT, POSITION, VELOCITY
 from linkwright.control.motion.tolerances import StateTolerance, Tolerances
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, at_least, for_each, not_empty, one_of, parameter
 
 _ONE_COMMAND = one_of(POSITION, VELOCITY, ACCELERATION, EFFORT)
 _ONE_STATE = one_of(POSITION, VELOCITY, ACCELERATION)

@@ -13,10 +13,10 @@ from typing import Generic, TypeVar
 
 from linkwright.control.controllers.controller import Controller
 from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
-from linkwright.control.controllers.parameters import HUMBLE, parameter
 from linkwright.control.controllers.speed_limits import NO_LIMITS, SpeedLimits
 from linkwright.control.controllers.velocity_input import VelocityInput
 from linkwright.messages import Header, Time, Vector3, get_message
+from linkwright.nodes.parameter_tables import HUMBLE, parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _NONE = (0.0,) * 6

@@ -14,11 +14,11 @@ from typing import Any
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
 from linkwright.control.controllers.husarion_mecanum_controller import HusarionMecanumController
-from linkwright.control.controllers.parameters import above, not_empty, parameter
 from linkwright.control.controllers.velocity_input import REFERENCE_QOS, VelocityInput
 from linkwright.control.hardware.interfaces import VELOCITY
 from linkwright.kinematics.drives import MecanumDrive
 from linkwright.messages import Header, Time, Vector3, get_message
+from linkwright.nodes.parameter_tables import above, not_empty, parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DIAGONAL = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)

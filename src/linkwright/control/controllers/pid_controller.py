@@ -11,7 +11,6 @@ from math import isfinite, nan
 from typing import Any
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
-from linkwright.control.controllers.parameters import for_each, not_empty, parameter
 from linkwright.control.controllers.pid_parameters import PidParameters
 from linkwright.control.hardware.interfaces import POSITION
 from linkwright.control.motion.pid import Pid
@@ -19,6 +18,7 @@ from linkwright.control.motion.trajectory import shortest_turn
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.graph.qos.profile import QoSProfile, ReliabilityPolicy
 from linkwright.messages import Header, Time, get_message
+from linkwright.nodes.parameter_tables import for_each, not_empty, parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)

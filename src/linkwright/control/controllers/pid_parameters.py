@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
-from linkwright.control.controllers.parameters import one_of, parameter
 from linkwright.control.motion.pid import CLAMPED, NONE, STRATEGIES, PidGains
+from linkwright.nodes.parameter_tables import one_of, parameter
 
 
 @dataclass(frozen=True, kw_only=True)

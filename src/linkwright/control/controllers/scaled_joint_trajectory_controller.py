@@ -12,10 +12,10 @@ from linkwright.control.controllers.action import Goal
 from linkwright.control.controllers.controller import InterfaceNames
 from linkwright.control.controllers.joint_trajectory_controller import JointTrajectoryController
 from linkwright.control.controllers.joint_trajectory_parameters import Parameters
-from linkwright.control.controllers.parameters import parameter
 from linkwright.control.hardware.interfaces import Interfaces, StateInterface
 from linkwright.control.motion.splines import MotionState
 from linkwright.control.motion.trajectory import Trajectory
+from linkwright.nodes.parameter_tables import parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 

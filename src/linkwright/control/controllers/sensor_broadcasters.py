@@ -13,9 +13,9 @@ from math import isfinite
 from typing import Any, ClassVar, TypeVar
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
-from linkwright.control.controllers.parameters import at_least, not_empty, parameter
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.messages import Header, Quaternion, Time, Transform, TransformStamped, Vector3, get_message
+from linkwright.nodes.parameter_tables import at_least, not_empty, parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _UNKNOWN = (0.0,) * 9

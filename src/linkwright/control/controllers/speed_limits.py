@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from math import isnan, nan
 
 from linkwright.control.controllers.controller import ControllerError
-from linkwright.control.controllers.parameters import HUMBLE, JAZZY, parameter
 from linkwright.diagnostics import phrase
 from linkwright.kinematics.limits import UNBOUNDED, Bounds, SpeedLimiter
+from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 
 
 @dataclass(frozen=True, kw_only=True)

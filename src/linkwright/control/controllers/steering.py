@@ -16,12 +16,12 @@ from typing import ClassVar, Generic, TypeVar
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.control.controllers.drive_odometry import DriveOdometry, variances
-from linkwright.control.controllers.parameters import HUMBLE, JAZZY, above, parameter
 from linkwright.control.controllers.velocity_input import REFERENCE_QOS, VelocityInput
 from linkwright.control.hardware.interfaces import POSITION, VELOCITY
 from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import CarDrive
 from linkwright.messages import Header, Time, get_message
+from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, above, parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DIAGONAL = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)

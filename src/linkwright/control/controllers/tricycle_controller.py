@@ -12,7 +12,6 @@ from typing import Any
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.control.controllers.drive_odometry import DriveOdometry, variances
-from linkwright.control.controllers.parameters import above, not_empty, parameter
 from linkwright.control.controllers.velocity_input import VelocityInput
 from linkwright.control.hardware.interfaces import POSITION, VELOCITY
 from linkwright.control.motion.axle_limits import ANY, SteeringLimiter, TractionLimiter
@@ -20,6 +19,7 @@ from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import TricycleDrive
 from linkwright.kinematics.limits import UNBOUNDED, Bounds
 from linkwright.messages import get_message
+from linkwright.nodes.parameter_tables import above, not_empty, parameter
 
 _NONE = (0.0,) * 6
 _NEAR, _FAR = pi / 6.0, pi / 2.0

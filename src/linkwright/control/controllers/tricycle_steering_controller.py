@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from linkwright.control.controllers.parameters import HUMBLE, JAZZY, parameter
 from linkwright.control.controllers.steering import SteeringController, SteeringParameters
 from linkwright.kinematics.drives import CarDrive
+from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,7 +24,8 @@ from linkwright.navigation.costmaps.static_layer import Interpretation, MapPose,
 from linkwright.navigation.costmaps.voxel_layer import MOST_LEVELS, VoxelLayer, Voxels
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.nodes.costmap_sources import MapTopic, PointsTopic, RangeTopic, SensorTopic
-from linkwright.navigation.nodes.plugins import declare_unread, declared, texts_of, value_of
+from linkwright.navigation.nodes.plugins import declare_unread, texts_of, value_of
+from linkwright.nodes.parameter_tables import declared
 from linkwright.nodes.settings import bad_value
 
 DEFAULT_LAYERS: Final = {
@@ -166,7 +167,7 @@ def _static(shared: Surroundings, name: str) -> Layer:
 def _obstacles(shared: Surroundings, name: str) -> Layer:
     return ObstacleLayer(
         _buffers(shared, name),
-        declared(shared.node, name, Heights),
+        declared(shared.node, Heights, name),
         combination_method=shared.value(f"{name}.combination_method", 1),
         footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", True),
     )
@@ -175,13 +176,13 @@ def _obstacles(shared: Surroundings, name: str) -> Layer:
 def _voxels(shared: Surroundings, name: str) -> Layer:
     if shared.value(f"{name}.publish_voxel_map", False):
         shared.node.get_logger().info(f"'{name}' publishes no voxels, though {name}.publish_voxel_map asks for them")
-    voxels: Voxels = declared(shared.node, name, Voxels)
+    voxels: Voxels = declared(shared.node, Voxels, name)
     if not 0 < voxels.z_voxels <= MOST_LEVELS:
         known = [str(count) for count in range(1, MOST_LEVELS + 1)]
         raise bad_value(f"{name}.z_voxels", voxels.z_voxels, shared.node.get_name(), known)
     return VoxelLayer(
         _buffers(shared, name),
-        declared(shared.node, name, Heights),
+        declared(shared.node, Heights, name),
         voxels,
         combination_method=shared.value(f"{name}.combination_method", 1),
         footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", True),
@@ -196,7 +197,7 @@ def _buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
         kind = shared.value(f"{prefix}.data_type", "LaserScan")
         if kind not in _KINDS:
             raise bad_value(f"{prefix}.data_type", kind, shared.node.get_name(), _KINDS)
-        buffer = ObservationBuffer(declared(shared.node, prefix, Source))
+        buffer = ObservationBuffer(declared(shared.node, Source, prefix))
         topic = PointsTopic(
             shared.node,
             _beside(shared.node, shared.value(f"{prefix}.topic", source)),
@@ -214,11 +215,11 @@ def _buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
 
 
 def _inflation(shared: Surroundings, name: str) -> Layer:
-    return InflationLayer(declared(shared.node, name, Inflation))
+    return InflationLayer(declared(shared.node, Inflation, name))
 
 
 def _ranges(shared: Surroundings, name: str) -> Layer:
-    layer = RangeLayer(declared(shared.node, name, RangeSettings))
+    layer = RangeLayer(declared(shared.node, RangeSettings, name))
     shared.value(f"{name}.inflate_cone", 1.0)
     shared.value(f"{name}.input_sensor_type", "ALL")
     for topic in texts_of(shared.node, f"{name}.topics", []):

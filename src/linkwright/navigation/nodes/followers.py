@@ -24,7 +24,8 @@ from linkwright.navigation.following.follower import Follower, Velocity
 from linkwright.navigation.following.pure_pursuit import PurePursuitParameters, RegulatedPurePursuit
 from linkwright.navigation.following.rotation_shim import RotationShim, RotationShimParameters
 from linkwright.navigation.following.sampling import Limits, SamplingFollower, SamplingParameters
-from linkwright.navigation.nodes.plugins import declare_unread, declared, type_of, value_of
+from linkwright.navigation.nodes.plugins import declare_unread, type_of, value_of
+from linkwright.nodes.parameter_tables import declared
 from linkwright.nodes.settings import bad_value
 
 DWB, MPPI = "dwb_core/DWBLocalPlanner", "nav2_mppi_controller/MPPIController"
@@ -60,7 +61,7 @@ def make_follower(node: Node, plugin: str) -> Follower:
 
 
 def _with_shim(node: Node, plugin: str) -> Follower:
-    parameters = declared(node, plugin, RotationShimParameters)
+    parameters = declared(node, RotationShimParameters, plugin)
     primary = str(value_of(node, f"{plugin}.primary_controller", DWB)).replace("::", "/")
     follower = RotationShim(_made(node, plugin, primary), parameters)
     unread = declare_unread(node, plugin)
@@ -74,7 +75,7 @@ def _made(node: Node, plugin: str, kind: str) -> Follower:
         return SamplingFollower(_dwb(node, plugin))
     if kind == MPPI:
         return SamplingFollower(_mppi(node, plugin))
-    return RegulatedPurePursuit(declared(node, plugin, PurePursuitParameters))
+    return RegulatedPurePursuit(declared(node, PurePursuitParameters, plugin))
 
 
 def _dwb(node: Node, plugin: str) -> SamplingParameters:
@@ -116,8 +117,8 @@ def make_goal_checker(node: Node, plugin: str) -> GoalChecker:
     """Make the goal checker of a plugin; see `make_follower`."""
     kind = type_of(node, plugin, USUAL_GOAL_CHECKERS)
     checkers: dict[str, Callable[[], GoalChecker]] = {
-        "nav2_controller/SimpleGoalChecker": lambda: SimpleGoalChecker(declared(node, plugin, SimpleGoalParameters)),
-        "nav2_controller/StoppedGoalChecker": lambda: StoppedGoalChecker(declared(node, plugin, StoppedGoalParameters)),
+        "nav2_controller/SimpleGoalChecker": lambda: SimpleGoalChecker(declared(node, SimpleGoalParameters, plugin)),
+        "nav2_controller/StoppedGoalChecker": lambda: StoppedGoalChecker(declared(node, StoppedGoalParameters, plugin)),
     }
     checker: GoalChecker = _checker(node, plugin, kind, checkers)
     return checker
@@ -127,8 +128,8 @@ def make_progress_checker(node: Node, plugin: str) -> ProgressChecker:
     """Make the progress checker of a plugin; see `make_follower`."""
     kind = type_of(node, plugin, USUAL_PROGRESS_CHECKERS)
     checkers: dict[str, Callable[[], ProgressChecker]] = {
-        "nav2_controller/SimpleProgressChecker": lambda: ProgressChecker(declared(node, plugin, ProgressParameters)),
-        "nav2_controller/PoseProgressChecker": lambda: ProgressChecker(declared(node, plugin, PoseProgressParameters)),
+        "nav2_controller/SimpleProgressChecker": lambda: ProgressChecker(declared(node, ProgressParameters, plugin)),
+        "nav2_controller/PoseProgressChecker": lambda: ProgressChecker(declared(node, PoseProgressParameters, plugin)),
     }
     checker: ProgressChecker = _checker(node, plugin, kind, checkers)
     return checker

@@ -25,10 +25,11 @@ from linkwright.navigation.nodes.costmap import CostmapNode, make_costmap
 from linkwright.navigation.nodes.goals import GoalError, GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.paths import path_message, pose_of, poses_of
-from linkwright.navigation.nodes.plugins import declare_unread, declared, texts_of, type_of
+from linkwright.navigation.nodes.plugins import declare_unread, texts_of, type_of
 from linkwright.navigation.nodes.slices import WAIT, SlicedWork
 from linkwright.navigation.planning.planner import PlanError, Settings, plan
 from linkwright.nodes.options import NodeOptions
+from linkwright.nodes.parameter_tables import declared
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _NAVFN: Final = "nav2_navfn_planner/NavfnPlanner"
@@ -101,8 +102,7 @@ class PlannerNode(ManagedNode):
 
     def _planner(self, name: str) -> Settings:
         kind = type_of(self, name, _USUAL)
-        usual = _OTHERS.get(kind, Settings())
-        settings = declared(self, name, Settings, **{field.name: getattr(usual, field.name) for field in fields(usual)})
+        settings = declared(self, Settings, name, _OTHERS.get(kind))
         if kind != _NAVFN:
             declare_unread(self, name)
             self.get_logger().warning(

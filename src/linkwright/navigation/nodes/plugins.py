@@ -3,32 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
-from typing import Any, TypeVar
+from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import Node, ParameterDescriptor, ParameterType
-
-T = TypeVar("T")
-
-
-def declared(node: Node, prefix: str, table: type[T], **defaults: Any) -> T:
-    """Declare the parameters of a plugin as the fields of a dataclass, and read them.
-
-    Args:
-        node: whose they are.
-        prefix: the name of the plugin.
-        table: the dataclass; the names of its fields are those of the parameters.
-        defaults: for fields that have another one here.
-
-    Raises:
-        LinkwrightError: a parameter has another type.
-    """
-    values = {
-        field.name: value_of(node, f"{prefix}.{field.name}", defaults.get(field.name, field.default))
-        for field in fields(table)  # type: ignore[arg-type]  # it is a dataclass
-    }
-    return table(**values)
 
 
 def value_of(node: Node, name: str, default: Any) -> Any:

@@ -21,8 +21,9 @@ from linkwright.navigation.nodes.costmap_reading import costmap_of
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.paths import path_message, poses_of
-from linkwright.navigation.nodes.plugins import declare_unread, declared, texts_of, type_of
+from linkwright.navigation.nodes.plugins import declare_unread, texts_of, type_of
 from linkwright.navigation.planning.smoothing import Smoothing, directions, smoothed
+from linkwright.nodes.parameter_tables import declared
 
 _SIMPLE: Final = "nav2_smoother/SimpleSmoother"
 _USUAL: Final = {"simple_smoother": _SIMPLE}
@@ -60,7 +61,7 @@ class SmootherNode(ManagedNode):
 
     def _make(self, name: str) -> None:
         kind = type_of(self, name, _USUAL)
-        declared(self, name, Smoothing)
+        declared(self, Smoothing, name)
         declare_unread(self, name)
         if kind != _SIMPLE:
             self.get_logger().warning(f"there is no {kind} here: '{name}' smooths as {_SIMPLE} does")

@@ -1,4 +1,4 @@
-"""Parameters of controllers: a dataclass is the table of their names, types and defaults.
+"""Parameters of nodes and controllers: a dataclass is the table of their names, types and defaults.
 
     @dataclass(frozen=True, kw_only=True)
     class Gains:
@@ -15,6 +15,8 @@ The types are ``str``, ``float``, ``int``, ``bool``, and ``tuple[...]`` of them;
 are declared without a value. A parameter that only Humble or only Jazzy has is declared if ``ROS_DISTRO`` names that
 distribution, or if a value is given: so files for either one are read as they are. Source: generate_parameter_library,
 which the controllers of ros2_controllers use.
+
+`declared` reads a table once, `ParameterTable` follows later changes.
 """
 
 from __future__ import annotations
@@ -109,6 +111,22 @@ class _Declaration:
     about: _About
 
 
+def declared(node: Node, table: type[P], prefix: str = "", usual: P | None = None) -> P:
+    """Declare the parameters of a table, unless they are declared, and read them.
+
+    Args:
+        node: the node.
+        table: the dataclass.
+        prefix: of the names: the name of a plugin, for ``PLUGIN.parameter``.
+        usual: the defaults, if they are not those of the table.
+
+    Raises:
+        LinkwrightError: a value has another type (GRAPH201) or is not allowed (CTL101).
+    """
+    values: P = _Reader(node).read(table, f"{prefix}." if prefix else "", usual)
+    return values
+
+
 class ParameterTable(Generic[P]):
     """The parameters of a node, declared from a dataclass; they follow later changes.
 
@@ -126,7 +144,7 @@ class ParameterTable(Generic[P]):
     def __init__(self, node: Node, table: type[P]) -> None:
         self._node = node
         self._table = table
-        self._declared: dict[str, _Declaration] = {}
+        self._reader = _Reader(node)
         self.values: P = self._read()
         node.add_on_set_parameters_callback(self._objection)
         node.add_post_set_parameters_callback(lambda _: self.refresh())
@@ -135,41 +153,63 @@ class ParameterTable(Generic[P]):
         """Read the parameters again; names that were added bring their own."""
         self.values = self._read()
 
-    def unknown(self) -> Iterator[Phrase]:
-        """Sentences about parameters that were given and do not exist."""
+    def unknown(self) -> Iterator[tuple[str, Phrase | None]]:
+        """Names of parameters that were given and do not exist, each with the one that may be meant."""
         for name in self._node.undeclared_overrides():
             if not name.startswith(_OF_EVERY_NODE):
-                hint = did_you_mean(name, self._declared)
-                message = phrase("'{name}' is not a parameter of this controller", name=name)
-                yield message if hint is None else joined((message, hint), "; ")
+                yield name, did_you_mean(name, self._reader.declared)
 
     def _read(self) -> P:
-        values: P = self._table_values(self._table, "")
+        values: P = self._reader.read(self._table)
         return values
 
-    def _table_values(self, table: Any, prefix: str) -> Any:
+    def _objection(self, parameters: list[Parameter]) -> SetParametersResult:
+        for parameter in parameters:
+            known = self._reader.declared.get(parameter.name)
+            if known is None or known.about.check is None or parameter.value is None:
+                continue
+            wrong = known.about.check(parameter.name, parameter.value)
+            if wrong is not None:
+                return SetParametersResult(successful=False, reason=wrong)
+        return SetParametersResult(successful=True)
+
+
+class _Reader:
+    """Declares the parameters of tables at their first reading.
+
+    Attributes:
+        declared: those that it declared or found declared, by name.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self.declared: dict[str, _Declaration] = {}
+
+    def read(self, table: Any, prefix: str = "", usual: Any = None) -> Any:
         kinds = _kinds(table)
         values: dict[str, Any] = {}
-        for declared in fields(table):
-            kind, name = kinds[declared.name], f"{prefix}{declared.name}"
-            if _NAMES in declared.metadata:
-                keys = dict.fromkeys(key for names in declared.metadata[_NAMES] for key in _listed(values[names]))
-                inside = declared.metadata[_TABLE]
-                name = f"{prefix}{declared.metadata[_BELOW] or declared.name}"
-                values[declared.name] = {key: self._table_values(inside, f"{name}.{key}.") for key in keys}
+        for entry in fields(table):
+            kind, name = kinds[entry.name], f"{prefix}{entry.name}"
+            if _NAMES in entry.metadata:
+                keys = dict.fromkeys(key for names in entry.metadata[_NAMES] for key in _listed(values[names]))
+                inside = entry.metadata[_TABLE]
+                name = f"{prefix}{entry.metadata[_BELOW] or entry.name}"
+                values[entry.name] = {key: self.read(inside, f"{name}.{key}.") for key in keys}
             elif is_dataclass(kind):
-                values[declared.name] = self._table_values(kind, f"{name}.")
+                values[entry.name] = self.read(kind, f"{name}.")
             else:
-                default = declared.default if declared.default is not MISSING else None
-                about = declared.metadata.get(_ABOUT, _About())
-                if about.later is not _SAME and not is_before_iron():
+                default = entry.default if entry.default is not MISSING else None
+                about = entry.metadata.get(_ABOUT, _About())
+                if usual is not None:
+                    default = getattr(usual, entry.name)
+                elif about.later is not _SAME and not is_before_iron():
                     default = about.later
-                values[declared.name] = self._value(_Declaration(name, _TYPES[kind], default, about))
+                values[entry.name] = self._value(_Declaration(name, _TYPES[kind], default, about))
         return table(**values)
 
     def _value(self, wanted: _Declaration) -> Any:
         name, about = wanted.name, wanted.about
-        if name not in self._declared:
+        if name not in self.declared:
             if about.only not in ("", _distribution()) and name not in self._node.undeclared_overrides():
                 return wanted.default
             descriptor = ParameterDescriptor(
@@ -178,7 +218,7 @@ class ParameterTable(Generic[P]):
             default = list(wanted.default) if isinstance(wanted.default, tuple) else wanted.default
             if not self._node.has_parameter(name):
                 self._node.declare_parameter(name, wanted.kind if default is None else default, descriptor)
-            self._declared[name] = wanted
+            self.declared[name] = wanted
             value = self._get(name)
             wrong = about.check(name, value) if about.check is not None and value is not None else None
             if wrong is not None:
@@ -188,17 +228,7 @@ class ParameterTable(Generic[P]):
 
     def _get(self, name: str) -> Any:
         value = self._node.get_parameter_or(name).value
-        return tuple(value) if self._declared[name].kind.is_array and value is not None else value
-
-    def _objection(self, parameters: list[Parameter]) -> SetParametersResult:
-        for parameter in parameters:
-            known = self._declared.get(parameter.name)
-            if known is None or known.about.check is None or parameter.value is None:
-                continue
-            wrong = known.about.check(parameter.name, parameter.value)
-            if wrong is not None:
-                return SetParametersResult(successful=False, reason=wrong)
-        return SetParametersResult(successful=True)
+        return tuple(value) if self.declared[name].kind.is_array and value is not None else value
 
 
 def _distribution() -> str:
