@@ -60,7 +60,7 @@ class AmclNode(ManagedNode):
             LinkwrightError: NODE433, a parameter cannot have its value.
         """
         self._settings = read_parameters(self)
-        if self._settings.forgets:
+        if self._settings.given.always_reset_initial_pose:
             self._pose = None
         self._map = None
         self._filter = ParticleFilter(self._settings.filter)
@@ -82,8 +82,8 @@ class AmclNode(ManagedNode):
         self._transforms = register(self.create_publisher(TFMessage, "/tf", TF_QOS))
         register(self.create_subscription(pose, "initialpose", self._on_initial_pose, 10))
         grid = get_message("nav_msgs/msg/OccupancyGrid")
-        register(self.create_subscription(grid, settings.map_topic, self._on_map, LATCHED_QOS))
-        register(self.create_subscription(scan, settings.scan_topic, self._on_scan, SENSOR_DATA_QOS))
+        register(self.create_subscription(grid, settings.given.map_topic, self._on_map, LATCHED_QOS))
+        register(self.create_subscription(scan, settings.given.scan_topic, self._on_scan, SENSOR_DATA_QOS))
         empty = get_service("std_srvs/srv/Empty")
         register(self.create_service(empty, "reinitialize_global_localization", self._on_global_localization))
         register(self.create_service(empty, "request_nomotion_update", self._on_no_motion))
@@ -118,12 +118,12 @@ class AmclNode(ManagedNode):
             self._work()
 
     def _on_map(self, message: Any) -> None:
-        if self._map is not None and self._settings.first_map_only:
+        if self._map is not None and self._settings.given.first_map_only:
             return
         try:
             grid = grid_of(message)
         except BadGridError as error:
-            self.get_logger().error(f"the message on '{self._settings.map_topic}' is not a map: {error}")
+            self.get_logger().error(f"the message on '{self._settings.given.map_topic}' is not a map: {error}")
             return
         self.get_logger().info(f"Received a {grid.columns} X {grid.rows} map @ {grid.resolution:.3f} m/pix")
         if message.header.frame_id != self._settings.world:
@@ -138,7 +138,7 @@ class AmclNode(ManagedNode):
             return
         self._heard_ns = self.get_clock().now().nanoseconds
         if self._map is None:
-            topic = self.resolve_topic_name(self._settings.map_topic)
+            topic = self.resolve_topic_name(self._settings.given.map_topic)
             nobody = "" if self.count_publishers(topic) else f" No node publishes on '{topic}'."
             self.get_logger().warning(f"Waiting for map....{nobody}", throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
             return
@@ -150,7 +150,7 @@ class AmclNode(ManagedNode):
         if silent >= _SECONDS_OF_SILENCE:
             self.get_logger().warning(
                 f"No laser scan received (and thus no pose updates have been published) for {silent:.1f} seconds. "
-                f"Verify that data is being published on the {self._settings.scan_topic} topic."
+                f"Verify that data is being published on the {self._settings.given.scan_topic} topic."
             )
 
     def _work(self) -> None:
@@ -162,7 +162,7 @@ class AmclNode(ManagedNode):
                 robot_in_odom, _ = self._buffer.lookup(self._settings.odom, self._settings.base, stamp_ns)
                 laser, _ = self._buffer.lookup(self._settings.base, scan.header.frame_id.removeprefix("/"), stamp_ns)
             except TransformException as error:
-                late = self.get_clock().now().nanoseconds - stamp_ns > self._settings.tolerance * 1e9
+                late = self.get_clock().now().nanoseconds - stamp_ns > self._settings.given.transform_tolerance * 1e9
                 if not late and len(self._waiting) < _MOST_WAITING:
                     return
                 self._waiting.popleft()
@@ -173,7 +173,9 @@ class AmclNode(ManagedNode):
                 continue
             self._waiting.popleft()
             settings = self._settings
-            beams = beams_of_scan(scan, laser, settings.max_beams, settings.range_min, settings.range_max)
+            beams = beams_of_scan(
+                scan, laser, settings.given.max_beams, settings.given.laser_min_range, settings.given.laser_max_range
+            )
             self._update(beams, robot_in_odom, stamp_ns)
 
     # --- the filter --------------------------------------------------------------------------------------------------
@@ -189,9 +191,11 @@ class AmclNode(ManagedNode):
         if moved:
             self._odometry = odometry
             skipping = settings.skipping if self._filter.has_converged() else None
-            self._filter.weigh(self._map.likelihoods(settings.model, self._filter.particles, beams, skipping))
+            self._filter.weigh(
+                self._map.likelihoods(settings.given.laser_model_type, self._filter.particles, beams, skipping)
+            )
             self._measured += 1
-            if self._measured % settings.resample_interval == 0:
+            if self._measured % settings.given.resample_interval == 0:
                 grid = self._map
                 self._filter.resample(lambda count: grid.random_poses(count, self._filter.random))
                 published = True
@@ -203,9 +207,9 @@ class AmclNode(ManagedNode):
     def _has_moved(self, odometry: Pose) -> bool:
         before, settings = self._odometry, self._settings
         return (
-            abs(odometry[0] - before[0]) > settings.update_min_d
-            or abs(odometry[1] - before[1]) > settings.update_min_d
-            or abs(turned_by(odometry[2] - before[2])) > settings.update_min_a
+            abs(odometry[0] - before[0]) > settings.given.update_min_d
+            or abs(odometry[1] - before[1]) > settings.given.update_min_d
+            or abs(turned_by(odometry[2] - before[2])) > settings.given.update_min_a
         )
 
     def _begin_at(self, pose: Pose | None, covariance: NDArray[np.float64]) -> None:
@@ -277,9 +281,9 @@ class AmclNode(ManagedNode):
         self._clouds.publish(message)
 
     def _broadcast(self, stamp_ns: int) -> None:
-        if self._map_to_odom is None or not self._settings.broadcasts:
+        if self._map_to_odom is None or not self._settings.given.tf_broadcast:
             return
-        good_until = stamp_ns + round(self._settings.tolerance * 1e9)
+        good_until = stamp_ns + round(self._settings.given.transform_tolerance * 1e9)
         frames = (self._settings.world,), (self._settings.odom,)
         self._transforms.publish(TFMessage(batch=TransformBatch(*frames, good_until, np.array([self._map_to_odom]))))
 

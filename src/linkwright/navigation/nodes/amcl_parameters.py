@@ -2,47 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 from linkwright.graph import Node
 from linkwright.navigation.localization.motion_models import MotionModel, Noise, Pose, differential, omnidirectional
 from linkwright.navigation.localization.particle_filter import FilterSettings
 from linkwright.navigation.localization.sensor_models import MODELS, BeamSkipping, LaserSettings
+from linkwright.nodes.parameter_tables import declared
 from linkwright.nodes.settings import bad_value
 
-_DEFAULTS: dict[str, Any] = {
-    **{f"alpha{number}": 0.2 for number in range(1, 6)},
-    "base_frame_id": "base_footprint",
-    "beam_skip_distance": 0.5,
-    "beam_skip_error_threshold": 0.9,
-    "beam_skip_threshold": 0.3,
-    "do_beamskip": False,
-    "global_frame_id": "map",
-    "laser_max_range": 100.0,
-    "laser_min_range": -1.0,
-    "laser_model_type": "likelihood_field",
-    "set_initial_pose": False,
-    "initial_pose.x": 0.0,
-    "initial_pose.y": 0.0,
-    "initial_pose.z": 0.0,
-    "initial_pose.yaw": 0.0,
-    "max_beams": 60,
-    "odom_frame_id": "odom",
-    "resample_interval": 1,
-    "robot_model_type": "nav2_amcl::DifferentialMotionModel",
-    "save_pose_rate": 0.5,
-    "tf_broadcast": True,
-    "transform_tolerance": 1.0,
-    "update_min_a": 0.2,
-    "update_min_d": 0.25,
-    "always_reset_initial_pose": False,
-    "scan_topic": "scan",
-    "map_topic": "map",
-    "first_map_only": False,
-    "freespace_downsampling": False,
-    **{field.name: field.default for kind in (LaserSettings, FilterSettings) for field in fields(kind)},
-}
 _MOTIONS: dict[str, MotionModel] = {
     "differential": differential,
     "nav2_amcl::DifferentialMotionModel": differential,
@@ -53,63 +22,84 @@ _POSITIVE = ("max_particles", "min_particles", "max_beams", "resample_interval",
 _NOT_NEGATIVE = ("laser_likelihood_max_dist", *(f"alpha{number}" for number in range(1, 6)))
 
 
+@dataclass(frozen=True, kw_only=True)
+class InitialPose:
+    """``initial_pose``: metres, and radians."""
+
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+    yaw: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class AmclParameters:
+    """The parameters beside `LaserSettings` and `FilterSettings`: metres, radians and seconds."""
+
+    alpha1: float = 0.2
+    alpha2: float = 0.2
+    alpha3: float = 0.2
+    alpha4: float = 0.2
+    alpha5: float = 0.2
+    base_frame_id: str = "base_footprint"
+    beam_skip_distance: float = 0.5
+    beam_skip_error_threshold: float = 0.9
+    beam_skip_threshold: float = 0.3
+    do_beamskip: bool = False
+    global_frame_id: str = "map"
+    laser_max_range: float = 100.0
+    laser_min_range: float = -1.0
+    laser_model_type: str = "likelihood_field"
+    set_initial_pose: bool = False
+    initial_pose: InitialPose = InitialPose()
+    max_beams: int = 60
+    odom_frame_id: str = "odom"
+    resample_interval: int = 1
+    robot_model_type: str = "nav2_amcl::DifferentialMotionModel"
+    save_pose_rate: float = 0.5
+    tf_broadcast: bool = True
+    transform_tolerance: float = 1.0
+    update_min_a: float = 0.2
+    update_min_d: float = 0.25
+    always_reset_initial_pose: bool = False
+    scan_topic: str = "scan"
+    map_topic: str = "map"
+    first_map_only: bool = False
+    freespace_downsampling: bool = False
+
+
 @dataclass(frozen=True, slots=True)
 class AmclSettings:
-    """The parameters as one object; lengths in metres, angles in radians, times in seconds.
+    """The parameters, and the objects that they describe.
 
     Attributes:
+        given: the parameters as they are.
         base: the frame of the robot.
         odom: the frame of odometry.
         world: the frame of the map.
         motion: the motion model.
         noise: the noise of odometry.
-        model: one of `MODELS`.
         laser: the settings of the laser model.
         skipping: the settings of beam skipping; None to skip no beams.
         filter: the settings of the particle filter.
-        max_beams: the number of beams used of a scan.
-        range_max: longer beams are shortened to this; negative for the scan's own limit.
-        range_min: shorter beams count as without a return; negative for the scan's own limit.
         initial_pose: the pose to start at; None to wait for one.
-        resample_interval: the number of measurements between two resamplings.
-        update_min_d: the distance after which a scan is used.
-        update_min_a: the rotation after which a scan is used.
-        tolerance: how long the published transform is valid.
-        broadcasts: whether the transform is published.
-        forgets: whether each configuration needs a new initial pose.
-        first_map_only: whether later maps are ignored.
-        scan_topic: the topic of scans.
-        map_topic: the topic of the map.
     """
 
+    given: AmclParameters
     base: str
     odom: str
     world: str
     motion: MotionModel
     noise: Noise
-    model: str
     laser: LaserSettings
     skipping: BeamSkipping | None
     filter: FilterSettings
-    max_beams: int
-    range_max: float
-    range_min: float
     initial_pose: Pose | None
-    resample_interval: int
-    update_min_d: float
-    update_min_a: float
-    tolerance: float
-    broadcasts: bool
-    forgets: bool
-    first_map_only: bool
-    scan_topic: str
-    map_topic: str
 
 
-def declare_parameters(node: Node) -> None:
-    """Declare all parameters."""
-    for name, default in _DEFAULTS.items():
-        node.declare_parameter(name, default)
+def declare_parameters(node: Node) -> tuple[AmclParameters, LaserSettings, FilterSettings]:
+    """Declare all parameters, unless they are declared, and read them."""
+    return declared(node, AmclParameters), declared(node, LaserSettings), declared(node, FilterSettings)
 
 
 def read_parameters(node: Node) -> AmclSettings:
@@ -118,47 +108,31 @@ def read_parameters(node: Node) -> AmclSettings:
     Raises:
         LinkwrightError: NODE433, one cannot have its value.
     """
-
-    def value(name: str) -> Any:
-        return node.get_parameter(name).value
-
+    given, laser, particles = declare_parameters(node)
     for name in (*_POSITIVE, *_NOT_NEGATIVE):
-        if value(name) < 0 or (name in _POSITIVE and value(name) == 0):
-            raise bad_value(name, value(name), node.get_name())
-    model: str = value("laser_model_type")
-    if model not in MODELS:
-        raise bad_value("laser_model_type", model, node.get_name(), MODELS)
-    if value("min_particles") > value("max_particles"):
-        raise bad_value("min_particles", value("min_particles"), node.get_name())
+        value: Any = node.get_parameter(name).value
+        if value < 0 or (name in _POSITIVE and value == 0):
+            raise bad_value(name, value, node.get_name())
+    if given.laser_model_type not in MODELS:
+        raise bad_value("laser_model_type", given.laser_model_type, node.get_name(), MODELS)
+    if particles.min_particles > particles.max_particles:
+        raise bad_value("min_particles", particles.min_particles, node.get_name())
     skipping = None
-    if value("do_beamskip") and model == "likelihood_field_prob":
-        names = ("beam_skip_distance", "beam_skip_threshold", "beam_skip_error_threshold")
-        skipping = BeamSkipping(*(value(name) for name in names))
-    pose = (value("initial_pose.x"), value("initial_pose.y"), value("initial_pose.yaw"))
+    if given.do_beamskip and given.laser_model_type == "likelihood_field_prob":
+        skipping = BeamSkipping(given.beam_skip_distance, given.beam_skip_threshold, given.beam_skip_error_threshold)
+    pose = given.initial_pose
     return AmclSettings(
-        base=value("base_frame_id").removeprefix("/"),
-        odom=value("odom_frame_id").removeprefix("/"),
-        world=value("global_frame_id").removeprefix("/"),
-        motion=_motion(node, value("robot_model_type")),
+        given=given,
+        base=given.base_frame_id.removeprefix("/"),
+        odom=given.odom_frame_id.removeprefix("/"),
+        world=given.global_frame_id.removeprefix("/"),
+        motion=_motion(node, given.robot_model_type),
         # alpha1 turn of turn, alpha2 turn of drive, alpha3 drive of drive, alpha4 drive of turn
-        noise=Noise(*(value(f"alpha{number}") for number in range(1, 6))),
-        model=model,
-        laser=LaserSettings(**{field.name: value(field.name) for field in fields(LaserSettings)}),
+        noise=Noise(given.alpha1, given.alpha2, given.alpha3, given.alpha4, given.alpha5),
+        laser=laser,
         skipping=skipping,
-        filter=FilterSettings(**{field.name: value(field.name) for field in fields(FilterSettings)}),
-        max_beams=value("max_beams"),
-        range_max=value("laser_max_range"),
-        range_min=value("laser_min_range"),
-        initial_pose=pose if value("set_initial_pose") else None,
-        resample_interval=value("resample_interval"),
-        update_min_d=value("update_min_d"),
-        update_min_a=value("update_min_a"),
-        tolerance=value("transform_tolerance"),
-        broadcasts=value("tf_broadcast"),
-        forgets=value("always_reset_initial_pose"),
-        first_map_only=value("first_map_only"),
-        scan_topic=value("scan_topic"),
-        map_topic=value("map_topic"),
+        filter=particles,
+        initial_pose=(pose.x, pose.y, pose.yaw) if given.set_initial_pose else None,
     )
 
 

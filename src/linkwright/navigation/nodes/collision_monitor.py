@@ -8,11 +8,12 @@ that is silent stops the robot, which in Humble it does not; and so does a drive
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.graph import EndpointInfo, ParameterType, Subscription
+from linkwright.graph import EndpointInfo, Subscription
 from linkwright.graph.endpoints.commander import Commander, who_was_lost
 from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.transforms.core import BufferCore
@@ -24,6 +25,7 @@ from linkwright.navigation.nodes.collision_sources import Source
 from linkwright.navigation.nodes.collision_zones import Zone
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.plugins import texts_of
+from linkwright.nodes.parameter_tables import ParameterTable
 from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 
 _DEPTH = 10
@@ -36,6 +38,22 @@ _DONE = {
     Action.LIMIT: "Robot to limit its speed due to {}",
     Action.NOTHING: "Robot to continue normal operation",
 }
+
+
+@dataclass(frozen=True, kw_only=True)
+class MonitorParameters:
+    """The parameters that do not belong to a zone or a sensor, under nav2's names: seconds."""
+
+    cmd_vel_in_topic: str = "cmd_vel_smoothed"
+    cmd_vel_out_topic: str = "cmd_vel"
+    state_topic: str = ""
+    base_frame_id: str = "base_footprint"
+    odom_frame_id: str = "odom"
+    transform_tolerance: float = 0.1
+    source_timeout: float = 2.0
+    base_shift_correction: bool = True
+    stop_pub_timeout: float = 1.0
+    enable_stamped_cmd_vel: bool | None = None
 
 
 class MonitorNode(ManagedNode):
@@ -51,19 +69,8 @@ class MonitorNode(ManagedNode):
         self._state: Any = None
         self._verdict = Verdict(STILL)
         self._stopped_ns: int | None = None
-        for name, value in {
-            "cmd_vel_in_topic": "cmd_vel_smoothed",
-            "cmd_vel_out_topic": "cmd_vel",
-            "state_topic": "",
-            "base_frame_id": "base_footprint",
-            "odom_frame_id": "odom",
-            "transform_tolerance": 0.1,
-            "source_timeout": 2.0,
-            "base_shift_correction": True,
-            "stop_pub_timeout": 1.0,
-        }.items():
-            self.declare_parameter(name, value)
-        self._stamped: bool | None = self.declare_parameter("enable_stamped_cmd_vel", ParameterType.BOOL).value
+        self._table = ParameterTable(self, MonitorParameters)
+        self._stamped = self._table.values.enable_stamped_cmd_vel
 
     def configure(self) -> None:
         """Read the zones and sensors, and make the topics.
@@ -71,17 +78,17 @@ class MonitorNode(ManagedNode):
         Raises:
             LinkwrightError: NODE431, NODE433, a parameter is not given or cannot have its value.
         """
-        base, odom = str(self._value("base_frame_id")), str(self._value("odom_frame_id"))
-        fixed = odom if self._value("base_shift_correction") else None
+        given = self._table.values
+        base, fixed = given.base_frame_id, given.odom_frame_id if given.base_shift_correction else None
         for name in texts_of(self, "observation_sources", []):
             self._sources.append(self.register(Source(self, name, self._transforms, base, fixed)))
         for name in texts_of(self, "polygons", []):
             self._zones.append(self.register(Zone(self, name, self._transforms, base)))
-        topic = str(self._value("state_topic"))
+        topic = given.state_topic
         if topic:
             self._state = self.register(self.create_publisher("nav2_msgs/msg/CollisionMonitorState", topic, _DEPTH))
-        self._output = VelocityTopic(self, str(self._value("cmd_vel_out_topic")), self._stamped)
-        topic = str(self._value("cmd_vel_in_topic"))
+        self._output = VelocityTopic(self, given.cmd_vel_out_topic, self._stamped)
+        topic = given.cmd_vel_in_topic
         for kind in velocity_types(self, topic, self._stamped):
             commander = Commander(self._on_lost, DriverWatch.of(self))
             take = commander.taking(self._on_velocity)
@@ -106,9 +113,6 @@ class MonitorNode(ManagedNode):
             self._output.close()
             self._output = None
 
-    def _value(self, name: str) -> Any:
-        return self.get_parameter(name).value
-
     def _on_velocity(self, message: Any) -> None:
         if not self.is_active or self._output is None:
             return
@@ -132,7 +136,7 @@ class MonitorNode(ManagedNode):
         now_ns = self.get_clock().now().nanoseconds
         seen = {}
         for source in self._sources:
-            points = source.points(now_ns, float(self._value("source_timeout")))
+            points = source.points(now_ns, self._table.values.source_timeout)
             if points is None:
                 return Verdict(STILL, Action.STOP, _NO_SOURCE)
             seen[source.name] = points
@@ -147,7 +151,7 @@ class MonitorNode(ManagedNode):
             self._stopped_ns = None
         elif self._stopped_ns is None:
             self._stopped_ns = now_ns
-        elif now_ns - self._stopped_ns > float(self._value("stop_pub_timeout")) * 1e9:
+        elif now_ns - self._stopped_ns > self._table.values.stop_pub_timeout * 1e9:
             return
         self._output.publish((velocity.x, velocity.y, 0.0), (0.0, 0.0, velocity.yaw))
 

@@ -7,7 +7,7 @@ out with a line.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -36,39 +36,42 @@ from linkwright.navigation.nodes.costmap_messages import CostmapPublisher, raw_m
 from linkwright.navigation.nodes.managed import ManagedNode
 from linkwright.navigation.nodes.plugins import declare_unread, texts_of
 from linkwright.nodes.options import NodeOptions
+from linkwright.nodes.parameter_tables import ParameterTable
 from linkwright.nodes.settings import bad_value
 
 _SECONDS_BETWEEN_COMPLAINTS = 5.0
 _LEAST_CORNERS = 3
-_PARAMETERS: dict[str, Any] = {
-    "always_send_full_costmap": False,
-    "map_vis_z": 0.0,
-    "footprint_padding": 0.01,
-    "footprint": "[]",
-    "global_frame": "map",
-    "height": 5,
-    "width": 5,
-    "lethal_cost_threshold": 100,
-    "observation_sources": "",
-    "origin_x": 0.0,
-    "origin_y": 0.0,
-    "publish_frequency": 1.0,
-    "resolution": 0.1,
-    "robot_base_frame": "base_link",
-    "robot_radius": 0.1,
-    "rolling_window": False,
-    "track_unknown_space": False,
-    "transform_tolerance": 0.3,
-    "initial_transform_timeout": 60.0,
-    "trinary_costmap": True,
-    "unknown_cost_value": 255,
-    "update_frequency": 5.0,
-    "use_maximum": False,
-    "map_topic": "map",
-}
-
-
 _OF_TF = (DEFAULT_TF_TOPIC, DEFAULT_STATIC_TF_TOPIC)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CostmapParameters:
+    """The parameters that do not belong to a layer, under nav2's names: metres, seconds and hertz."""
+
+    always_send_full_costmap: bool = False
+    map_vis_z: float = 0.0
+    footprint_padding: float = 0.01
+    footprint: str = "[]"
+    global_frame: str = "map"
+    height: int = 5
+    width: int = 5
+    lethal_cost_threshold: int = 100
+    observation_sources: str = ""
+    origin_x: float = 0.0
+    origin_y: float = 0.0
+    publish_frequency: float = 1.0
+    resolution: float = 0.1
+    robot_base_frame: str = "base_link"
+    robot_radius: float = 0.1
+    rolling_window: bool = False
+    track_unknown_space: bool = False
+    transform_tolerance: float = 0.3
+    initial_transform_timeout: float = 60.0
+    trinary_costmap: bool = True
+    unknown_cost_value: int = 255
+    update_frequency: float = 5.0
+    use_maximum: bool = False
+    map_topic: str = "map"
 
 
 class CostmapNode(ManagedNode):
@@ -84,28 +87,27 @@ class CostmapNode(ManagedNode):
 
     def declare(self) -> None:
         """Declare the parameters that do not belong to a layer."""
-        for name, value in _PARAMETERS.items():
-            self.declare_parameter(name, value)
-        self._filters: list[str] = texts_of(self, "filters", [])
-        self.transforms = BufferCore(logger=self.get_logger().get_child("tf2"))
-        TransformListener(self.transforms, self)
         self._shared: Surroundings | None = None
         self._layered: LayeredCostmap | None = None
         self._publisher: CostmapPublisher | None = None
         self._published_ns: int | None = None
         self.add_post_set_parameters_callback(self._follow)
+        self._table = ParameterTable(self, CostmapParameters)  # its callback, as the later one, is called first
+        self._filters: list[str] = texts_of(self, "filters", [])
+        self.transforms = BufferCore(logger=self.get_logger().get_child("tf2"))
+        TransformListener(self.transforms, self)
 
     # --- what servers ask ---------------------------------------------------------------------------------------------
 
     @property
     def global_frame(self) -> str:
         """Its own frame."""
-        return str(self._value("global_frame"))
+        return self._given.global_frame
 
     @property
     def robot_base_frame(self) -> str:
         """The frame of the robot."""
-        return str(self._value("robot_base_frame"))
+        return self._given.robot_base_frame
 
     @property
     def layered(self) -> LayeredCostmap:
@@ -131,7 +133,7 @@ class CostmapNode(ManagedNode):
     @property
     def uses_radius(self) -> bool:
         """Whether the robot is treated as round."""
-        return str(self._value("footprint")).replace(" ", "") in {"", "[]"}
+        return self._given.footprint.replace(" ", "") in {"", "[]"}
 
     @property
     def is_current(self) -> bool:
@@ -178,16 +180,16 @@ class CostmapNode(ManagedNode):
         resolution = self._positive("resolution")
         rows, columns = (max(1, int(self._positive(name) / resolution)) for name in ("height", "width"))
         cells = np.zeros((rows, columns), np.uint8)
-        grid = Grid(cells=cells, resolution=resolution, x=self._value("origin_x"), y=self._value("origin_y"))
+        grid = Grid(cells=cells, resolution=resolution, x=self._given.origin_x, y=self._given.origin_y)
         self._layered = LayeredCostmap(
             grid,
             list(self._shared.layers.values()),
             footprint,
-            rolling=self._value("rolling_window"),
-            track_unknown=self._value("track_unknown_space"),
-            footprint_padding=self._value("footprint_padding"),
+            rolling=self._given.rolling_window,
+            track_unknown=self._given.track_unknown_space,
+            footprint_padding=self._given.footprint_padding,
         )
-        always_full = self._value("always_send_full_costmap")
+        always_full = self._given.always_send_full_costmap
         self._publisher = self.register(
             CostmapPublisher(self, self._layered, self.global_frame, always_full=always_full)
         )
@@ -229,17 +231,18 @@ class CostmapNode(ManagedNode):
 
     # --- inside -------------------------------------------------------------------------------------------------------
 
-    def _value(self, name: str) -> Any:
-        return self.get_parameter(name).value
+    @property
+    def _given(self) -> CostmapParameters:
+        return self._table.values
 
     def _positive(self, name: str) -> float:
-        value = self._value(name)
+        value: float = getattr(self._given, name)
         if not value > 0:
             raise bad_value(name, value, self.get_name())
         return float(value)
 
     def _read_footprint(self) -> Footprint:
-        text = self._value("footprint")
+        text = self._given.footprint
         if self.uses_radius:
             return circle(self._positive("robot_radius"))
         try:
@@ -257,14 +260,14 @@ class CostmapNode(ManagedNode):
 
     def _begin_updates(self) -> None:
         self.end_cycles()
-        frequency = self._value("update_frequency")
+        frequency = self._given.update_frequency
         if frequency > 0.0:
             self.begin_cycles(1.0 / frequency, self._cycle)
 
     def _cycle(self) -> None:
         if not self.update() or self._publisher is None:
             return
-        frequency, now_ns = self._value("publish_frequency"), self.now_ns()
+        frequency, now_ns = self._given.publish_frequency, self.now_ns()
         if frequency <= 0.0:
             return
         if self._published_ns is None or not 0 <= now_ns - self._published_ns < 1e9 / frequency:
@@ -313,7 +316,7 @@ class CostmapNode(ManagedNode):
         names = {parameter.name for parameter in changed}
         if names & {"footprint", "robot_radius", "footprint_padding"}:
             try:
-                layered.padding = self._value("footprint_padding")
+                layered.padding = self._given.footprint_padding
                 layered.footprint = self._read_footprint()
             except LinkwrightError as error:
                 self.tell(error)

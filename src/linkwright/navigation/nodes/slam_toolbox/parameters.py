@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.graph import Node, Parameter, ParameterType
+from linkwright.navigation.nodes.plugins import value_of
 from linkwright.navigation.slam.poses import Floats
 from linkwright.navigation.slam.search import Search
 from linkwright.navigation.slam.settings import MapperSettings
@@ -89,9 +90,7 @@ class _Declared:
         self._node = node
 
     def _value(self, name: str, default: object) -> Any:
-        if not self._node.has_parameter(name):
-            self._node.declare_parameter(name, default)
-        return self._node.get_parameter(name).value
+        return value_of(self._node, name, default)
 
     def flag(self, name: str, default: bool) -> bool:
         return bool(self._value(name, default))
