@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.diagnostics.extras import APART, EXTRAS
 from linkwright.diagnostics.installation import Installation, Origin
 from tests.places import REPOSITORY
+from tests.toml_files import EXTRAS, TOGETHER
 
 WRITTEN = ("docs", "frontend/src", "robots", "src", "README.md", "README.zh-CN.md", "SECURITY.md", "SECURITY.zh-CN.md")
 KINDS = {".html", ".md", ".po", ".py", ".toml", ".ts", ".txt", ".xml", ".yaml"}
@@ -58,7 +58,20 @@ def test_each_command_is_that_of_a_checkout(monkeypatch: pytest.MonkeyPatch, tmp
             assert f"pip install {in_order}" == installation.command_for_extras(*extras), (path, what)
 
 
-@pytest.mark.parametrize(("page", "number"), [("README.md", "all but three"), ("README.zh-CN.md", "除三个以外")])
-def test_the_readme_counts_what_all_leaves_out(page: str, number: str) -> None:
-    assert len(APART) == 3
-    assert number in (REPOSITORY / page).read_text(encoding="utf-8")
+@pytest.mark.parametrize(
+    ("page", "sentence"),
+    [
+        ("README.md", r"brings all but ((?:`\w+`(?:, | and )?)+)"),
+        ("README.zh-CN.md", r"包含除 ((?:`\w+`[、 和]*)+)以外的全部"),
+        ("docs/decisions/0022-a-small-base.md", r"has them all, but for ((?:`\w+`(?:, | and )?)+)"),
+    ],
+)
+def test_what_all_leaves_out_is_named(page: str, sentence: str) -> None:
+    (names,) = re.findall(sentence, " ".join((REPOSITORY / page).read_text(encoding="utf-8").split()))
+    assert set(re.findall(r"`(\w+)`", names)) == EXTRAS.keys() - TOGETHER
+
+
+def test_extras_in_brackets_exist() -> None:
+    for page in [*REPOSITORY.glob("*.md"), *(REPOSITORY / "docs").rglob("*.md")]:
+        for names in re.findall(r"(?:linkwright|\.whl|'\.)\[([a-z, ]+)\]", page.read_text(encoding="utf-8")):
+            assert set(re.split(", ?", names)) <= {*EXTRAS, "all", "foxglove"}, page

@@ -8,9 +8,9 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.cli.command import help_texts
-from linkwright.diagnostics.extras import APART, EXTRAS
 from tests.docs.pages import DOCS
 from tests.repository_tools import load_tool
+from tests.toml_files import EXTRAS, TOGETHER
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,9 @@ def test_the_index_lists_each_command(folder) -> None:
 def test_each_extra_has_a_purpose_and_packages(tool) -> None:
     assert set(tool.EXTRAS) == set(EXTRAS)
     table = tool.extras(chinese=False)
-    assert {name for name in EXTRAS if re.search(rf"`{name}` \| .*; not in `all` \|", table)} == APART
+    assert {
+        name for name in EXTRAS if re.search(rf"`{name}` \| .*; not in `all` \|", table)
+    } == EXTRAS.keys() - TOGETHER
     for name, extra in tool.EXTRAS.items():
         assert any(required.name == extra.main for required in tool._required(name)), name
 

@@ -30,9 +30,6 @@ EXTRAS = {
 }
 """Name of the extra -> the module that is missing without it."""
 
-APART = frozenset({"parquet", "ray", "train"})
-"""Extras that ``linkwright[all]`` does not include; it includes all others (decision 0022)."""
-
 _BY_MODULE = {**{module: extra for extra, module in EXTRAS.items()}, "cv2": "vision"}
 
 
