@@ -1,7 +1,7 @@
-"""Detectors and their node: the processor's time for a picture of 640x480, and pictures a second beside the simulation.
+"""Detectors and their node: the processor's time for an image of 640x480, and images a second beside the simulation.
 
 Run it with ``python -m benchmarks vision``. Times are the processor's, of all threads, so that other programs change
-them little; pictures a second are counted where they come out, at ``/yolo/detections`` of
+them little; images a second are counted where they come out, at ``/yolo/detections`` of
 ``my_robot_vision detect.launch.py``, and mean something only on a quiet machine. The processor's time of that whole
 launch for each of them means something everywhere: 30 a second on two processors leave 66 ms.
 """
@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from benchmarks.measure import LINKWRIGHT, Row
 from linkwright.graph import Graph
-from linkwright.images import RangeFinder, Unpacker, picture_of
+from linkwright.images import RangeFinder, Unpacker, decode_image
 from linkwright.messages import get_message
 from linkwright.vision.detector import Limits
 from linkwright.vision.detectors.drawing import drawn
@@ -44,40 +44,40 @@ _SIZE = (480, 640)
 
 
 def rows() -> list[Row]:
-    """One picture in this process, then the launch file as a process of its own."""
-    return [*_one_picture(), *(row for model in MODELS for row in _beside_the_simulation(model))]
+    """One image in this process, then the launch file as a process of its own."""
+    return [*_one_image(), *(row for model in MODELS for row in _beside_the_simulation(model))]
 
 
-def _one_picture() -> Iterator[Row]:
-    picture = _scene()
-    message = image_message(get_message("std_msgs/msg/Header")(frame_id="camera"), picture)
+def _one_image() -> Iterator[Row]:
+    image = _scene()
+    message = image_message(get_message("std_msgs/msg/Header")(frame_id="camera"), image)
     unpacker, ranges = Unpacker(), RangeFinder()
     for encoding in ("rgb8", "bgr8"):
         message.encoding = encoding
-        taken = _milliseconds(lambda: picture_of(unpacker.image(message, "raw"), ranges).rgb())
+        taken = _milliseconds(lambda: decode_image(unpacker.image(message, "raw"), ranges).rgb())
         yield Row(f"a picture of {encoding} taken from its message", taken, "ms")
     for model in MODELS:
         detector = make_detector(model, DetectorOptions())
-        found = detector.detect(picture, Limits())
-        yield Row(f"{model}: found in it", _milliseconds(partial(detector.detect, picture, Limits())), "ms", "33")
+        found = detector.detect(image, Limits())
+        yield Row(f"{model}: found in it", _milliseconds(partial(detector.detect, image, Limits())), "ms", "33")
         yield Row(
             f"{model}: {len(found)} detections as a message",
             _milliseconds(partial(vision_message, message.header, found)),
             "ms",
         )
-        yield Row(f"{model}: the picture with boxes", _milliseconds(partial(drawn, picture, found)), "ms")
+        yield Row(f"{model}: the picture with boxes", _milliseconds(partial(drawn, image, found)), "ms")
 
 
 def _scene() -> NDArray[np.uint8]:
     """Things of plain colours on a floor, with noise as cameras have it; the same each time."""
     cv2 = load_opencv()
-    picture = np.full((*_SIZE, 3), 150, np.uint8)
-    picture[: _SIZE[0] // 2] = (150, 175, 205)
-    cv2.circle(picture, (200, 300), 50, (200, 20, 30), -1)
-    cv2.rectangle(picture, (400, 250), (480, 330), (220, 120, 20), -1)
-    cv2.circle(picture, (550, 300), 30, (20, 160, 40), -1)
-    noise = np.random.default_rng(1).normal(0.0, 2.0, picture.shape)
-    noisy: NDArray[np.uint8] = np.clip(picture + noise, 0, 255).astype(np.uint8)
+    image = np.full((*_SIZE, 3), 150, np.uint8)
+    image[: _SIZE[0] // 2] = (150, 175, 205)
+    cv2.circle(image, (200, 300), 50, (200, 20, 30), -1)
+    cv2.rectangle(image, (400, 250), (480, 330), (220, 120, 20), -1)
+    cv2.circle(image, (550, 300), 30, (20, 160, 40), -1)
+    noise = np.random.default_rng(1).normal(0.0, 2.0, image.shape)
+    noisy: NDArray[np.uint8] = np.clip(image + noise, 0, 255).astype(np.uint8)
     return noisy
 
 
@@ -94,11 +94,11 @@ def _milliseconds(call: Callable[[], object]) -> float:
 
 def _beside_the_simulation(model: str) -> Iterator[Row]:
     with _launched(model) as process:
-        pictures, seconds, processor, share = asyncio.run(_counted(process.pid))
+        images, seconds, processor, share = asyncio.run(_counted(process.pid))
     about = f"{model}, beside the simulation:"
-    yield Row(f"{about} detections a second", pictures / seconds, "/s", "30")
+    yield Row(f"{about} detections a second", images / seconds, "/s", "30")
     yield Row(f"{about} pictures of the camera with detections", share, "%")
-    yield Row(f"{about} the processor's time of all for each", 1000.0 * processor / pictures, "ms", "66")
+    yield Row(f"{about} the processor's time of all for each", 1000.0 * processor / images, "ms", "66")
 
 
 @contextmanager
@@ -118,9 +118,9 @@ def _launched(model: str) -> Iterator[subprocess.Popen[bytes]]:
 
 
 async def _counted(pid: int) -> tuple[int, float, float, float]:
-    """Detections that come, in how many seconds, with how much of the processor, and for which share of the pictures.
+    """Detections that come, in how many seconds, with how much of the processor, and for which share of the images.
 
-    How many pictures the camera made is told by their stamps, which are a period apart.
+    How many images the camera made is told by their stamps, which are a period apart.
     """
     stamps: list[int] = []
     os.environ["ROS_DOMAIN_ID"] = _DOMAIN

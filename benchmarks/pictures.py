@@ -51,14 +51,14 @@ def publish(reliable: bool, depth: int, rate: float, seconds: float) -> None:
     rclpy.init()
     node = rclpy.create_node("pictures")
     publisher = node.create_publisher(Image, "/picture", profile(reliable, depth))
-    picture = Image(height=1, width=SIZE, encoding="mono8", step=SIZE, data=bytes(SIZE))
+    image = Image(height=1, width=SIZE, encoding="mono8", step=SIZE, data=bytes(SIZE))
     until = time.monotonic() + STARTING
     while not publisher.get_subscription_count() and time.monotonic() < until:
         rclpy.spin_once(node, timeout_sec=0.1)
     time.sleep(1.0)  # both sides have found each other by then
     began, count, cpu = time.monotonic(), 0, time.process_time()
     while time.monotonic() < began + seconds:
-        publisher.publish(picture)
+        publisher.publish(image)
         count += 1
         while (left := began + count / rate - time.monotonic()) > 0:
             rclpy.spin_once(node, timeout_sec=left)

@@ -89,7 +89,7 @@ def test_who_has_read_to_the_end_reads_on_when_more_has_come() -> None:
     assert history.end_ns == 3 * SECOND
 
 
-def picture(shade: int, size: int = 200_000) -> bytes:
+def image(shade: int, size: int = 200_000) -> bytes:
     return bytes([shade]) * size
 
 
@@ -103,14 +103,14 @@ def test_large_messages_that_repeat_themselves_take_less_room_and_are_read_as_th
     history = History(10**6, clock)
     for second in range(100):  # as they are, these would be 20 MB
         clock.ns = second * SECOND
-        history.add("/camera", picture(second))
+        history.add("/camera", image(second))
         packed(history, (second + 1) * 1000)
     assert history.start_ns == 0
-    assert history.state_at(["/camera"], 50 * SECOND) == [("/camera", 50 * SECOND, picture(50))]
-    assert [data for _, _, data in history.messages(["/camera"], 98 * SECOND)] == [picture(98), picture(99)]
+    assert history.state_at(["/camera"], 50 * SECOND) == [("/camera", 50 * SECOND, image(50))]
+    assert [data for _, _, data in history.messages(["/camera"], 98 * SECOND)] == [image(98), image(99)]
     part = history.part(97 * SECOND, 99 * SECOND)
     assert sum(len(data) for _, _, data in part) < 204_000, "packed, but for the state before them"
-    assert [whole(data) for _, _, data in part] == [picture(96), picture(97), picture(98), picture(99)]
+    assert [whole(data) for _, _, data in part] == [image(96), image(97), image(98), image(99)]
     history.close()
 
 
@@ -118,10 +118,10 @@ def test_noise_is_kept_as_it_is() -> None:
     noise = np.random.default_rng(0).integers(0, 256, 200_000).astype(np.uint8).tobytes()
     history, _ = filled(count=0, most=10**7)
     history.add("/camera", noise)
-    history.add("/camera", picture(1))
+    history.add("/camera", image(1))
     packed(history, 202_000)
     assert history.size > 200_000
-    assert history.state_at(["/camera"], 0) == [("/camera", 0, picture(1))]
+    assert history.state_at(["/camera"], 0) == [("/camera", 0, image(1))]
     assert next(history.messages(["/camera"], 0)) == ("/camera", 0, noise)
     history.close()
 
@@ -137,7 +137,7 @@ def test_what_was_dropped_before_it_was_packed_does_no_harm(monkeypatch: pytest.
     monkeypatch.setattr(shrinking._zstd(), "compress", slow)
     history, _ = filled(count=0, most=500_000)
     for shade in range(5):
-        history.add("/camera", picture(shade))
+        history.add("/camera", image(shade))
     assert history.size == 2 * 200_200, "one, and the one before it"
     go_on.set()
     packed(history, 210_000)
@@ -320,7 +320,7 @@ def test_bytes_that_are_no_transforms_have_no_content(data: bytes) -> None:
     assert found is None or found.what == ""
 
 
-def test_pictures_that_fill_the_room_are_thinned_and_minutes_of_them_stay() -> None:
+def test_images_that_fill_the_room_are_thinned_and_minutes_of_them_stay() -> None:
     clock = Clock()
     history = History(most := 4_000_000, clock)
     noise = np.random.default_rng(1).bytes(15_000)  # 266 of them fill the room: nine seconds

@@ -174,7 +174,7 @@ class Firefox:
         source = {"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": actions}
         self.call("input.performActions", context=self._tab, actions=[source])
 
-    def picture(self, selector: str) -> Image.Image:
+    def screenshot(self, selector: str) -> Image.Image:
         """What is on the screen where the first element of a selector is."""
         box = self.evaluate(f"document.querySelector({json.dumps(selector)}).getBoundingClientRect()")
         clip = {"type": "box", **{name: box[name] for name in ("x", "y", "width", "height")}}

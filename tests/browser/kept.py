@@ -21,6 +21,6 @@ def keep(page: Page, name: str) -> None:
     """Write what a page shows as a small PNG, where pictures are to be kept."""
     if "LINKWRIGHT_KEEP_PICTURES" not in os.environ:
         return
-    with Image.open(io.BytesIO(page.screenshot())) as picture:
+    with Image.open(io.BytesIO(page.screenshot())) as image:
         FOLDER.mkdir(exist_ok=True)
-        picture.convert("RGB").quantize(_COLORS).save(FOLDER / f"{name}.png", optimize=True)
+        image.convert("RGB").quantize(_COLORS).save(FOLDER / f"{name}.png", optimize=True)

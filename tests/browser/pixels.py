@@ -16,6 +16,6 @@ def colors_at(page: Any, *places: tuple[float, float]) -> list[Color]:
     xs, ys = ([math.floor(place[axis]) for place in places] for axis in (0, 1))
     x, y = min(xs), min(ys)
     clip = {"x": x, "y": y, "width": max(xs) - x + 1, "height": max(ys) - y + 1}
-    with Image.open(io.BytesIO(page.screenshot(clip=clip))) as picture:
-        colors = picture.convert("RGB")
+    with Image.open(io.BytesIO(page.screenshot(clip=clip))) as image:
+        colors = image.convert("RGB")
     return [colors.getpixel((each - x, other - y)) for each, other in zip(xs, ys, strict=True)]

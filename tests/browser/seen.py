@@ -17,11 +17,11 @@ def what_was_seen(browser: Browser, folder: Path, name: str) -> str:
     return "\n".join(_seen(page, folder / f"{name}-{number}.png") for number, page in enumerate(pages))
 
 
-def _seen(page: Page, picture: Path) -> str:
+def _seen(page: Page, screenshot: Path) -> str:
     try:
-        picture.parent.mkdir(parents=True, exist_ok=True)
-        page.screenshot(path=picture, timeout=_PATIENCE)
+        screenshot.parent.mkdir(parents=True, exist_ok=True)
+        page.screenshot(path=screenshot, timeout=_PATIENCE)
         text = page.locator("body").inner_text(timeout=_PATIENCE)
-        return f"{page.url}\n{picture}\n{page.evaluate(_STATE)}\n{text}"
+        return f"{page.url}\n{screenshot}\n{page.evaluate(_STATE)}\n{text}"
     except Error as error:
         return f"{page.url}\nit cannot be looked at: {error.message}"

@@ -240,15 +240,15 @@ def test_files_from_outside_are_named_when_they_go_into_an_export(start, open_pa
     becomes(dialog.get_by_role("listitem").all_inner_texts, ["elsewhere/part.urdf"])
 
 
-def test_pictures_and_videos(live, open_page, tmp_path):
+def test_images_and_videos(live, open_page, tmp_path):
     from PIL import Image
 
     _, page = shown_gripper(live, open_page)
     canvas = page.locator(".canvas-box canvas").bounding_box()
-    with Image.open(saved(page, "Screenshot, 2 times as large", tmp_path)) as picture:
-        assert picture.format == "PNG"
-        assert picture.size == pytest.approx((2 * canvas["width"], 2 * canvas["height"]), abs=2)
-        colors = {pixel for _, pixel in picture.convert("RGB").resize((200, 150)).getcolors(30_000)}
+    with Image.open(saved(page, "Screenshot, 2 times as large", tmp_path)) as image:
+        assert image.format == "PNG"
+        assert image.size == pytest.approx((2 * canvas["width"], 2 * canvas["height"]), abs=2)
+        colors = {pixel for _, pixel in image.convert("RGB").resize((200, 150)).getcolors(30_000)}
     assert len(colors) > 3
     assert page.locator(".canvas-box canvas").bounding_box() == canvas
     share(page, "Record a video")

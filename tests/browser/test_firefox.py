@@ -60,9 +60,9 @@ def test_the_robot_is_drawn_and_moved(start, launch, tmp_path):
     browser.until("lw.ready")
 
     def share_of_red() -> float:
-        picture = browser.picture(".canvas-box canvas")
-        reds = sum(count for count, (r, g, b) in picture.getcolors(1 << 24) if r > 80 and r > 3 * max(g, b))
-        return reds / (picture.width * picture.height)
+        image = browser.screenshot(".canvas-box canvas")
+        reds = sum(count for count, (r, g, b) in image.getcolors(1 << 24) if r > 80 and r > 3 * max(g, b))
+        return reds / (image.width * image.height)
 
     wait_until(lambda: share_of_red() > 0.05, what=share_of_red, pause=LOOK_EVERY)
     # Tabs are walked by keys.
@@ -76,7 +76,7 @@ def test_the_robot_is_drawn_and_moved(start, launch, tmp_path):
     browser.until(f"JSON.stringify(lw.frames.lid.orientation) !== JSON.stringify({before})")
     thumb = browser.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--thumb')").strip()
     color = tuple(bytes.fromhex(thumb[1:]))
-    colors = {each: count for count, each in browser.picture("[data-joint=hinge] .slider").getcolors(1 << 24)}
+    colors = {each: count for count, each in browser.screenshot("[data-joint=hinge] .slider").getcolors(1 << 24)}
     assert colors.get(color, 0) > 40, (thumb, colors)
     assert browser.errors == []
 

@@ -66,8 +66,8 @@ def pixels(page: Any) -> np.ndarray:
     box = page.locator(".canvas-box canvas").bounding_box()
     # The notice about the slow page lies over the upper right corner, and the sign of the axes over the lower one.
     clip = {"x": box["x"], "y": box["y"], "width": 0.6 * box["width"], "height": box["height"]}
-    with Image.open(io.BytesIO(page.screenshot(clip=clip))) as picture:
-        return np.asarray(picture.convert("RGB")).astype(int)
+    with Image.open(io.BytesIO(page.screenshot(clip=clip))) as image:
+        return np.asarray(image.convert("RGB")).astype(int)
 
 
 def test_moving_meshes_have_fewer_triangles_and_look_as_they_are(live, open_page, tmp_path):

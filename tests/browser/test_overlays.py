@@ -161,8 +161,8 @@ def test_a_tall_robot_goes_below_the_banner_and_comes_back(start, open_page, tmp
         """How many pixels of the head are seen."""
         until(page, "lw.settled")
         box = page.locator(".scene-box").bounding_box()
-        with Image.open(io.BytesIO(page.screenshot(clip=box))) as picture:
-            return sum(count for count, (r, g, b) in picture.convert("RGB").getcolors(1 << 24) if g > 60 > max(r, b))
+        with Image.open(io.BytesIO(page.screenshot(clip=box))) as image:
+            return sum(count for count, (r, g, b) in image.convert("RGB").getcolors(1 << 24) if g > 60 > max(r, b))
 
     whole = head()
     assert whole > 300

@@ -233,7 +233,7 @@ def layers(page: Any) -> list[str]:
     return [" ".join([node["nodeName"], *node.get("attributes", [])]) for node in found]
 
 
-def test_a_picture_is_composed_without_painting_the_page_around_it(live, open_page):
+def test_an_image_is_composed_without_painting_the_page_around_it(live, open_page):
     viewer = live(config(entry("Image", Topic={"Value": "/image"})))
     page = open_page(viewer, wait=False)
     viewer.publish("/image", image("rgb8", 40, 20, bytes(2400)))

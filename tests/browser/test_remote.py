@@ -88,7 +88,7 @@ def test_a_slow_line_thins_what_is_heavy_and_says_so(live, open_page):
         told.update(
             page.evaluate(f"() => ({{ text: {notice}, drawn: linkwright.displays.map((each) => each.drawn) }})")
         )
-        points, picture = told["drawn"]
+        points, shown = told["drawn"]
         return (
             all(
                 each in told["text"]
@@ -96,7 +96,7 @@ def test_a_slow_line_thins_what_is_heavy_and_says_so(live, open_page):
             )
             and points["step"] > 1
             and 0 < points["points"] < 50_000
-            and picture["width"] == 1280
+            and shown["width"] == 1280
         )
 
     wait_until(is_thinned, SECONDS, lambda: told)

@@ -81,16 +81,16 @@ def test_up_to_a_tablet_the_scene_is_above_everything_else(sized, width, height)
     assert box(page, ".displays-panel")["y"] > canvas["y"] + canvas["height"]
 
 
-def test_pictures_stand_beside_the_scene_where_that_is_wide_enough(sized):
+def test_images_stand_beside_the_scene_where_that_is_wide_enough(sized):
     page = sized(800, 600)
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
     becomes(lambda: place(page, "Front") == place(page, "Back"), True)
-    scene, pictures = box(page, ".canvas-box"), place(page, "Front")
-    assert scene["x"] + scene["width"] <= pictures["x"]
-    assert scene["width"] > pictures["width"] > 300
+    scene, images = box(page, ".canvas-box"), place(page, "Front")
+    assert scene["x"] + scene["width"] <= images["x"]
+    assert scene["width"] > images["width"] > 300
 
 
-def test_pictures_do_not_come_before_the_displays_where_all_panels_share_a_place(sized):
+def test_images_do_not_come_before_the_displays_where_all_panels_share_a_place(sized):
     page = sized(500, 800)
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
     page.locator(".dv-tab", has_text="Front").dispatch_event("pointerdown")

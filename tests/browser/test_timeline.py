@@ -35,9 +35,9 @@ def recorded(folder: Path) -> Path:
             batch = TransformBatch(("base",), ("tip",), stamp, np.array([[second, 0, 0, 0, 0, 0, 1.0]]))
             writer.write("/tf", stamp, serialize(TFMessage(batch=batch)))
             writer.write("/second", stamp, serialize(FLOAT(data=float(second))))
-            picture = image("rgb8", 4, 4, bytes(color(second)) * 16)
-            picture.header.frame_id = "tip"
-            writer.write("/camera", stamp, serialize(picture))
+            message = image("rgb8", 4, 4, bytes(color(second)) * 16)
+            message.header.frame_id = "tip"
+            writer.write("/camera", stamp, serialize(message))
             if tenth % 10 == 9:
                 writer.flush()
     (file,) = (folder / "drive").glob("*.mcap")

@@ -11,14 +11,14 @@ MODEL = str(PACKAGE / "urdf" / "mbot_base.urdf")
 
 
 @pytest.mark.parametrize(
-    ("out", "picture", "magic"), [("m", "m.pdf", b"%PDF"), ("m.svg", "m.svg", b"<?xml"), ("m.png", "m.png", b"\x89PNG")]
+    ("out", "diagram", "magic"), [("m", "m.pdf", b"%PDF"), ("m.svg", "m.svg", b"<?xml"), ("m.png", "m.png", b"\x89PNG")]
 )
-def test_writes_text_and_picture(tmp_path, monkeypatch, capsys, out, picture, magic):
+def test_writes_text_and_picture(tmp_path, monkeypatch, capsys, out, diagram, magic):
     monkeypatch.chdir(tmp_path)
     assert main(["diagram", MODEL, out]) == 0
-    assert capsys.readouterr().out == f"Created file m.gv\nCreated file {picture}\n"
+    assert capsys.readouterr().out == f"Created file m.gv\nCreated file {diagram}\n"
     assert (tmp_path / "m.gv").read_text().startswith("digraph G {\nnode [shape=box];\n")
-    assert (tmp_path / picture).read_bytes().startswith(magic)
+    assert (tmp_path / diagram).read_bytes().startswith(magic)
 
 
 def test_default_name_is_the_robots(tmp_path, monkeypatch):

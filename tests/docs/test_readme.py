@@ -49,12 +49,12 @@ def test_one_sentence_says_what_linkwright_is(page, language):
 
 def test_the_picture_moves_for_ten_seconds_and_is_small():
     assert PICTURE.stat().st_size < 2_000_000
-    with Image.open(PICTURE) as picture:
+    with Image.open(PICTURE) as image:
         durations = []
-        for number in range(picture.n_frames):
-            picture.seek(number)
-            picture.load()
-            durations.append(picture.info["duration"])
+        for number in range(image.n_frames):
+            image.seek(number)
+            image.load()
+            durations.append(image.info["duration"])
     assert len(durations) > 20
     assert 8_000 <= sum(durations) <= 12_000
 

@@ -119,7 +119,7 @@ def test_scans_are_shown_where_the_description_says_that_they_go():
     assert scan_topics("") == []
 
 
-async def test_scans_and_pictures_are_shown_and_those_of_a_second_camera_are_off():
+async def test_scans_and_images_are_shown_and_those_of_a_second_camera_are_off():
     camera = "<sensor name='{}' type='camera'><topic>{}</topic></sensor>"
     scan = "<sensor name='a' type='ray'><plugin><ros><remapping>~/out:=scan</remapping></ros></plugin></sensor>"
     text = f"{scan}{camera.format('b', 'left')}{camera.format('c', 'right')}"
@@ -133,7 +133,7 @@ async def test_scans_and_pictures_are_shown_and_those_of_a_second_camera_are_off
     await view.host.close()
 
 
-def test_pictures_are_shown_where_the_description_says_that_they_go():
+def test_images_are_shown_where_the_description_says_that_they_go():
     classic = "<sensor name='eye' type='camera'><plugin filename='libgazebo_ros_camera.so'>{}</plugin></sensor>"
     assert image_topics(classic.format("")) == ["/eye/image_raw"]
     assert image_topics(classic.format("<cameraName>left</cameraName><imageTopicName>rgb</imageTopicName>")) == [

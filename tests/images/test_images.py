@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from linkwright.images import BadImageError, Picture, Range, RangeFinder, has_range, picture_of
+from linkwright.images import BadImageError, DecodedImage, Range, RangeFinder, decode_image, has_range
 from linkwright.messages import get_message
 from tests.work import lines_run
 
@@ -19,7 +19,7 @@ def image(encoding: str, width: int, height: int, data: bytes, **fields):
 
 
 def pixels(message, ranges: RangeFinder | None = None) -> list:
-    return picture_of(message, ranges or RangeFinder()).pixels.tolist()
+    return decode_image(message, ranges or RangeFinder()).pixels.tolist()
 
 
 @pytest.mark.parametrize(
@@ -114,54 +114,54 @@ def test_chroma_becomes_colour():
 
 @pytest.mark.parametrize(("encoding", "width"), [("yuyv", 1), ("yuyv", 3), ("nv21", 3), ("nv24", 3)])
 def test_odd_sizes_do_no_harm(encoding, width):
-    picture = picture_of(image(encoding, width, 3, bytes([128] * 60)), RangeFinder())
-    assert (picture.width, picture.height) == (width, 3)
+    decoded = decode_image(image(encoding, width, 3, bytes([128] * 60)), RangeFinder())
+    assert (decoded.width, decoded.height) == (width, 3)
 
 
 @pytest.mark.parametrize("encoding", ["rgb8", "16UC1", "32FC1", "bayer_rggb8", "yuyv", "nv21", "nv24"])
 def test_too_few_bytes_are_refused(encoding):
     with pytest.raises(BadImageError, match="too few for 4 x 4"):
-        picture_of(image(encoding, 4, 4, b"123"), RangeFinder())
+        decode_image(image(encoding, 4, 4, b"123"), RangeFinder())
 
 
 def test_unknown_encodings_are_refused():
     with pytest.raises(BadImageError, match=r"Unsupported image encoding \[64FC1\]"):
-        picture_of(image("64FC1", 1, 1, bytes(8)), RangeFinder())
+        decode_image(image("64FC1", 1, 1, bytes(8)), RangeFinder())
 
 
 def test_a_large_image_is_thinned():
-    picture = Picture(np.arange(100, dtype=np.uint8).reshape(10, 10))
-    assert picture.thinned(100) is picture
-    thinned = picture.thinned(30)
+    decoded = DecodedImage(np.arange(100, dtype=np.uint8).reshape(10, 10))
+    assert decoded.thinned(100) is decoded
+    thinned = decoded.thinned(30)
     assert (thinned.width, thinned.height) == (5, 5)
     assert thinned.pixels[1].tolist() == [20, 22, 24, 26, 28]
 
 
 @pytest.mark.parametrize("step", [2, 3, 16, 99])
-def test_a_reduced_picture_has_the_mean_of_squares(step):
+def test_a_reduced_image_has_the_mean_of_squares(step):
     pixels = np.full((40, 65, 3), 255, np.uint8)
     pixels[:2, :2, 1] = [[0, 10], [20, 30]]
-    reduced = Picture(pixels).reduced(step)
+    reduced = DecodedImage(pixels).reduced(step)
     step = min(step, 16)
     assert (reduced.height, reduced.width) == (40 // step, 65 // step)
     assert reduced.pixels[0, 0].tolist() == [255, pixels[:step, :step, 1].sum() // step**2, 255]
     assert (reduced.pixels[1:] == 255).all()
 
 
-def test_a_picture_is_not_reduced_to_nothing():
-    picture = Picture(np.zeros((2, 9), np.uint8))
-    assert picture.reduced(1) is picture
-    assert picture.reduced(3) is picture
+def test_an_image_is_not_reduced_to_nothing():
+    decoded = DecodedImage(np.zeros((2, 9), np.uint8))
+    assert decoded.reduced(1) is decoded
+    assert decoded.reduced(3) is decoded
 
 
-def test_grey_and_translucent_pictures_have_rgb():
-    assert Picture(np.array([[7]], np.uint8)).rgb().tolist() == [[[7, 7, 7]]]
-    assert Picture(np.array([[[1, 2, 3, 4]]], np.uint8)).rgb().tolist() == [[[1, 2, 3]]]
+def test_grey_and_translucent_images_have_rgb():
+    assert DecodedImage(np.array([[7]], np.uint8)).rgb().tolist() == [[[7, 7, 7]]]
+    assert DecodedImage(np.array([[[1, 2, 3, 4]]], np.uint8)).rgb().tolist() == [[[1, 2, 3]]]
 
 
 def test_usual_images_are_left_to_numpy():
     def work(width, height):
         message = image("bgr8", width, height, bytes(width * height * 3))
-        return lines_run(lambda: picture_of(message, RangeFinder()))
+        return lines_run(lambda: decode_image(message, RangeFinder()))
 
     assert work(64, 48) == work(640, 480)

@@ -21,14 +21,14 @@ async def test_the_client_waits_for_the_server_and_ends(stage, said):
     client.close()
 
 
-async def test_the_test_picture_moves(stage):
-    pictures = []
-    stage.node.create_subscription(get_message("sensor_msgs/msg/Image"), "/image", pictures.append, 10)
+async def test_the_test_image_moves(stage):
+    images = []
+    stage.node.create_subscription(get_message("sensor_msgs/msg/Image"), "/image", images.append, 10)
     DemoCamera(stage.graph, stage.options({"width": 64, "height": 48, "frequency": 10.0}))
     await stage.clock.advance(0.21)
-    assert len(pictures) == 2
-    first, second = (np.asarray(picture.data).reshape(48, 64, 3) for picture in pictures)
-    assert (pictures[0].encoding, pictures[0].step, pictures[0].header.frame_id) == ("bgr8", 192, "camera_frame")
+    assert len(images) == 2
+    first, second = (np.asarray(image.data).reshape(48, 64, 3) for image in images)
+    assert (images[0].encoding, images[0].step, images[0].header.frame_id) == ("bgr8", 192, "camera_frame")
     assert (np.roll(first, 4, axis=1) == second).all()
     assert len(np.unique(first[0], axis=0)) == 8
 
@@ -37,6 +37,6 @@ async def test_the_test_picture_moves(stage):
     ("parameters", "message"),
     [({"width": 0}, "parameter 'width' must be more than 0"), ({"reliability": "maybe"}, "parameter 'reliability'")],
 )
-async def test_bad_parameters_of_the_test_picture(stage, parameters, message):
+async def test_bad_parameters_of_the_test_image(stage, parameters, message):
     with pytest.raises(LinkwrightError, match=message):
         DemoCamera(stage.graph, stage.options(parameters))

@@ -149,11 +149,11 @@ async def test_the_robot_keeps_moving_over_a_megabit(answers, latest, seconds):
         assert len(settled) > 10
         assert max(settled) < latest
         steps = [fields["step"] for fields in watcher.of("cloud_points")]
-        pictures = watcher.of("image_frame")
+        frames = watcher.of("image_frame")
         assert steps[-1] > 10
-        assert pictures[-1]["encoding"] == "file"
-        assert pictures[-1]["width"] == 1280
-        assert pictures[-1]["quality"] > 0
+        assert frames[-1]["encoding"] == "file"
+        assert frames[-1]["width"] == 1280
+        assert frames[-1]["quality"] > 0
 
 
 @skipping

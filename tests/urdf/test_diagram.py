@@ -21,16 +21,16 @@ FORMATS = [("pdf", b"%PDF-"), ("svg", b"<?xml"), ("png", b"\x89PNG"), ("SVG", b"
 @pytest.mark.extra("diagram")
 @pytest.mark.parametrize(("ending", "start"), FORMATS)
 def test_the_ending_picks_the_format(tmp_path, ending, start):
-    picture = tmp_path / f"robot.{ending}"
-    render(GV, picture)
-    assert picture.read_bytes().startswith(start)
+    diagram = tmp_path / f"robot.{ending}"
+    render(GV, diagram)
+    assert diagram.read_bytes().startswith(start)
 
 
 @pytest.mark.extra("diagram")
 def test_links_are_boxes_and_joints_ellipses(tmp_path):
-    picture = tmp_path / "robot.svg"
-    render(GV, picture)
-    text = picture.read_text()
+    diagram = tmp_path / "robot.svg"
+    render(GV, diagram)
+    text = diagram.read_text()
     assert text.count('stroke="black" points') == 3 + 4  # three boxes and four arrow heads
     assert text.count("<ellipse") == 2
     assert [label for label in ("a", "b", "c", "j0", "j1") if f">{label}</text>" not in text] == []
@@ -38,9 +38,9 @@ def test_links_are_boxes_and_joints_ellipses(tmp_path):
 
 @pytest.mark.extra("diagram")
 def test_names_that_are_not_ascii(tmp_path):
-    picture = tmp_path / "robot.svg"
-    render(to_gv(load(robot_text('<link name="底盘"/>'))), picture)
-    assert "底盘" in picture.read_text(encoding="utf-8")
+    diagram = tmp_path / "robot.svg"
+    render(to_gv(load(robot_text('<link name="底盘"/>'))), diagram)
+    assert "底盘" in diagram.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(("name", "hint"), [("robot.pfd", ".pdf"), ("robot", "it is one of")])

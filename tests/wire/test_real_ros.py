@@ -150,16 +150,16 @@ def test_images_come_whole_at_30_hz_both_ways(processes, real_node):
     assert real.ask_until(lambda images: len(images) == IMAGES, "received_images") == list(range(IMAGES))
 
 
-def test_pictures_that_are_replaced_while_they_are_on_their_way_do_not_stop_the_reader(processes, real_node):
+def test_images_that_are_replaced_while_they_are_on_their_way_do_not_stop_the_reader(processes, real_node):
     """Fast DDS keeps reading a sample that it has freed when a GAP replaces the rest of an image."""
     us = processes("ours")
     real = real_node()
     publisher = us.node.create_publisher(Image, "/images_to_ros", 1)
     us.spin_until(lambda: publisher.get_subscription_count() == 1)
-    picture = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
+    image = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
     for number in range(FLOOD):
-        picture.header.frame_id = str(number)
-        publisher.publish(picture)
+        image.header.frame_id = str(number)
+        publisher.publish(image)
         us.executor.spin_once(timeout_sec=0.01)
     assert real.ask_until(lambda images: images and images[-1] == FLOOD - 1, "received_images")
 
@@ -174,11 +174,11 @@ def test_best_effort_images_come_though_they_are_larger_than_the_buffer_of_the_r
     profile = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
     publisher = us.node.create_publisher(Image, "/frames_to_ros", profile)
     us.spin_until(lambda: publisher.get_subscription_count() == 1)
-    picture = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
+    image = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
     came: list[int] = []
     for number in range(FRAMES):
-        picture.header.frame_id = str(number)
-        publisher.publish(picture)
+        image.header.frame_id = str(number)
+        publisher.publish(image)
         until = time.monotonic() + 1.0
         while number not in came and time.monotonic() < until:
             us.executor.spin_once(timeout_sec=0.01)

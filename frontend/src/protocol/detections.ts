@@ -11,11 +11,11 @@ export interface SolidBoxes {
 }
 
 /** Detection2DArray: boxes over an image. */
-export interface PictureBoxes {
+export interface ImageBoxes {
   boxes: Float32Array;
   colors: Uint8Array;
   scores: Float32Array;
   names: string[];
   of_image: boolean;
-  kind: "picture_boxes";
+  kind: "image_boxes";
 }

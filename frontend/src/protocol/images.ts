@@ -26,11 +26,11 @@ export interface ImageFrame {
 }
 
 /** The size of an Image display's panel in pixels, 0 while it is hidden; larger images are not needed. */
-export interface PictureSize {
+export interface ImageSize {
   display: string;
   width: number;
   height: number;
-  type: "picture_size";
+  type: "image_size";
 }
 
 /** Map: the cells row by row from the origin's corner, each the byte of its int8 value. */

@@ -39,7 +39,7 @@ import type {
   Diagnostics,
   InertiaFindings,
 } from "./description";
-import type { PictureBoxes, SolidBoxes } from "./detections";
+import type { ImageBoxes, SolidBoxes } from "./detections";
 import type { DisplayProperties, DisplayStatus, PropertyChanged, SetProperty, Tree } from "./displays";
 import type {
   ApplyEdit,
@@ -63,7 +63,7 @@ import type {
   RangeCone,
   Screw,
 } from "./geometry";
-import type { ImageFrame, OccupancyMap, PictureSize } from "./images";
+import type { ImageFrame, ImageSize, OccupancyMap } from "./images";
 import type { CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints } from "./joints";
 import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, MarkersChanged } from "./markers";
 import type {
@@ -291,6 +291,7 @@ export type PageMessage =
   | GoLive
   | GroupDisplays
   | GroupThings
+  | ImageSize
   | ImportWords
   | LoadConfiguration
   | MarkerFeedback
@@ -298,7 +299,6 @@ export type PageMessage =
   | MoveDisplays
   | NewConfiguration
   | OpenConfiguration
-  | PictureSize
   | Play
   | PointChosen
   | PoseChosen
@@ -358,13 +358,13 @@ export type DataContent =
   | CloudPoints
   | EffortRings
   | GridSurface
+  | ImageBoxes
   | ImageFrame
   | InteractiveMarkerMoved
   | InteractiveMarkerShape
   | MarkersChanged
   | OccupancyMap
   | ParticleMarks
-  | PictureBoxes
   | PointMarks
   | PolygonLine
   | PoseMarks

@@ -173,10 +173,10 @@ async def _view_chains(_: argparse.Namespace, ask: Ask) -> int:
 def _save(text: str) -> None:
     from linkwright.urdf.diagram import render
 
-    gv, picture = Path("controller_diagram.gv"), Path("controller_diagram.pdf")
+    gv, diagram = Path("controller_diagram.gv"), Path("controller_diagram.pdf")
     write_output(gv, text)
-    render(text, picture)
-    print(f"Saved controller diagram to {picture.resolve()}")
+    render(text, diagram)
+    print(f"Saved controller diagram to {diagram.resolve()}")
 
 
 def _diagram(controllers: Sequence[Any]) -> str:

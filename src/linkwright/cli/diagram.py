@@ -10,7 +10,7 @@ from linkwright.cli.output import write_output
 from linkwright.diagnostics import print_diagnostics
 from linkwright.process.assignments import parse_assignments
 
-_PICTURES = (".pdf", ".svg", ".png")
+_FORMATS = (".pdf", ".svg", ".png")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -45,14 +45,14 @@ def run(arguments: argparse.Namespace) -> int:
         return 1
     base = Path(*names or [robot.name or "robot"])
     ending = ".pdf"
-    if base.suffix.lower() in (*_PICTURES, ".gv"):
-        ending = base.suffix.lower() if base.suffix.lower() in _PICTURES else ending
+    if base.suffix.lower() in (*_FORMATS, ".gv"):
+        ending = base.suffix.lower() if base.suffix.lower() in _FORMATS else ending
         base = base.with_suffix("")
     text = to_gv(robot)
     gv = base.with_name(base.name + ".gv")
     write_output(gv, text)
     print(f"Created file {gv}")
-    picture = base.with_name(base.name + ending)
-    render(text, picture)
-    print(f"Created file {picture}")
+    diagram = base.with_name(base.name + ending)
+    render(text, diagram)
+    print(f"Created file {diagram}")
     return 0

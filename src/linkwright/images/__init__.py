@@ -1,6 +1,6 @@
 """Pixels of image messages, of every encoding and transport that is read here."""
 
-from linkwright.images.decoding import BadImageError, Picture, Range, RangeFinder, has_range, picture_of
+from linkwright.images.decoding import BadImageError, DecodedImage, Range, RangeFinder, decode_image, has_range
 from linkwright.images.image_files import encoding_of, is_cut_off
 from linkwright.images.transports import COMPRESSED, RAW, TRANSPORTS, ImageSource, Unpacker
 
@@ -9,13 +9,13 @@ __all__ = [
     "RAW",
     "TRANSPORTS",
     "BadImageError",
+    "DecodedImage",
     "ImageSource",
-    "Picture",
     "Range",
     "RangeFinder",
     "Unpacker",
+    "decode_image",
     "encoding_of",
     "has_range",
     "is_cut_off",
-    "picture_of",
 ]

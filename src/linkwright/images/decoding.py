@@ -27,7 +27,7 @@ class BadImageError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class DecodedImage:
     """Pixels, row by row from the top.
 
     Attributes:
@@ -57,7 +57,7 @@ class Picture:
             return np.repeat(self.pixels[..., np.newaxis], 3, axis=2)
         return self.pixels[..., :3]
 
-    def reduced(self, step: int) -> Picture:
+    def reduced(self, step: int) -> DecodedImage:
         """One pixel for each square of `step` by `step`, the mean of them; the rest at the edges is left out.
 
         Args:
@@ -74,14 +74,14 @@ class Picture:
         total = rows[:, ::step].copy()
         for column in range(1, step):
             total += rows[:, column::step]
-        return Picture((total // step**2).astype(np.uint8))
+        return DecodedImage((total // step**2).astype(np.uint8))
 
-    def thinned(self, most_pixels: int) -> Picture:
+    def thinned(self, most_pixels: int) -> DecodedImage:
         """Every second, third, ... pixel of each row and column, so that there are at most so many."""
         step = 1
         while (self.width // step) * (self.height // step) > most_pixels:
             step += 1
-        return self if step == 1 else Picture(np.ascontiguousarray(self.pixels[::step, ::step]))
+        return self if step == 1 else DecodedImage(np.ascontiguousarray(self.pixels[::step, ::step]))
 
 
 def _reordered(pixels: Pixels, order: Sequence[int]) -> Pixels:
@@ -97,7 +97,7 @@ def has_range(encoding: str) -> bool:
     return encoding in _RANGED
 
 
-def picture_of(message: Any, ranges: RangeFinder) -> Picture:
+def decode_image(message: Any, ranges: RangeFinder) -> DecodedImage:
     """The image of a message.
 
     Args:
@@ -109,17 +109,17 @@ def picture_of(message: Any, ranges: RangeFinder) -> Picture:
     """
     encoding = message.encoding
     if encoding in _RANGED:
-        return Picture(_normalized(_rows(message, _RANGED[encoding]), ranges))
+        return DecodedImage(_normalized(_rows(message, _RANGED[encoding]), ranges))
     if encoding in _PLAIN:
         channels, order = _PLAIN[encoding]
         pixels = _rows(message, "u1", channels)
-        return Picture(pixels if order is None else _reordered(pixels, order))
+        return DecodedImage(pixels if order is None else _reordered(pixels, order))
     if encoding.startswith("bayer_") and encoding[6:10] in ("rggb", "bggr", "gbrg", "grbg"):
         deep = encoding.endswith("16")
         mosaic = _rows(message, "u2" if deep else "u1")
-        return Picture(demosaiced((mosaic >> 8).astype(np.uint8) if deep else mosaic, encoding[6:10]))
+        return DecodedImage(demosaiced((mosaic >> 8).astype(np.uint8) if deep else mosaic, encoding[6:10]))
     if encoding in _YUV:
-        return Picture(_YUV[encoding](message))
+        return DecodedImage(_YUV[encoding](message))
     raise BadImageError(phrase("Unsupported image encoding [{encoding}]", encoding=encoding))
 
 

@@ -52,7 +52,7 @@ class DemoCamera(SingleNode):
             reliability=ReliabilityPolicy[_policy(ReliabilityPolicy, "reliability", reliability)],
         )
         self._publisher = node.create_publisher(get_message("sensor_msgs/msg/Image"), "image", qos)
-        self._picture = _stripes(width, height)
+        self._image = _stripes(width, height)
         self._frame_id = frame_id
         self._count = 0
         node.create_timer(1.0 / frequency, self._publish)
@@ -60,7 +60,7 @@ class DemoCamera(SingleNode):
     def _publish(self) -> None:
         self._count += 1
         self._node.get_logger().info(f"Publishing image #{self._count}")
-        height, width, _ = self._picture.shape
+        height, width, _ = self._image.shape
         message = get_message("sensor_msgs/msg/Image")()
         message.header.stamp = self._node.get_clock().now().to_msg()
         message.header.frame_id = self._frame_id
@@ -68,7 +68,7 @@ class DemoCamera(SingleNode):
         message.encoding = "bgr8"
         message.is_bigendian = 0
         message.step = width * 3
-        message.data = np.roll(self._picture, self._count * 4, axis=1).reshape(-1)
+        message.data = np.roll(self._image, self._count * 4, axis=1).reshape(-1)
         self._publisher.publish(message)
 
 

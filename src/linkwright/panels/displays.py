@@ -8,7 +8,7 @@ from linkwright.graph import DurabilityPolicy, Node, ReliabilityPolicy
 from linkwright.page.audience import Page
 from linkwright.page.protocol.configuration import DisplayChoices, DisplayClass, TopicChoice
 from linkwright.page.protocol.displays import SetProperty
-from linkwright.page.protocol.images import PictureSize
+from linkwright.page.protocol.images import ImageSize
 from linkwright.page.protocol.markers import MarkerFeedback
 from linkwright.page.protocol.points import AskPoint, PointFields
 from linkwright.page.protocol.robot import MeshStatus
@@ -24,15 +24,15 @@ class DisplaysFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._sizes: WeakKeyDictionary[ViewerDisplay, dict[Page, PictureSize]] = WeakKeyDictionary()
+        self._sizes: WeakKeyDictionary[ViewerDisplay, dict[Page, ImageSize]] = WeakKeyDictionary()
 
-    def receive(self, page: Page, message: SetProperty | MeshStatus | MarkerFeedback | PictureSize) -> None:
+    def receive(self, page: Page, message: SetProperty | MeshStatus | MarkerFeedback | ImageSize) -> None:
         """Set a property, or forward the message to its display, unless that was removed meanwhile."""
         manager = self.managers.of(page)
         if isinstance(message, SetProperty):
             manager.set_property(page, message.id, message.value)
         elif display := manager.display(message.display):
-            if isinstance(message, PictureSize):
+            if isinstance(message, ImageSize):
                 self._sizes.setdefault(display, {})[page] = message
                 self._send_size(display)
             else:
@@ -49,7 +49,7 @@ class DisplaysFeature(PageFeature):
         sizes = self._sizes[display].values()
         width = max((size.width for size in sizes), default=0)
         height = max((size.height for size in sizes), default=0)
-        display.receive(PictureSize(display.id, width, height))
+        display.receive(ImageSize(display.id, width, height))
 
 
 class PointsFeature(PageFeature):

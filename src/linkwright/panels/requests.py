@@ -6,7 +6,7 @@ from linkwright.panels.on_demand import OnDemand
 ON_DEMAND = (
     OnDemand(
         "linkwright.panels.displays:DisplaysFeature",
-        (displays.SetProperty, robot.MeshStatus, markers.MarkerFeedback, images.PictureSize),
+        (displays.SetProperty, robot.MeshStatus, markers.MarkerFeedback, images.ImageSize),
     ),
     OnDemand("linkwright.panels.displays:PointsFeature", (points.AskPoint,)),
     OnDemand(

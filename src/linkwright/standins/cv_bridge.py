@@ -143,9 +143,9 @@ class CvBridge:
         from PIL import Image, UnidentifiedImageError  # an extra, which other conversions do not need
 
         try:
-            with Image.open(io.BytesIO(bytes(cmprs_img_msg.data))) as picture:
-                grey = picture.mode in ("1", "L", "LA", "I", "I;16", "F")
-                pixels = np.asarray(picture.convert("L" if grey else "RGB"))
+            with Image.open(io.BytesIO(bytes(cmprs_img_msg.data))) as opened:
+                grey = opened.mode in ("1", "L", "LA", "I", "I;16", "F")
+                pixels = np.asarray(opened.convert("L" if grey else "RGB"))
         except (UnidentifiedImageError, OSError, SyntaxError) as error:
             raise CvBridgeError(f"the data of the compressed image cannot be read: {error}") from error
         image = pixels.copy() if grey else np.ascontiguousarray(pixels[..., ::-1])
@@ -167,11 +167,11 @@ class CvBridge:
         message.format = dst_format
         into = io.BytesIO()
         try:
-            picture = _pillow_image(cvim)
+            opened = _pillow_image(cvim)
             kind = _PILLOW_FORMATS.get(dst_format.lower(), dst_format.upper())
-            if kind == "JPEG" and picture.mode == "RGBA":
-                picture = picture.convert("RGB")
-            picture.save(into, kind, quality=_JPEG_QUALITY)
+            if kind == "JPEG" and opened.mode == "RGBA":
+                opened = opened.convert("RGB")
+            opened.save(into, kind, quality=_JPEG_QUALITY)
         except (KeyError, OSError, ValueError, TypeError) as error:
             raise CvBridgeError(f"the image cannot be written as '{dst_format}': {error}") from error
         message.data = into.getvalue()

@@ -52,8 +52,8 @@ def render(gv_text: str, path: str | Path) -> None:
             # The dot command shows a node without a label by its name; read through the library it would show nothing.
             if not node.attr["label"]:
                 node.attr["label"] = r"\N"
-        picture = graph.draw(format=ending[1:], prog="dot")
-        write_whole_file(path, picture)
+        diagram = graph.draw(format=ending[1:], prog="dot")
+        write_whole_file(path, diagram)
     except OSError as error:
         raise LinkwrightError(
             Diagnostic(

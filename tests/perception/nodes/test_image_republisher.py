@@ -22,7 +22,7 @@ def start(test, *words, remappings=(), **parameters):
     return ImageRepublisher(test.graph, options)
 
 
-def picture(values, encoding):
+def image(values, encoding):
     message = get_message("sensor_msgs/msg/Image")()
     message.header.stamp, message.header.frame_id = Time.from_nanoseconds(7), "camera"
     message.height, message.width = values.shape[:2]
@@ -49,7 +49,7 @@ async def test_raw_becomes_compressed_and_raw_again(test):
     start(test, "compressed", "raw", remappings=[("in/compressed", "/small/compressed"), ("out", "/back")])
     back, small = test.record("/back"), test.record("/small/compressed")
     await test.settle()
-    await send(test, "/camera/image_raw", picture(coloured(), "bgr8"))
+    await send(test, "/camera/image_raw", image(coloured(), "bgr8"))
     assert small.last.format == "bgr8; jpeg compressed bgr8"
     assert (back.last.encoding, back.last.width, back.last.step) == ("bgr8", 16, 48)
     pixels = np.frombuffer(bytes(back.last.data), np.uint8).reshape(16, 16, 3)
@@ -63,7 +63,7 @@ async def test_depths_in_metres_go_through(test):
     back = test.record("/back")
     await test.settle()
     depths = np.array([[0.5, 1.0, 2.0, 5.0, np.nan, 20.0]], np.float32)
-    await send(test, "/in", picture(depths, "32FC1"))
+    await send(test, "/in", image(depths, "32FC1"))
     assert back.last.encoding == "32FC1"
     assert depths_of(back.last)[0] == pytest.approx([0.5, 1.0, 2.0, 5.0, np.nan, np.nan], rel=0.01, nan_ok=True)
 
@@ -74,7 +74,7 @@ async def test_depths_in_millimetres_go_through_unchanged(test):
     back = test.record("/back")
     await test.settle()
     depths = np.array([[0, 1, 499, 65535]], np.uint16)
-    await send(test, "/in", picture(depths, "16UC1"))
+    await send(test, "/in", image(depths, "16UC1"))
     assert np.frombuffer(bytes(back.last.data), "<u2").tolist() == [0, 1, 499, 65535]
 
 
@@ -84,7 +84,7 @@ async def test_without_an_output_transport_there_are_all(test):
     assert {"/out", "/out/compressed", "/out/compressedDepth"} <= set(kinds)
     assert test.graph.count_subscribers("/in") == 0
     out = test.record("/out")
-    message = picture(coloured(), "rgb8")
+    message = image(coloured(), "rgb8")
     await send(test, "/in", message)
     assert out.last is message
 

@@ -19,7 +19,7 @@ def test_a_wall_across_the_view_is_a_wall_in_the_scan():
     assert made[[0, 2, 4]] == pytest.approx([hypot(2.0, 0.5), 2.0, hypot(2.0, 1.0)])
 
 
-def test_the_left_of_the_picture_is_the_end_of_the_scan_and_the_nearest_row_counts():
+def test_the_left_of_the_image_is_the_end_of_the_scan_and_the_nearest_row_counts():
     depths = np.full((3, 5), 9.0)
     depths[0, 0], depths[1, 0], depths[1, 4] = 1.0, 2.0, 3.0
     made, _ = scan_of_depths(depths, CAMERA, 2, 0.1, 20.0)

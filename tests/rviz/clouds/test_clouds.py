@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from linkwright.images import Picture
+from linkwright.images import DecodedImage
 from linkwright.messages import get_message
 from linkwright.rviz.clouds import (
     BadCloudError,
@@ -296,7 +296,7 @@ def test_millimetres_become_metres_and_zero_is_no_depth():
 
 
 def test_points_get_the_colours_of_the_image():
-    colour = Picture(np.array([[[1, 2, 3], [4, 5, 6]]], np.uint8))
+    colour = DecodedImage(np.array([[[1, 2, 3], [4, 5, 6]]], np.uint8))
     points = DepthCloudBuilder().points(depth_image([[math.nan, 1.0]]), camera(), colour)
     assert points.channels["rgb"].tolist() == [0x040506]
 
@@ -304,7 +304,7 @@ def test_points_get_the_colours_of_the_image():
 def test_images_that_do_not_fit_are_refused():
     builder = DepthCloudBuilder()
     with pytest.raises(BadCloudError, match=r"\(2x1\) does not match color image resolution \(1x1\)"):
-        builder.points(depth_image([[1.0, 1.0]]), camera(), Picture(np.zeros((1, 1), np.uint8)))
+        builder.points(depth_image([[1.0, 1.0]]), camera(), DecodedImage(np.zeros((1, 1), np.uint8)))
     with pytest.raises(BadCloudError, match="only 16 bit and float are supported"):
         builder.points(Image(width=1, height=1, step=1, encoding="mono8", data=b"1"), camera(1), None)
     short = depth_image([[1.0, 1.0]])
@@ -319,7 +319,7 @@ def test_images_that_do_not_fit_are_refused():
 
 def test_covered_points_stay_for_a_while_in_half_their_colour():
     builder = DepthCloudBuilder()
-    colour = Picture(np.full((1, 1, 3), 200, np.uint8))
+    colour = DecodedImage(np.full((1, 1, 3), 200, np.uint8))
     view = camera(1)
 
     def depths(depth: float, now: float) -> list[float]:

@@ -246,7 +246,7 @@ async def test_a_cloud_of_nothing_but_nan_says_so():
         assert w.status("PointCloud2")["Values"] == ("warn", "All 2 points are NaN or infinite")
 
 
-async def test_a_scanner_that_moves_draws_no_skewed_picture():
+async def test_a_scanner_that_moves_draws_no_skewed_image():
     async with world(config("LaserScan")) as w:
         node = w.graph.create_node("laser")
         publisher = node.create_publisher(LaserScan, "/points", 5)
@@ -345,8 +345,8 @@ async def test_a_depth_image_waits_for_its_colours():
         await w.settle()
         display = w.display("DepthCloud")
         assert contents(display) == []
-        picture = Image(width=2, height=1, step=6, encoding="rgb8", data=bytes([1, 2, 3, 4, 5, 6]))
-        colour.publish(placed(picture, "other"))
+        image = Image(width=2, height=1, step=6, encoding="rgb8", data=bytes([1, 2, 3, 4, 5, 6]))
+        colour.publish(placed(image, "other"))
         await w.settle()
         assert colours(display) == [[1, 2, 3, 255], [4, 5, 6, 255]]
         text = "Depth image frame id [base] doesn't match color image frame id [other]"

@@ -150,7 +150,7 @@ def found(seconds: int, *results):
 
 
 async def test_an_image_is_shown_with_what_was_found_in_it(monkeypatch):
-    monkeypatch.setattr("linkwright.rviz.displays.detection_pictures._PATIENCE", 1e9)
+    monkeypatch.setattr("linkwright.rviz.displays.detection_image._PATIENCE", 1e9)
     async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
         node = w.graph.create_node("camera")
         camera = node.create_publisher("sensor_msgs/msg/Image", "/topic", 10)
@@ -159,8 +159,8 @@ async def test_an_image_is_shown_with_what_was_found_in_it(monkeypatch):
         async def now() -> list:
             await w.settle()
             told = {content.fields["kind"]: content for content in contents(w.display("Detections"))}
-            picture, boxes = told.get("image_frame"), told.get("picture_boxes")
-            return [picture and picture.stamp, boxes and boxes.stamp, boxes and boxes.fields["of_image"]]
+            shown, boxes = told.get("image_frame"), told.get("image_boxes")
+            return [shown and shown.stamp, boxes and boxes.stamp, boxes and boxes.fields["of_image"]]
 
         camera.publish(image(1))
         assert await now() == [1.0, None, None]
@@ -171,16 +171,14 @@ async def test_an_image_is_shown_with_what_was_found_in_it(monkeypatch):
         assert await now() == [1.0, 1.0, False]
         detector.publish(found(2, result("ball", 0.5)))
         assert await now() == [2.0, 2.0, True]
-        (boxes,) = [
-            content for content in contents(w.display("Detections")) if content.fields["kind"] == "picture_boxes"
-        ]
+        (boxes,) = [content for content in contents(w.display("Detections")) if content.fields["kind"] == "image_boxes"]
         assert boxes.fields["boxes"].tolist() == [10, 20, 4, 6, 0]
         assert (boxes.fields["names"], boxes.fields["scores"].tolist()) == (["ball"], [0.5])
         assert np.array_equal(boxes.fields["colors"], class_color("ball", {}))
 
 
 async def test_images_are_shown_as_they_come_when_nothing_detects(monkeypatch):
-    monkeypatch.setattr("linkwright.rviz.displays.detection_pictures._PATIENCE", -1.0)
+    monkeypatch.setattr("linkwright.rviz.displays.detection_image._PATIENCE", -1.0)
     async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
         publish(w, "/found", found(1, result("ball", 0.5)))
         publish(w, "/topic", image(5))

@@ -10,7 +10,7 @@ import PIL.Image
 import pytest
 
 from linkwright.messages import get_message
-from linkwright.page.protocol.images import PictureSize
+from linkwright.page.protocol.images import ImageSize
 from linkwright.rviz import RvizConfig
 from tests.images.test_images import Image, image
 from tests.viewer.contents import contents
@@ -44,7 +44,7 @@ def config(cls: str, topic: str = "/camera/image") -> RvizConfig:
     return RvizConfig.parse(FILE.replace("CLS", cls).replace("TOPIC", topic))
 
 
-def picture(*values: int, frame: str = "base"):
+def small_image(*values: int, frame: str = "base"):
     message = image("mono8", len(values), 1, bytes(values))
     message.header.frame_id = frame
     return message
@@ -57,7 +57,7 @@ def names(display) -> set[str]:
 async def test_an_image_is_sent():
     async with world(config("Image")) as w:
         publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
-        publisher.publish(picture(1, 2, 3))
+        publisher.publish(small_image(1, 2, 3))
         await w.settle()
         (content,) = contents(w.display("Image"))
         fields = content.fields
@@ -78,22 +78,22 @@ async def test_no_more_pixels_are_sent_than_the_panel_has():
         publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(image("mono8", 64, 48, bytes(64 * 48)))
         assert await sizes() == [(64, 48)]
-        display.receive(PictureSize(display.id, 30, 18))
+        display.receive(ImageSize(display.id, 30, 18))
         publisher.publish(image("mono8", 64, 48, bytes(64 * 48)))
         assert await sizes() == [(32, 24)]
-        display.receive(PictureSize(display.id, 40, 48))  # the last image is shown again, with more of it
+        display.receive(ImageSize(display.id, 40, 48))  # the last image is shown again, with more of it
         assert await sizes() == [(64, 48)]
 
 
 async def test_nothing_is_sent_while_no_panel_is_seen():
     async with world(config("Image")) as w:
         display = w.display("Image")
-        display.receive(PictureSize(display.id, 0, 0))
+        display.receive(ImageSize(display.id, 0, 0))
         publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
-        publisher.publish(picture(1, 2, 3))
+        publisher.publish(small_image(1, 2, 3))
         await w.settle()
         assert contents(display) == []
-        display.receive(PictureSize(display.id, 3, 1))
+        display.receive(ImageSize(display.id, 3, 1))
         (content,) = contents(display)
         assert content.fields["data"].tolist() == [1, 2, 3]
 
@@ -103,31 +103,31 @@ async def test_while_no_panel_is_seen_nobody_listens_after_one_image():
         display = w.display("Image")
         publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         assert publisher.get_subscription_count() == 1
-        display.receive(PictureSize(display.id, 0, 0))
-        publisher.publish(picture(1, 2, 3))
+        display.receive(ImageSize(display.id, 0, 0))
+        publisher.publish(small_image(1, 2, 3))
         await w.settle()
         assert publisher.get_subscription_count() == 0
-        display.receive(PictureSize(display.id, 3, 1))
+        display.receive(ImageSize(display.id, 3, 1))
         assert publisher.get_subscription_count() == 1
         assert w.status("Image")["Topic"] == ("ok", "1 messages received"), "what came before is still shown"
-        publisher.publish(picture(4, 5, 6))
+        publisher.publish(small_image(4, 5, 6))
         await w.settle()
         (content,) = contents(display)
         assert content.fields["data"].tolist() == [4, 5, 6]
-        display.receive(PictureSize(display.id, 0, 0))
+        display.receive(ImageSize(display.id, 0, 0))
         assert publisher.get_subscription_count() == 0
         display.set_checked(False)
         display.enabled_changed()
-        display.receive(PictureSize(display.id, 3, 1))
+        display.receive(ImageSize(display.id, 3, 1))
         assert publisher.get_subscription_count() == 0
 
 
 async def test_the_panel_of_a_page_that_is_gone_is_not_seen():
     async with world(config("Image")) as w:
         publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
-        publisher.publish(picture(1, 2, 3))
+        publisher.publish(small_image(1, 2, 3))
         async with page(w.viewer) as only:
-            await only.send("picture_size", display=w.display("Image").id, width=30, height=18)
+            await only.send("image_size", display=w.display("Image").id, width=30, height=18)
             await eventually(lambda: w.display("Image")._panel)
             assert publisher.get_subscription_count() == 1
         await eventually(lambda: publisher.get_subscription_count() == 0)
@@ -136,16 +136,16 @@ async def test_the_panel_of_a_page_that_is_gone_is_not_seen():
 async def test_of_all_panels_the_largest_counts(monkeypatch):
     async with world(config("Image")) as w, page(w.viewer) as first:
         display = w.display("Image")
-        told: list[PictureSize] = []
+        told: list[ImageSize] = []
         monkeypatch.setattr(display, "receive", told.append)
 
         async def heard(width: int, height: int) -> None:
-            await eventually(lambda: told and told[-1] == PictureSize(display.id, width, height))
+            await eventually(lambda: told and told[-1] == ImageSize(display.id, width, height))
 
-        await first.send("picture_size", display=display.id, width=30, height=18)
+        await first.send("image_size", display=display.id, width=30, height=18)
         await heard(30, 18)
         async with page(w.viewer) as second:
-            await second.send("picture_size", display=display.id, width=20, height=50)
+            await second.send("image_size", display=display.id, width=20, height=50)
             await heard(30, 50)
         await heard(30, 18)
 
@@ -156,7 +156,7 @@ async def test_an_encoding_that_is_not_known_is_said():
         publisher.publish(image("64FC1", 1, 1, bytes(8)))
         await w.settle()
         assert w.status("Image")["Image"] == ("error", "Unsupported image encoding [64FC1]")
-        publisher.publish(picture(1))
+        publisher.publish(small_image(1))
         await w.settle()
         assert "Image" not in w.status("Image")
 
@@ -235,7 +235,7 @@ async def test_a_camera_waits_for_its_camera_info():
         images = node.create_publisher(Image, "/camera/image", 5)
         infos = node.create_publisher(CameraInfo, "/camera/camera_info", 5)
         w.move({("base", "eye"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
-        images.publish(picture(1, 2, frame="eye"))
+        images.publish(small_image(1, 2, frame="eye"))
         await w.settle()
         text = "No CameraInfo received on [/camera/camera_info]. Topic may not exist."
         assert w.status("Camera")["Camera Info"] == ("warn", text)
@@ -264,7 +264,7 @@ async def test_malformed_camera_infos_are_said():
 
         async def said(message) -> tuple[str, str]:
             infos.publish(message)
-            images.publish(picture(1, 2))
+            images.publish(small_image(1, 2))
             await w.settle()
             assert contents(w.display("Camera"))[0].fields["camera"] is None
             return w.status("Camera")["Camera Info"]
@@ -277,7 +277,7 @@ async def test_malformed_camera_infos_are_said():
         assert (await said(bad))[0] == "error"
         empty = info(0, 0)
         infos.publish(empty)
-        images.publish(picture())
+        images.publish(small_image())
         await w.settle()
         assert w.status("Camera")["Camera Info"][1].startswith("Could not determine width/height of image")
 

@@ -253,16 +253,16 @@ async def test_images_are_there_as_jpeg_while_somebody_listens(stage, encoding, 
     camera = publisher(stage, kind, "/camera")
     await stage.graph.settle()
     assert camera.get_subscription_count() == 0
-    pictures = heard(stage, "sensor_msgs/msg/CompressedImage", "/camera/compressed")
+    compressed = heard(stage, "sensor_msgs/msg/CompressedImage", "/camera/compressed")
     await stage.graph.settle()
     step = 8 * len(pixel)
     camera.publish(get_message(kind)(width=8, height=8, encoding=encoding, step=step, data=pixel * 64))
     await stage.graph.settle()
     camera.publish(get_message(kind)(width=8, height=8, encoding="16UC1", step=16, data=[0] * 128))
     await stage.graph.settle()
-    (picture,) = pictures
-    assert picture.format.startswith(f"{encoding}; jpeg compressed")
-    shown = images.open(BytesIO(bytes(picture.data)))
+    (frame,) = compressed
+    assert frame.format.startswith(f"{encoding}; jpeg compressed")
+    shown = images.open(BytesIO(bytes(frame.data)))
     found = shown.getpixel((4, 4))
     expected = [120] if encoding == "mono8" else [200, 100, 50]
     assert list(found if isinstance(found, tuple) else (found,)) == pytest.approx(expected, abs=6)

@@ -90,12 +90,12 @@ def test_the_floor_is_where_it_is_whatever_shines_on_it(make):
 
 
 def test_a_floor_is_not_seen_from_below(make):
-    picture = make(simulated(FLOOR)).render(optics_of(CAMERA), (0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0), Wanted.DEPTH)
-    assert np.isinf(picture.depth).all()
+    rendered = make(simulated(FLOOR)).render(optics_of(CAMERA), (0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0), Wanted.DEPTH)
+    assert np.isinf(rendered.depth).all()
 
 
 @pytest.mark.parametrize("place", ["2 2.2 0", "2 -2.2 0", "2 0 1.7", "2 0 -1.7"])
-def test_what_reaches_into_the_picture_is_seen(make, place):
+def test_what_reaches_into_the_image_is_seen(make, place):
     simulation = simulated(block("thing", f"{place} 0 0 0", "0.9 0.9 0.9"))
     geoms = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.GEOMS).geoms
     assert (geoms >= 0).any()
@@ -104,9 +104,9 @@ def test_what_reaches_into_the_picture_is_seen(make, place):
 def test_what_is_too_near_or_too_far_is_not_seen(make):
     simulation = simulated(block("near", "0.3 0.1 0 0 0 0", "0.1 0.1 0.1"), block("far", "60 0 0 0 0 0", "1 90 90"))
     optics = optics_of(CAMERA, near=0.5)
-    picture = make(simulation).render(optics, IDENTITY, Wanted.DEPTH | Wanted.COLOUR)
-    assert np.isinf(picture.depth).all()
-    assert (picture.colour == round(0.7 * 255)).all()
+    rendered = make(simulation).render(optics, IDENTITY, Wanted.DEPTH | Wanted.COLOUR)
+    assert np.isinf(rendered.depth).all()
+    assert (rendered.colour == round(0.7 * 255)).all()
 
 
 def test_colours_are_those_of_the_things(make):
@@ -185,14 +185,14 @@ def test_simple_shapes_wear_images(make, tmp_path, shape, distance, order, reque
     text = WEARING.format(shape=shape, image=tmp_path / "quarters.png")
     simulation = simulated(text)
     assert not simulation.scene.diagnostics
-    picture = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR | Wanted.DEPTH)
-    assert picture.depth[60, 80] == pytest.approx(distance, abs=2e-3)
+    rendered = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR | Wanted.DEPTH)
+    assert rendered.depth[60, 80] == pytest.approx(distance, abs=2e-3)
     if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one colour a shape
-        red, green, blue = picture.colour[60, 80].astype(int)
+        red, green, blue = rendered.colour[60, 80].astype(int)
         assert red == green > 0
         assert blue == pytest.approx(red / 2, abs=2)
         return
-    colour = picture.colour.astype(int)
+    colour = rendered.colour.astype(int)
     corners = [tuple(colour[row, column] > 40) for row in (50, 70) for column in (70, 90)]
     known = [tuple(np.array(quarter) > 0) for quarter in QUARTERS]
     assert set(corners) <= set(known)
@@ -274,7 +274,7 @@ def test_a_camera_sees_out_of_its_own_housing(make):
     assert np.abs(depth - 2.5).max() < 1e-3
 
 
-def test_all_ways_make_the_same_picture(make):
+def test_all_ways_make_the_same_image(make):
     wall = block("wall", "4 0 1 0 0 0", "0.1 3 2", colour="0 0 1 1")
     simulation = simulated(FLOOR, block("box", "2 0.4 0.3 0 0 0.5", "0.5 0.5 0.6"), wall)
     pose, optics = (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0), optics_of(CAMERA)
@@ -309,9 +309,9 @@ def drawn(request: pytest.FixtureRequest):
             renderer.render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR)
             (query,) = GL.glGenQueries(1, np.zeros(1, np.uint32))
             GL.glBeginQuery(GL.GL_PRIMITIVES_GENERATED, query)
-            picture = renderer.render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR | Wanted.DEPTH)
+            rendered = renderer.render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR | Wanted.DEPTH)
             GL.glEndQuery(GL.GL_PRIMITIVES_GENERATED)
-            return picture, int(GL.glGetQueryObjectuiv(query, GL.GL_QUERY_RESULT))
+            return rendered, int(GL.glGetQueryObjectuiv(query, GL.GL_QUERY_RESULT))
         finally:
             renderer.close()
 

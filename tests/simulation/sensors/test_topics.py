@@ -357,19 +357,19 @@ async def test_forces_in_a_joint_are_told():
         assert not log
 
 
-def picture_of(message) -> np.ndarray:
+def pixels_of(message) -> np.ndarray:
     channels = message.step // message.width
     return np.frombuffer(bytes(message.data), np.uint8).reshape(message.height, message.width, channels)
 
 
-async def test_a_camera_of_gazebo_classic_has_a_picture_and_its_figures():
+async def test_a_camera_of_gazebo_classic_has_an_image_and_its_figures():
     said = "<camera_name>front</camera_name><frame_name>optical</frame_name><hack_baseline>0.07</hack_baseline>"
     text = carrier(sensor("camera", EYE + plugin("libgazebo_ros_camera.so", said)))
     async with served(WALL, text) as (server, graph, log):
         image, info = await heard(server, graph, "/front/image_raw", "/front/camera_info")
         assert (image.width, image.height, image.encoding, image.step) == (64, 48, "rgb8", 192)
         assert image.header.frame_id == info.header.frame_id == "optical"
-        red = picture_of(image)[24, 32]
+        red = pixels_of(image)[24, 32]
         assert red[0] > 50
         assert red[1] == red[2] == 0
         focal = 64 / (2 * tan(pi / 4))
@@ -431,7 +431,7 @@ async def test_several_cameras_have_a_topic_each():
         assert (left.width, right.width) == (64, 64)
 
 
-async def test_cameras_of_gz_have_their_figures_beside_the_picture():
+async def test_cameras_of_gz_have_their_figures_beside_the_image():
     eye = EYE.replace("</camera>", "<optical_frame_id>optical</optical_frame_id></camera>")
     async with served(WALL, carrier(sensor("camera", f"<topic>front/image</topic>{eye}"))) as (server, graph, _):
         image, info = await heard(server, graph, "/front/image", "/front/camera_info")
@@ -463,9 +463,9 @@ async def test_labels_are_seen_and_all_else_is_background():
     text = carrier(sensor("segmentation_camera", f"<topic>seg</topic>{EYE}"))
     async with served(*world, text) as (server, graph, _):
         maps, coloured = await heard(server, graph, "/seg/labels_map", "/seg/colored_map")
-        assert set(picture_of(maps).reshape(-1).tolist()) == {0, 7}
-        assert picture_of(coloured)[24, 24].any()
-        assert not picture_of(coloured)[0, 0].any()
+        assert set(pixels_of(maps).reshape(-1).tolist()) == {0, 7}
+        assert pixels_of(coloured)[24, 24].any()
+        assert not pixels_of(coloured)[0, 0].any()
 
 
 async def test_boxes_are_around_what_is_labelled():
@@ -479,7 +479,7 @@ async def test_boxes_are_around_what_is_labelled():
         left, right = found["7"], found["9"]
         assert (left.center.position.x, left.size_x) == (pytest.approx(21.3, abs=1), pytest.approx(8.5, abs=1))
         assert (right.center.position.x, right.size_y) == (pytest.approx(42.7, abs=1), pytest.approx(8.5, abs=1))
-        assert ((picture_of(image) == (0, 255, 0)).all(axis=-1)).sum() > 20
+        assert ((pixels_of(image) == (0, 255, 0)).all(axis=-1)).sum() > 20
 
 
 async def test_noise_on_colours_is_the_same_for_the_same_seed():
@@ -489,7 +489,7 @@ async def test_noise_on_colours_is_the_same_for_the_same_seed():
     for _ in range(2):
         async with served(WALL, text) as (server, graph, _log):
             (image,) = await heard(server, graph, "/eye/image_raw")
-            seen.append(picture_of(image).astype(float))
+            seen.append(pixels_of(image).astype(float))
     assert (seen[0] == seen[1]).all()
     assert np.std(seen[0][:, :, 0]) == pytest.approx(0.02 * 255, rel=0.2)
 

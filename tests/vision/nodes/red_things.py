@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.graph import SENSOR_DATA_QOS, Graph
-from linkwright.images import RangeFinder, picture_of
+from linkwright.images import RangeFinder, decode_image
 from linkwright.messages import get_message
 from linkwright.vision.places.colours import COLOURS, named_colours
 
@@ -34,7 +34,7 @@ class ColourDetector:
         )
 
     def _see(self, image: Any) -> None:
-        pixels = picture_of(image, self._ranges).pixels[:, :, :3]
+        pixels = decode_image(image, self._ranges).pixels[:, :, :3]
         names = named_colours(pixels.reshape(-1, 3)).reshape(pixels.shape[:2])
         rows, columns = np.nonzero(names == self._colour)
         found = self._array(header=image.header)

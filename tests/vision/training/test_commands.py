@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.diagnostics import install_hint
-from tests.vision.training.pictures_of_shapes import write_shapes
+from tests.vision.training.images_of_shapes import write_shapes
 
 
 @pytest.fixture

@@ -13,11 +13,11 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
+from linkwright.vision.training.images import read_lesson
 from linkwright.vision.training.options import Options
-from linkwright.vision.training.pictures import read_lesson
 from linkwright.vision.training.reading import open_dataset
 from linkwright.vision.training.teaching import teach
-from tests.vision.training.pictures_of_shapes import NAMES, write_shapes
+from tests.vision.training.images_of_shapes import NAMES, write_shapes
 
 # `make test-train` sets the variable: there it is an error when PyTorch is missing, which would else skip everything.
 HERE = find_spec("torch") is not None or "LINKWRIGHT_TESTS_TRAINING" in os.environ

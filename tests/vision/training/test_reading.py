@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.vision.training.images import Lesson, changed, read_image, read_lesson, repeated, repeats
 from linkwright.vision.training.options import Options, View
-from linkwright.vision.training.pictures import Lesson, changed, read_image, read_lesson, repeated, repeats
 from linkwright.vision.training.reading import open_dataset
-from tests.vision.training.pictures_of_shapes import NAMES, write_shapes
+from tests.vision.training.images_of_shapes import NAMES, write_shapes
 
 VIEW = View((64, 64), (0.42, 1.1))
 

@@ -102,7 +102,7 @@ export class ImageDrawing implements Drawing {
     const pixels = (points: number): number => Math.ceil(points * window.devicePixelRatio);
     const { clientWidth, clientHeight } = this.panel.element;
     session.connection.send({
-      type: "picture_size",
+      type: "image_size",
       display: display.id,
       width: pixels(clientWidth),
       height: pixels(clientHeight),

@@ -5,7 +5,7 @@ import { ImageDrawing } from "./image";
 import { MapDrawing } from "./map";
 import type { DrawingClass } from "./drawing";
 import { AxesDrawing } from "./axes";
-import { DetectionPictureDrawing } from "./detection-picture";
+import { DetectionImageDrawing } from "./detection-image";
 import { EffortDrawing } from "./effort";
 import { GridCellsDrawing } from "./grid-cells";
 import { GridDrawing } from "./grid";
@@ -63,6 +63,6 @@ export const DRAWINGS: ReadonlyMap<string, DrawingClass> = new Map<string, Drawi
   ["vision_msgs_rviz_plugins/BoundingBox3DArray", BoxesDrawing],
   ["vision_msgs_rviz_plugins/Detection3D", BoxesDrawing],
   ["vision_msgs_rviz_plugins/Detection3DArray", BoxesDrawing],
-  ["linkwright/Detections", DetectionPictureDrawing],
+  ["linkwright/Detections", DetectionImageDrawing],
   ["linkwright/World", WorldDrawing],
 ]);

@@ -102,7 +102,7 @@ def _read(name: str) -> NDArray[np.uint8]:
     import numpy as np
 
     from linkwright.files.input_files import read_file
-    from linkwright.images import BadImageError, Picture
+    from linkwright.images import BadImageError, DecodedImage
     from linkwright.images.image_files import file_pixels
 
     try:
@@ -111,7 +111,7 @@ def _read(name: str) -> NDArray[np.uint8]:
         reason = foreign(error.strerror if isinstance(error, OSError) else error)
         message = phrase("cannot read the image '{path}': {reason}", path=name, reason=reason)
         raise LinkwrightError(Diagnostic("VISION110", message)) from None
-    return Picture((pixels >> 8).astype(np.uint8) if pixels.dtype == np.uint16 else pixels).rgb()
+    return DecodedImage((pixels >> 8).astype(np.uint8) if pixels.dtype == np.uint16 else pixels).rgb()
 
 
 def _data(found: Detections) -> list[dict[str, object]]:

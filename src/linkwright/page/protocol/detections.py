@@ -20,7 +20,7 @@ class SolidBoxes(DataContent):
     names: list[str]
 
 
-class PictureBoxes(DataContent):
+class ImageBoxes(DataContent):
     """Detection2DArray: boxes over an image.
 
     `boxes` has shape (N, 5): x y of the middle, width and height in pixels of the image, and the rotation of the box,

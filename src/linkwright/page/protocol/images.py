@@ -43,7 +43,7 @@ class ImageFrame(DataContent):
     quality: int = 0
 
 
-class PictureSize(PageMessage):
+class ImageSize(PageMessage):
     """The size of an Image display's panel in pixels, 0 while it is hidden; larger images are not needed."""
 
     display: str

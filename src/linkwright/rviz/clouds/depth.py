@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import phrase
-from linkwright.images import Picture
+from linkwright.images import DecodedImage
 from linkwright.rviz.clouds.points import BadCloudError, Points
 
 _SHADOW_DISTANCE = 0.01
@@ -80,7 +80,7 @@ class DepthCloudBuilder:
         self,
         depth: Any,
         camera: DepthCamera,
-        colour: Picture | None,
+        colour: DecodedImage | None,
         *,
         keep_covered: float | None = None,
         now: float = 0.0,
@@ -179,7 +179,7 @@ def _metres(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     return metres, valid
 
 
-def _packed(image: Picture) -> NDArray[np.uint32]:
+def _packed(image: DecodedImage) -> NDArray[np.uint32]:
     """Return colours in the form of ``rgb`` channels."""
     rgb = image.rgb().astype(np.uint32)
     packed: NDArray[np.uint32] = np.bitwise_or(rgb[..., 0] << 16 | rgb[..., 1] << 8, rgb[..., 2], dtype=np.uint32)

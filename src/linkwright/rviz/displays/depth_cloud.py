@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwright.diagnostics import foreign, phrase
 from linkwright.graph import HistoryPolicy, QoSProfile, ReliabilityPolicy
-from linkwright.images import RAW, TRANSPORTS, BadImageError, ImageSource, RangeFinder, Unpacker, picture_of
+from linkwright.images import RAW, TRANSPORTS, BadImageError, ImageSource, RangeFinder, Unpacker, decode_image
 from linkwright.rviz.clouds import BadCloudError, DepthCamera, DepthCloudBuilder, Points
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema
@@ -317,7 +317,7 @@ class DepthCloudDisplay(CloudDisplay):
             self.set_status_row(
                 "Image Size", "ok", phrase("{width} x {height}", width=colour.width, height=colour.height)
             )
-            image = picture_of(colour, RangeFinder())
+            image = decode_image(colour, RangeFinder())
         camera = DepthCamera.of(self._info, depth.width, depth.height)
         self._pixel = camera.pixel
         keep = self.properties.number(OCCLUSION, OCCLUSION_TIMEOUT) if self.properties.flag(OCCLUSION) else None

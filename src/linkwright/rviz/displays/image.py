@@ -19,12 +19,12 @@ from linkwright.images import (
     Range,
     RangeFinder,
     Unpacker,
+    decode_image,
     encoding_of,
     has_range,
     is_cut_off,
-    picture_of,
 )
-from linkwright.page.protocol.images import CameraModel, ImageFrame, PictureSize
+from linkwright.page.protocol.images import CameraModel, ImageFrame, ImageSize
 from linkwright.rviz.config.property_store import qos_of
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema, topic_spec
@@ -151,7 +151,7 @@ class ImageTopicDisplay(TopicDisplay):
                     phrase("Browsers do not support the image's format: '{format}'", format=message.format)
                 )
             return ImageFrame(0, 0, 0, 0, "file", data, camera)
-        image = picture_of(message, self.ranges)
+        image = decode_image(message, self.ranges)
         shown = image.reduced(self.reduction(image.width, image.height)).thinned(MOST_PIXELS)
         return ImageFrame(
             width=image.width,
@@ -201,7 +201,7 @@ class ImageDisplay(ImageTopicDisplay):
     TRANSFORMED = False
 
     _ranged = False
-    _panel: PictureSize | None = None
+    _panel: ImageSize | None = None
     """The largest panel of pages; None before a page has reported its panel."""
 
     @property

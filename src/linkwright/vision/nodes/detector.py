@@ -51,7 +51,7 @@ from linkwright.graph import (
 )
 from linkwright.graph.loop.callback_groups import MutuallyExclusiveCallbackGroup
 from linkwright.graph.parameters.parameter import Range
-from linkwright.images import BadImageError, ImageSource, RangeFinder, Unpacker, picture_of
+from linkwright.images import BadImageError, ImageSource, RangeFinder, Unpacker, decode_image
 from linkwright.messages import get_message, get_service
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import bad_value, log_unknown
@@ -64,8 +64,8 @@ from linkwright.vision.detectors.registry import DEFAULT_DETECTOR, make_detector
 from linkwright.vision.detectors.settings import bad_setting
 from linkwright.vision.nodes.detection_messages import MESSAGES, image_message
 from linkwright.vision.nodes.dialects import DARKNET_ROS, OURS, YOLO_ROS, YOLOV5_ROS, YOLOV5_ROS2, Dialect
+from linkwright.vision.nodes.image_watch import ImageWatch
 from linkwright.vision.nodes.latest import LatestWorker
-from linkwright.vision.nodes.picture_watch import ImageWatch
 
 _DEPTH = 10
 _SECONDS_BETWEEN_COMPLAINTS = 5.0
@@ -297,7 +297,7 @@ class DetectorNode(SingleNode):
         """Detect objects in an image."""
         try:
             message = self._unpacker.image(task.message, self._source.transport)
-            image = picture_of(message, self._ranges).rgb()
+            image = decode_image(message, self._ranges).rgb()
             found = detector.detect(image, task.limits)
             image_with_boxes = drawn(image, found) if task.draws else None
         except (BadImageError, LinkwrightError) as error:

@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwright.geometry.single import compose
 from linkwright.graph import SENSOR_DATA_QOS, Node
-from linkwright.images import BadImageError, RangeFinder, picture_of
+from linkwright.images import BadImageError, RangeFinder, decode_image
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.vision.nodes.detection_reading import VISION_FORM
@@ -85,7 +85,7 @@ class SeenObjects:
         if image is None or not any(detection.id for detection in message.detections):
             return
         try:
-            pixels = picture_of(image, self._ranges).pixels
+            pixels = decode_image(image, self._ranges).pixels
         except BadImageError:
             return
         if pixels.ndim != 3:

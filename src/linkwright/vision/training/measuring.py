@@ -11,7 +11,7 @@ from linkwright.vision.detector import Limits
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.registry import make_detector
 from linkwright.vision.evaluation import MOST, Evaluation, GroundTruth, evaluate
-from linkwright.vision.training.pictures import read_image
+from linkwright.vision.training.images import read_image
 from linkwright.vision.training.reading import Labelled
 
 LIMITS = Limits(threshold=0.01, iou=0.6, most=MOST)

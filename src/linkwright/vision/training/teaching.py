@@ -53,9 +53,9 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
         KeyboardInterrupt: it was interrupted before the first checkpoint.
     """
     need_pytorch()
+    from linkwright.vision.training.images import read_lesson
     from linkwright.vision.training.learning.course import Course
     from linkwright.vision.training.learning.export import to_onnx
-    from linkwright.vision.training.pictures import read_lesson
 
     dataset = open_dataset(options.dataset)
     lesson, exam = dataset.read("train"), dataset.read("val")

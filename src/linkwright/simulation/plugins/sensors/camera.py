@@ -23,7 +23,7 @@ from linkwright.sdf.optics import Optics, optics_of
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, SensorPlugin
 from linkwright.simulation.plugins.sensors.clouds import fill_camera_cloud
-from linkwright.simulation.plugins.sensors.pictures import (
+from linkwright.simulation.plugins.sensors.images import (
     ENCODINGS,
     OF_DEPTHS,
     USUAL_ENCODING,

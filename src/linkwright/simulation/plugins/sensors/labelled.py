@@ -19,7 +19,7 @@ from linkwright.sdf.plugins import Plugin, library_name
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.sensors.camera import IMAGE, INFO, CameraPlugin, MountedCamera
-from linkwright.simulation.plugins.sensors.pictures import Pixels, fill_camera_info, fill_image
+from linkwright.simulation.plugins.sensors.images import Pixels, fill_camera_info, fill_image
 from linkwright.simulation.rendering.renderer import Wanted
 from linkwright.simulation.sensors.mount import GeomTable, part_of
 from linkwright.simulation.simulation import Simulation

@@ -21,13 +21,13 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, ph
 from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.suppression import suppressed
 from linkwright.vision.evaluation import Evaluation, GroundTruth, balanced_score, evaluate
+from linkwright.vision.training.images import Lesson, changed, repeated, repeats
 from linkwright.vision.training.learning.losses import loss
 from linkwright.vision.training.learning.network import Network, Shape, cells
 from linkwright.vision.training.learning.optimizer import Optimizer
 from linkwright.vision.training.learning.starting import load_weights
 from linkwright.vision.training.measuring import LIMITS
 from linkwright.vision.training.options import Options
-from linkwright.vision.training.pictures import Lesson, changed, repeated, repeats
 
 _WARM_UP = 100  # steps in which the rate grows to its highest
 _LEAST_RATE = 0.02  # of the highest, at the end

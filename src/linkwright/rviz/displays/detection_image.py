@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.diagnostics import phrase
-from linkwright.page.protocol.detections import PictureBoxes
+from linkwright.page.protocol.detections import ImageBoxes
 from linkwright.rviz.config.property_store import qos_of
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema, topic_spec
@@ -32,7 +32,7 @@ _PATIENCE = 1.0
 """Seconds without detections after which images are shown at once."""
 
 
-class DetectionPictureDisplay(ImageDisplay):
+class DetectionImageDisplay(ImageDisplay):
     """Images with boxes around the detected objects, in a panel of their own.
 
     While detections arrive, an image is shown together with those of its stamp, as late as the detector is. Detections
@@ -131,7 +131,7 @@ class DetectionPictureDisplay(ImageDisplay):
             super().process_image(image, None)
 
 
-def _boxes(message: Any, *, of_image: bool) -> PictureBoxes | None:
+def _boxes(message: Any, *, of_image: bool) -> ImageBoxes | None:
     """Return the boxes, or None if a number is not finite."""
     detections = list(message.detections)
     results = [best_result(detection) for detection in detections]
@@ -147,4 +147,4 @@ def _boxes(message: Any, *, of_image: bool) -> PictureBoxes | None:
         return None
     colors = np.array([class_color(name, {}) for name, _ in results], dtype=np.uint8).reshape(-1, 3)
     scores = np.array([score for _, score in results], dtype=np.float32)
-    return PictureBoxes(boxes, colors, scores, [name for name, _ in results], of_image)
+    return ImageBoxes(boxes, colors, scores, [name for name, _ in results], of_image)

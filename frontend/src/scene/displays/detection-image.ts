@@ -1,5 +1,5 @@
 import type { DisplayData } from "../../connection/data";
-import type { PictureBoxes } from "../../protocol";
+import type { ImageBoxes } from "../../protocol";
 import type { DrawingContext } from "./drawing";
 import { ImageDrawing } from "./image";
 
@@ -9,12 +9,12 @@ const TEXT = 16;
 const MOST_KEPT = 10;
 
 /** linkwright/Detections: an image with boxes over it. */
-export class DetectionPictureDrawing extends ImageDrawing {
+export class DetectionImageDrawing extends ImageDrawing {
   private readonly overlay = document.createElement("canvas");
   /** The boxes of images that are yet to be painted, or are, by their stamps. */
-  private readonly found = new Map<number, PictureBoxes>();
+  private readonly found = new Map<number, ImageBoxes>();
   /** Boxes of an image that is not there any more. */
-  private loose: PictureBoxes | null = null;
+  private loose: ImageBoxes | null = null;
   private shown: string[] = [];
 
   constructor(context: DrawingContext) {
@@ -31,7 +31,7 @@ export class DetectionPictureDrawing extends ImageDrawing {
 
   override dataChanged(data: DisplayData): void {
     const { content, stamp } = data;
-    if (content.kind === "picture_boxes") {
+    if (content.kind === "image_boxes") {
       this.loose = content.of_image ? null : content;
       if (content.of_image) this.found.set(stamp, content);
       for (const old of [...this.found.keys()].slice(0, -MOST_KEPT)) this.found.delete(old);
@@ -85,7 +85,7 @@ export class DetectionPictureDrawing extends ImageDrawing {
 }
 
 /** One box, with its text above its upper left corner, or below it where there is no room. */
-function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: PictureBoxes, i: number, scale: number, text: string): void {
+function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: ImageBoxes, i: number, scale: number, text: string): void {
   const [x = 0, y = 0, width = 0, height = 0, turn = 0] = boxes.subarray(5 * i, 5 * i + 5);
   const [red = 0, green = 0, blue = 0] = colors.subarray(3 * i, 3 * i + 3);
   const color = `rgb(${red} ${green} ${blue})`;
