@@ -1,7 +1,7 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { hex, thingItems } from "../src/panels/modelling/thing-items";
-import type { ModellingState, PageMessage, WorldThing } from "../src/protocol";
+import { hex, entityItems } from "../src/panels/modelling/entity-items";
+import type { ModellingState, PageMessage, WorldEntity } from "../src/protocol";
 import { AngleUnits } from "../src/state/angle-unit";
 import { Modelling } from "../src/state/modelling/modelling";
 import { placementAt, resized, scaledSize, stretch, wallBetween } from "../src/state/modelling/shapes";
@@ -16,14 +16,14 @@ let sent: PageMessage[];
 let connection: Connection;
 let modelling: Modelling;
 
-function thing(part: Partial<WorldThing> & Pick<WorldThing, "name">): WorldThing {
+function entity(part: Partial<WorldEntity> & Pick<WorldEntity, "name">): WorldEntity {
   const size = [1, 1, 1];
   return { kind: "model", pose: [0, 0, 0.5, 0, 0, 0], static: false, shape: "box", size, colour: null, address: null, parts: [], ...part };
 }
 
-function told(part: Partial<ModellingState>, ...things: WorldThing[]): void {
+function told(part: Partial<ModellingState>, ...entities: WorldEntity[]): void {
   const state = { available: true, active: true, file: "/w.sdf", unsaved: false, can_undo: false, can_redo: false };
-  connection.message.emit({ type: "modelling_state", ...state, ...part, things });
+  connection.message.emit({ type: "modelling_state", ...state, ...part, entities });
 }
 
 beforeEach(() => {
@@ -77,15 +77,15 @@ describe("shapes", () => {
   });
 
   it("keep their foot where it is when they stand upright", () => {
-    expect(resized(thing({ name: "box" }), [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3], pose: [0, 0, 1.5, 0, 0, 0] });
-    const tilted = thing({ name: "box", pose: [0, 0, 0.5, 0.1, 0, 0] });
+    expect(resized(entity({ name: "box" }), [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3], pose: [0, 0, 1.5, 0, 0, 0] });
+    const tilted = entity({ name: "box", pose: [0, 0, 0.5, 0.1, 0, 0] });
     expect(resized(tilted, [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3] });
   });
 });
 
 describe("what is selected", () => {
   it("is taken anew, or added and taken away with Shift", () => {
-    told({}, thing({ name: "a" }), thing({ name: "b" }));
+    told({}, entity({ name: "a" }), entity({ name: "b" }));
     modelling.select(["a"]);
     modelling.select(["b"], "toggle");
     expect(modelling.selected).toEqual(["a", "b"]);
@@ -94,34 +94,34 @@ describe("what is selected", () => {
   });
 
   it("is what this page made, and no more what is gone", () => {
-    told({}, thing({ name: "a" }));
+    told({}, entity({ name: "a" }));
     modelling.select(["a"]);
-    told({}, thing({ name: "a" }), thing({ name: "of another page" }));
+    told({}, entity({ name: "a" }), entity({ name: "of another page" }));
     expect(modelling.selected).toEqual(["a"]);
     modelling.add({ kind: "box", address: "" }, placementAt("box", [0, 0]));
-    told({ can_undo: true }, thing({ name: "a" }), thing({ name: "box" }));
+    told({ can_undo: true }, entity({ name: "a" }), entity({ name: "box" }));
     expect(modelling.selected).toEqual(["box"]);
-    told({ can_redo: true }, thing({ name: "a" }));
+    told({ can_redo: true }, entity({ name: "a" }));
     expect(modelling.selected).toEqual([]);
   });
 
-  it("follows a thing that gets another name, unless the server refuses it", () => {
-    told({}, thing({ name: "a" }));
+  it("follows an entity that gets another name, unless the server refuses it", () => {
+    told({}, entity({ name: "a" }));
     modelling.select(["a"]);
     modelling.change([{ name: "a", new_name: "b" }]);
-    told({}, thing({ name: "b" }));
+    told({}, entity({ name: "b" }));
     expect(modelling.selected).toEqual(["b"]);
     modelling.change([{ name: "b", new_name: "c" }]);
     connection.message.emit({ type: "simulation_notice", text: "no" });
-    told({}, thing({ name: "b" }), thing({ name: "d" }));
+    told({}, entity({ name: "b" }), entity({ name: "d" }));
     expect(modelling.selected).toEqual(["b"]);
   });
 
   it("is nothing, and nothing is in hand, when modelling ends", () => {
-    told({}, thing({ name: "a" }));
+    told({}, entity({ name: "a" }));
     modelling.select(["a"]);
     modelling.place({ kind: "box", address: "" });
-    told({ active: false }, thing({ name: "a" }));
+    told({ active: false }, entity({ name: "a" }));
     expect([modelling.selected, modelling.placing]).toEqual([[], null]);
   });
 });
@@ -145,8 +145,8 @@ describe("what can be done", () => {
   });
 
   it("depends on what is selected", () => {
-    const grouped = thing({ name: "g", shape: null, size: [], parts: ["p", "q"] });
-    told({}, thing({ name: "a" }), grouped, thing({ name: "sun", kind: "light", shape: null, size: [] }));
+    const grouped = entity({ name: "g", shape: null, size: [], parts: ["p", "q"] });
+    told({}, entity({ name: "a" }), grouped, entity({ name: "sun", kind: "light", shape: null, size: [] }));
     const can = (...names: string[]): boolean[] => {
       modelling.select(names);
       return [modelling.canScale, modelling.canGroup, modelling.canUngroup];
@@ -158,7 +158,7 @@ describe("what can be done", () => {
   });
 
   it("tells the server in whole messages", () => {
-    told({}, thing({ name: "a" }), thing({ name: "b" }));
+    told({}, entity({ name: "a" }), entity({ name: "b" }));
     modelling.select(["a", "b"]);
     modelling.copy();
     modelling.group();
@@ -167,11 +167,11 @@ describe("what can be done", () => {
     modelling.save(null);
     modelling.change([{ name: "a", static: true }]);
     expect(sent).toEqual([
-      { type: "group_things", names: ["a", "b"], name: "group" },
-      { type: "delete_things", names: ["a", "b"] },
-      { type: "copy_things", names: ["a", "b"], offset: [0.5, 0.5, 0] },
+      { type: "group_entities", names: ["a", "b"], name: "group" },
+      { type: "delete_entities", names: ["a", "b"] },
+      { type: "copy_entities", names: ["a", "b"], offset: [0.5, 0.5, 0] },
       { type: "save_world", path: null },
-      { type: "change_things", changes: [{ name: "a", pose: null, size: null, new_name: null, static: true, colour: null }] },
+      { type: "change_entities", changes: [{ name: "a", pose: null, size: null, new_name: null, static: true, colour: null }] },
     ]);
   });
 });
@@ -180,25 +180,25 @@ describe("the rows of what is selected", () => {
   const items = (): Map<string, TreeItem> => {
     const angles = new AngleUnits(browserStorage());
     angles.current = "deg";
-    const all = thingItems(modelling, angles).flatMap((item) => [item, ...(item.children?.() ?? [])]);
+    const all = entityItems(modelling, angles).flatMap((item) => [item, ...(item.children?.() ?? [])]);
     return new Map(all.map((item) => [item.key, item]));
   };
 
   it("show what several have in common, and change it for all in one step", () => {
-    told({}, thing({ name: "a", pose: [1, 2, 0.5, 0, 0, 0] }), thing({ name: "b", pose: [1, 5, 0.5, 0, 0, 0] }));
+    told({}, entity({ name: "a", pose: [1, 2, 0.5, 0, 0, 0] }), entity({ name: "b", pose: [1, 5, 0.5, 0, 0, 0] }));
     modelling.select(["a", "b"]);
     expect([items().get("pose/0")?.value, items().get("pose/1")?.value]).toEqual([1, null]);
     items().get("pose/5")?.set?.(90);
     const [message] = sent;
-    const poses = message?.type === "change_things" ? message.changes.map(({ pose }) => pose) : [];
+    const poses = message?.type === "change_entities" ? message.changes.map(({ pose }) => pose) : [];
     expect(poses).toEqual([
       [1, 2, 0.5, 0, 0, 1.570796327],
       [1, 5, 0.5, 0, 0, 1.570796327],
     ]);
   });
 
-  it("are of the kind of thing", () => {
-    told({}, thing({ name: "c", shape: "cylinder", size: [0.5, 1], colour: [1, 0.5, 0, 0.5] }), thing({ name: "sun", kind: "light", shape: null, size: [] }));
+  it("are of the kind of entity", () => {
+    told({}, entity({ name: "c", shape: "cylinder", size: [0.5, 1], colour: [1, 0.5, 0, 0.5] }), entity({ name: "sun", kind: "light", shape: null, size: [] }));
     modelling.select(["c"]);
     expect([...items().keys()]).toEqual(expect.arrayContaining(["name", "size/1", "static", "colour"]));
     items().get("colour")?.set?.("#00ff00");

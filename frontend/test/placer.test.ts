@@ -29,15 +29,15 @@ beforeEach(() => {
   placer = new Placer(stage as unknown as Stage, modelling);
 });
 
-describe("putting things into the world", () => {
-  it("needs a click, on the grid or with Ctrl beside it; Shift keeps the thing in hand", () => {
+describe("putting entities into the world", () => {
+  it("needs a click, on the grid or with Ctrl beside it; Shift keeps the entity in hand", () => {
     modelling.place({ kind: "sphere", address: "" });
     pointer("down", 1.04, 2);
     pointer("up", 1.04, 2, { click: true, shift: true });
     pointer("up", 1.04, 2, { click: true, ctrl: true });
     expect(sent).toEqual([
-      { type: "add_thing", shape: "sphere", address: "", pose: [1, 2, 0.25, 0, 0, 0], size: [0.25] },
-      { type: "add_thing", shape: "sphere", address: "", pose: [1.04, 2, 0.25, 0, 0, 0], size: [0.25] },
+      { type: "add_entity", shape: "sphere", address: "", pose: [1, 2, 0.25, 0, 0, 0], size: [0.25] },
+      { type: "add_entity", shape: "sphere", address: "", pose: [1.04, 2, 0.25, 0, 0, 0], size: [0.25] },
     ]);
     expect(modelling.placing).toBeNull();
   });
@@ -55,7 +55,7 @@ describe("putting things into the world", () => {
     expect(pointer("down", 0, 0)).toBe(true);
     expect(pointer("move", 4, 0)).toBe(true);
     pointer("up", 4, 0);
-    expect(sent).toEqual([{ type: "add_thing", shape: "wall", address: "", pose: [2, 0, 0.5, 0, 0, 0], size: [4, 0.1, 1] }]);
+    expect(sent).toEqual([{ type: "add_entity", shape: "wall", address: "", pose: [2, 0, 0.5, 0, 0, 0], size: [4, 0.1, 1] }]);
     pointer("down", 4, 0);
     pointer("up", 4, 0, { click: true });
     pointer("down", 4, 3);
@@ -66,6 +66,6 @@ describe("putting things into the world", () => {
 
   it("drops what is dragged from the bar", () => {
     placer.drop({ kind: "model", address: "model://chair" }, 2, 3);
-    expect(sent).toEqual([{ type: "add_thing", shape: "model", address: "model://chair", pose: [2, 3, 0, 0, 0, 0], size: [] }]);
+    expect(sent).toEqual([{ type: "add_entity", shape: "model", address: "model://chair", pose: [2, 3, 0, 0, 0, 0], size: [] }]);
   });
 });

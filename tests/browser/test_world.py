@@ -10,7 +10,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS, DurabilityPolicy, QoSProfile
 from linkwright.messages import String, TFMessage, get_message, get_service
 from linkwright.page.protocol.modelling import ModelChoices
-from linkwright.simulation.page.modelling import things
+from linkwright.simulation.page.modelling import entities
 from tests.browser.conftest import SECONDS, becomes, state, until
 from tests.browser.live import configuration
 from tests.waiting import wait_until
@@ -75,7 +75,7 @@ def test_models_are_drawn_and_move(live, open_page):
 
 def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live, open_page, monkeypatch, tmp_path):
     listed = threading.Event()
-    monkeypatch.setattr(things, "choices", lambda packages: (listed.wait(SECONDS), ModelChoices([]))[1])
+    monkeypatch.setattr(entities, "choices", lambda packages: (listed.wait(SECONDS), ModelChoices([]))[1])
     viewer = described(live)
     asked: list[tuple[str, object]] = []
 

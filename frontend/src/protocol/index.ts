@@ -67,19 +67,19 @@ import type { ImageFrame, ImageSize, OccupancyMap } from "./images";
 import type { CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints } from "./joints";
 import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, MarkersChanged } from "./markers";
 import type {
-  AddThing,
+  AddEntity,
   AskModels,
-  ChangeThings,
-  CopyThings,
-  DeleteThings,
-  GroupThings,
+  ChangeEntities,
+  CopyEntities,
+  DeleteEntities,
+  GroupEntities,
   ModelChoices,
   ModellingState,
   RedoWorld,
   SaveWorld,
   SetModelling,
   UndoWorld,
-  UngroupThing,
+  UngroupEntity,
 } from "./modelling";
 import type {
   AimTeleop,
@@ -256,7 +256,7 @@ export type ServerMessage =
 
 export type PageMessage =
   | AddDisplay
-  | AddThing
+  | AddEntity
   | AddTool
   | AimTeleop
   | ApplyEdit
@@ -275,13 +275,13 @@ export type PageMessage =
   | AskWordsFile
   | BeginTake
   | CenterJoints
+  | ChangeEntities
   | ChangeSavedView
-  | ChangeThings
   | CommandNavigation
   | ControlSimulation
-  | CopyThings
+  | CopyEntities
+  | DeleteEntities
   | DeleteModel
-  | DeleteThings
   | DragModel
   | Drive
   | DumpParameters
@@ -290,7 +290,7 @@ export type PageMessage =
   | GiveArguments
   | GoLive
   | GroupDisplays
-  | GroupThings
+  | GroupEntities
   | ImageSize
   | ImportWords
   | LoadConfiguration
@@ -341,7 +341,7 @@ export type PageMessage =
   | Undo
   | UndoEdit
   | UndoWorld
-  | UngroupThing
+  | UngroupEntity
   | ViewChanged
   | WatchClock
   | WatchLog

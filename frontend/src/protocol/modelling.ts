@@ -14,7 +14,7 @@ export type NewKind =
   | "model";
 
 /** A model or light of the world. */
-export interface WorldThing {
+export interface WorldEntity {
   name: string;
   kind: "model" | "light";
   pose: number[];
@@ -34,7 +34,7 @@ export interface ModellingState {
   unsaved: boolean;
   can_undo: boolean;
   can_redo: boolean;
-  things: WorldThing[];
+  entities: WorldEntity[];
   type: "modelling_state";
 }
 
@@ -51,7 +51,7 @@ export interface ModelChoices {
 }
 
 /** The change of a model or light; fields that are None stay. */
-export interface ThingChange {
+export interface EntityChange {
   name: string;
   pose: number[] | null;
   size: number[] | null;
@@ -67,44 +67,44 @@ export interface SetModelling {
 }
 
 /** The user adds an object; `address` is that of a model, an empty `size` means the default one. */
-export interface AddThing {
+export interface AddEntity {
   shape: NewKind;
   address: string;
   pose: number[];
   size: number[];
-  type: "add_thing";
+  type: "add_entity";
 }
 
 /** The user changes objects, in one undo step. */
-export interface ChangeThings {
-  changes: ThingChange[];
-  type: "change_things";
+export interface ChangeEntities {
+  changes: EntityChange[];
+  type: "change_entities";
 }
 
 /** The user copies objects; the copies are placed at an offset (x y z) from them. */
-export interface CopyThings {
+export interface CopyEntities {
   names: string[];
   offset: number[];
-  type: "copy_things";
+  type: "copy_entities";
 }
 
 /** The user deletes objects from the world. */
-export interface DeleteThings {
+export interface DeleteEntities {
   names: string[];
-  type: "delete_things";
+  type: "delete_entities";
 }
 
 /** The user makes one model of several, which become its parts. */
-export interface GroupThings {
+export interface GroupEntities {
   names: string[];
   name: string;
-  type: "group_things";
+  type: "group_entities";
 }
 
 /** The user splits a model into its parts. */
-export interface UngroupThing {
+export interface UngroupEntity {
   name: string;
-  type: "ungroup_thing";
+  type: "ungroup_entity";
 }
 
 /** Undo the last change of the world. */

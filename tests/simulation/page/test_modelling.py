@@ -82,7 +82,7 @@ def change(name: str, **fields) -> dict:
 async def test_without_a_simulation_there_is_no_world_to_edit():
     async with world() as made, page(made.viewer) as client:
         state = (await client.opened())["modelling_state"]
-        assert (state["available"], state["active"], state["things"]) == (False, False, [])
+        assert (state["available"], state["active"], state["entities"]) == (False, False, [])
         await client.send("set_modelling", active=True)
         assert "there is no world to edit" in (await client.until("simulation_notice"))["text"]
 
@@ -93,12 +93,12 @@ async def test_a_page_that_models_has_the_simulation_stand_at_its_beginning(tmp_
         assert [name for name, _ in simulation.asked] == ["/pause_physics", "/reset_simulation"]
         assert client.state["file"] == str(path)
         assert not client.state["unsaved"]
-        assert [(each["name"], each["kind"]) for each in client.state["things"]] == [
+        assert [(each["name"], each["kind"]) for each in client.state["entities"]] == [
             ("ground_plane", "model"),
             ("box", "model"),
             ("lamp", "light"),
         ]
-        ground, box, lamp = client.state["things"]
+        ground, box, lamp = client.state["entities"]
         assert (ground["address"], ground["static"], ground["shape"]) == ("model://ground_plane", True, None)
         assert (box["shape"], box["size"], box["colour"]) == ("box", [0.5, 0.5, 0.5], [0.9, 0.4, 0.1, 1])
         assert (box["pose"], box["parts"], lamp["colour"]) == ([2, 0, 0.25, 0, 0, 0], [], [1, 1, 1, 1])
@@ -111,7 +111,7 @@ async def test_what_is_changed_is_loaded_undone_and_saved(tmp_path):
     path = written(tmp_path)
     path.chmod(0o640)
     async with modelled(path) as (simulation, client, _):
-        await client.send("change_things", changes=[change("box", pose=[3, 0, 0.25, 0, 0, 0])])
+        await client.send("change_entities", changes=[change("box", pose=[3, 0, 0.25, 0, 0, 0])])
         state = await client.until("modelling_state", unsaved=True)
         assert (state["can_undo"], state["can_redo"]) == (True, False)
         resource = await simulation.loaded()
@@ -133,26 +133,26 @@ async def test_everything_that_a_page_can_ask_for(tmp_path):
 
         async def names(kind: str, **fields) -> list[str]:
             await client.send(kind, **fields)
-            return [each["name"] for each in (await client.until("modelling_state"))["things"]]
+            return [each["name"] for each in (await client.until("modelling_state"))["entities"]]
 
         for shape in ("box", "cylinder", "sphere", "wall", "ramp"):
-            assert shape in (await names("add_thing", shape=shape, address="", pose=POSE, size=[]))[-1]
+            assert shape in (await names("add_entity", shape=shape, address="", pose=POSE, size=[]))[-1]
         for light in ("point_light", "directional_light", "spot_light"):
-            await names("add_thing", shape=light, address="", pose=POSE, size=[])
-        found = await names("add_thing", shape="model", address="model://sun", pose=POSE, size=[])
+            await names("add_entity", shape=light, address="", pose=POSE, size=[])
+        found = await names("add_entity", shape="model", address="model://sun", pose=POSE, size=[])
         assert found == [
             *("ground_plane", "box", "lamp", "box_2", "cylinder", "sphere", "wall", "ramp"),
             *("point_light", "directional_light", "spot_light", "sun"),
         ]
-        assert (await names("copy_things", names=["wall"], offset=[0, 1, 0]))[7] == "wall_2"
-        assert "pile" in await names("group_things", names=["box", "box_2"], name="pile")
-        assert "box_2" not in await names("delete_things", names=["sun", "lamp"])
-        assert "box_2" in await names("ungroup_thing", name="pile")
+        assert (await names("copy_entities", names=["wall"], offset=[0, 1, 0]))[7] == "wall_2"
+        assert "pile" in await names("group_entities", names=["box", "box_2"], name="pile")
+        assert "box_2" not in await names("delete_entities", names=["sun", "lamp"])
+        assert "box_2" in await names("ungroup_entity", name="pile")
         changes = [change("wall", size=[1, 2, 3], colour=[0, 0, 1, 1]), change("ramp", new_name="slope", static=False)]
-        await client.send("change_things", changes=changes)
-        things = {each["name"]: each for each in (await client.until("modelling_state"))["things"]}
-        assert (things["wall"]["size"], things["wall"]["colour"]) == ([1, 2, 3], [0, 0, 1, 1])
-        assert (things["slope"]["shape"], things["slope"]["static"]) == ("ramp", False)
+        await client.send("change_entities", changes=changes)
+        entities = {each["name"]: each for each in (await client.until("modelling_state"))["entities"]}
+        assert (entities["wall"]["size"], entities["wall"]["colour"]) == ([1, 2, 3], [0, 0, 1, 1])
+        assert (entities["slope"]["shape"], entities["slope"]["static"]) == ("ramp", False)
         await client.send("ask_models")
         found = (await client.until("model_choices"))["models"]
         assert {"name": "sun", "address": "model://sun"} in found
@@ -160,26 +160,26 @@ async def test_everything_that_a_page_can_ask_for(tmp_path):
 
 async def test_nothing_gets_the_name_of_what_was_put_into_the_world(tmp_path):
     async with modelled(written(tmp_path, PLAIN.replace(BOX, ""))) as (_, client, _):
-        assert [each["name"] for each in client.state["things"]] == ["ground_plane", "lamp"]
-        await client.send("add_thing", shape="box", address="", pose=POSE, size=[])
-        assert (await client.until("modelling_state", unsaved=True))["things"][-1]["name"] == "box_2"
+        assert [each["name"] for each in client.state["entities"]] == ["ground_plane", "lamp"]
+        await client.send("add_entity", shape="box", address="", pose=POSE, size=[])
+        assert (await client.until("modelling_state", unsaved=True))["entities"][-1]["name"] == "box_2"
 
 
 async def test_pages_share_what_is_edited(tmp_path):
     async with modelled(written(tmp_path)) as (_, client, made), page(made.viewer) as other:
         assert (await other.opened())["modelling_state"]["active"] is True
-        await client.send("delete_things", names=["box"])
-        assert len((await other.until("modelling_state", unsaved=True))["things"]) == 2
+        await client.send("delete_entities", names=["box"])
+        assert len((await other.until("modelling_state", unsaved=True))["entities"]) == 2
         await other.send("undo_world")
-        assert len((await client.until("modelling_state", can_redo=True))["things"]) == 3
+        assert len((await client.until("modelling_state", can_redo=True))["entities"]) == 3
 
 
 async def test_what_cannot_be_is_told_to_who_asked(tmp_path):
     async with modelled(written(tmp_path)) as (simulation, client, _):
-        await client.send("delete_things", names=["nobody"])
+        await client.send("delete_entities", names=["nobody"])
         assert (await client.until("simulation_notice"))["text"] == "there is no 'nobody' in the world's file"
         simulation.refusal = "too many links"
-        await client.send("delete_things", names=["box"])
+        await client.send("delete_entities", names=["box"])
         assert (await client.until("simulation_notice"))["text"] == "too many links"
         await client.send("save_world", path="notes.txt")
         assert "it must end in .world or .sdf" in (await client.until("simulation_notice"))["text"]
@@ -187,14 +187,14 @@ async def test_what_cannot_be_is_told_to_who_asked(tmp_path):
 
 async def test_a_simulator_that_loads_no_worlds_is_told(tmp_path):
     async with modelled(written(tmp_path), loads=False) as (_, client, _):
-        await client.send("delete_things", names=["box"])
+        await client.send("delete_entities", names=["box"])
         assert (await client.until("simulation_notice"))["text"] == "there is no service '/load_world'"
 
 
 async def test_a_world_without_a_file_is_saved_as_one(tmp_path):
     async with modelled() as (simulation, client, _):
         assert client.state["file"] is None
-        await client.send("delete_things", names=["box"])
+        await client.send("delete_entities", names=["box"])
         assert (await simulation.loaded()).resource_string == PLAIN.replace(BOX, "")
         await client.send("save_world", path=None)
         assert "no file of its own" in (await client.until("simulation_notice"))["text"]
@@ -209,15 +209,15 @@ async def test_a_file_with_another_world_is_of_another_machine(tmp_path, text):
     path = tmp_path / "none.world" if text is None else written(tmp_path, text)
     async with modelled(path) as (_, client, _):
         assert client.state["file"] is None
-        assert len(client.state["things"]) == 3
+        assert len(client.state["entities"]) == 3
 
 
 async def test_a_file_that_another_program_changed_is_read_again_or_not_overwritten(tmp_path):
     path = written(tmp_path)
     async with modelled(path) as (_, client, _):
         path.write_text(PLAIN.replace("'box'", "'crate'"))
-        await client.send("delete_things", names=["crate"])
-        assert len((await client.until("modelling_state"))["things"]) == 2
+        await client.send("delete_entities", names=["crate"])
+        assert len((await client.until("modelling_state"))["entities"]) == 2
         path.write_text(PLAIN)
         await client.send("save_world", path=None)
         assert "was changed by another program" in (await client.until("simulation_notice"))["text"]
@@ -230,7 +230,7 @@ async def test_what_is_not_saved_when_the_program_ends_is_kept(tmp_path):
     path = written(tmp_path)
     async with modelled(path) as (_, client, made):
         assert made.viewer.keep_unsaved() == []
-        await client.send("delete_things", names=["box"])
+        await client.send("delete_entities", names=["box"])
         await client.until("modelling_state", unsaved=True)
         (said,) = made.viewer.keep_unsaved()
     assert (said.code, path.read_text()) == ("RVIZ301", PLAIN)

@@ -7,7 +7,7 @@ import { keyText, type Shortcut } from "../../widgets/shortcuts";
 import { ModelDialog } from "./model-dialog";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 
-/** The things that can be put into the world, except models. */
+/** The entities that can be put into the world, except models. */
 const PALETTE: readonly (readonly [Exclude<NewKind, "model">, IconName])[] = [
   ["box", "shapeBox"],
   ["cylinder", "shapeCylinder"],
@@ -70,7 +70,7 @@ export class ModellingBar {
     this.save.classList.toggle("unsaved", modelling.unsaved);
   }
 
-  /** A click takes the thing in hand, dragging drops it onto the ground, and the keyboard puts it into the middle. */
+  /** A click takes the entity in hand, dragging drops it onto the ground, and the keyboard puts it into the middle. */
   private adder(kind: Exclude<NewKind, "model">, name: IconName): HTMLButtonElement {
     const { modelling } = this;
     const words = strings.modelling;

@@ -32,7 +32,7 @@ const ELSEWHERE = ".panel:not(.world-panel)";
 export class WorldCommands {
   private readonly runs: Readonly<Record<keyof typeof WORLD_KEYS, () => void>>;
 
-  /** `escape` releases the thing that the mouse holds, or has in hand. */
+  /** `escape` releases the entity that the mouse holds, or has in hand. */
   constructor(
     private readonly modelling: Modelling,
     escape: () => void,

@@ -10,8 +10,8 @@ import { keyText, type Shortcut } from "../../widgets/shortcuts";
 import { UnitSwitch } from "../../widgets/unit-switch";
 import type { Panel } from "../panel";
 import { shortPath } from "../place";
-import { thingItems } from "./thing-items";
-import { ThingList } from "./thing-list";
+import { entityItems } from "./entity-items";
+import { EntityList } from "./entity-list";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 
 /** The models and lights of the world that is edited, and the numbers of the selected ones. */
@@ -44,8 +44,8 @@ export class WorldPanel implements Panel {
     const toolbar = h("div", { class: "toolbar", role: "toolbar", aria: { label: words.panel } }, ...this.actions.map(([made]) => made));
     const saveAs = action(words.saveAs, WORLD_KEYS.saveAs, "download", () => commands.saveAs());
     const head = h("div", { class: "world-head" }, icon("file"), this.file, this.mark, h("span", { class: "spacer" }), saveAs);
-    const tree = new TreeView(words.properties, () => thingItems(modelling, angles), () => []);
-    this.work = h("div", { class: "world-work" }, head, toolbar, this.empty, new ThingList(modelling).element, tree.element, this.grid(angles));
+    const tree = new TreeView(words.properties, () => entityItems(modelling, angles), () => []);
+    this.work = h("div", { class: "world-work" }, head, toolbar, this.empty, new EntityList(modelling).element, tree.element, this.grid(angles));
     this.element = h("div", { class: "panel world-panel" }, this.off, this.work);
     modelling.changed.on(() => this.show());
     modelling.selectionChanged.on(() => this.show());
@@ -54,13 +54,13 @@ export class WorldPanel implements Panel {
   }
 
   private show(): void {
-    const { active, file, unsaved, things } = this.modelling;
+    const { active, file, unsaved, entities } = this.modelling;
     this.off.hidden = active;
     this.work.hidden = !active;
     this.file.textContent = file === null ? strings.modelling.untitled : shortPath(file);
     this.file.title = file ?? "";
     this.mark.hidden = !unsaved;
-    this.empty.hidden = things.length > 0;
+    this.empty.hidden = entities.length > 0;
     for (const [made, possible] of this.actions) made.disabled = !possible();
   }
 

@@ -2,12 +2,12 @@ import { Mesh, MeshBasicMaterial, type BufferGeometry } from "three";
 import { isShape, type NewKind, type Placement } from "../../state/modelling/shapes";
 import { unitBox, unitCylinder, unitSphere } from "../objects/geometries";
 import { extrusion } from "../objects/world-geometries";
-import { thingMatrix } from "./thing-pose";
+import { entityMatrix } from "./entity-pose";
 
 /** What has no shape of its own is shown as a disc on the ground, m. */
 const DISC = [0.2, 0.2, 0.01] as const;
 
-/** A translucent preview of the thing that is about to be added to the world. */
+/** A translucent preview of the entity that is about to be added to the world. */
 export class Ghost {
   readonly root = new Mesh<BufferGeometry, MeshBasicMaterial>(
     unitBox,
@@ -28,7 +28,7 @@ export class Ghost {
     const [x = 0, y = 0, z = 0] = isShape(kind) ? size : DISC;
     this.root.geometry = this.geometryOf(kind);
     const scale = kind === "sphere" ? ([x, x, x] as const) : kind === "cylinder" ? ([x, x, y] as const) : ([x, y, z] as const);
-    this.root.matrix.copy(thingMatrix(isShape(kind) ? pose : [...pose.slice(0, 2), 0, 0, 0, 0]));
+    this.root.matrix.copy(entityMatrix(isShape(kind) ? pose : [...pose.slice(0, 2), 0, 0, 0, 0]));
     this.root.matrix.scale(this.root.scale.set(...scale));
     this.root.matrixWorldNeedsUpdate = true;
   }

@@ -1,6 +1,6 @@
 import { Group, Matrix4, Mesh, MeshBasicMaterial, OctahedronGeometry, type Raycaster } from "three";
 import type { Modelling } from "../../state/modelling/modelling";
-import { thingMatrix } from "./thing-pose";
+import { entityMatrix } from "./entity-pose";
 
 /** m. */
 const RADIUS = 0.12;
@@ -19,8 +19,8 @@ export class LightMarks {
 
   /** Matches the lights there are; `moved` are those shown elsewhere. */
   update(world: Matrix4, moved: ReadonlyMap<string, Matrix4>): void {
-    const { active, things, selected } = this.modelling;
-    const lights = active ? things.filter(({ kind }) => kind === "light") : [];
+    const { active, entities, selected } = this.modelling;
+    const lights = active ? entities.filter(({ kind }) => kind === "light") : [];
     for (const [name, mark] of this.marks) {
       if (lights.some((light) => light.name === name)) continue;
       mark.removeFromParent();
@@ -29,7 +29,7 @@ export class LightMarks {
     }
     for (const { name, pose } of lights) {
       const mark = this.marks.get(name) ?? this.make(name);
-      mark.matrix.copy(thingMatrix(pose));
+      mark.matrix.copy(entityMatrix(pose));
       mark.matrix.premultiply(moved.get(name) ?? new Matrix4());
       mark.material.color.setHex(selected.includes(name) ? SELECTED : COLOR);
     }

@@ -1,17 +1,17 @@
 import { Matrix4, Vector3 } from "three";
-import type { WorldThing } from "../../protocol";
+import type { WorldEntity } from "../../protocol";
 import type { Modelling } from "../../state/modelling/modelling";
 import { resized, scaledSize, stretch, type Change } from "../../state/modelling/shapes";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
 import { Gizmo } from "./gizmo";
-import { thingMatrix, thingPose } from "./thing-pose";
+import { entityMatrix, entityPose } from "./entity-pose";
 import { worldFrame } from "./world-frame";
 
 /** m or rad: a smaller difference is not a change. */
 const NOTHING = 1e-8;
 
-/** Shows things moved in the world, by the matrices that premultiply their poses. */
+/** Shows entities moved in the world, by the matrices that premultiply their poses. */
 export type Displace = (moved: ReadonlyMap<string, Matrix4>) => void;
 
 /** The gizmo on what is selected: moved here at once, in the world when it is let go. */
@@ -31,9 +31,9 @@ export class Manipulation {
   update(): void {
     const { modelling } = this;
     if (this.gizmo.held) return;
-    const thing = modelling.active && modelling.placing === null ? modelling.selectedThings.at(-1) : undefined;
-    const shown = thing && (modelling.gizmo !== "scale" || modelling.canScale);
-    this.gizmo.show(shown ? worldFrame(this.stage).multiply(thingMatrix(thing.pose)) : null, modelling.gizmo);
+    const entity = modelling.active && modelling.placing === null ? modelling.selectedEntities.at(-1) : undefined;
+    const shown = entity && (modelling.gizmo !== "scale" || modelling.canScale);
+    this.gizmo.show(shown ? worldFrame(this.stage).multiply(entityMatrix(entity.pose)) : null, modelling.gizmo);
   }
 
   /** False for an event that others should have. */
@@ -64,11 +64,11 @@ export class Manipulation {
     const { modelling, gizmo } = this;
     const steps = modelling.snapping.steps(event.ctrl);
     gizmo.drag(event, steps);
-    const things = modelling.selectedThings;
-    const main = things.at(-1);
+    const entities = modelling.selectedEntities;
+    const main = entities.at(-1);
     if (!main) return;
     if (modelling.gizmo === "scale") this.scale(main, steps.length);
-    else this.carry(things, main);
+    else this.carry(entities, main);
   }
 
   /** False for a mere click, which is for what is behind the handle. */
@@ -81,23 +81,23 @@ export class Manipulation {
     return changes.length > 0;
   }
 
-  /** All go with the thing that the gizmo is on. */
-  private carry(things: readonly WorldThing[], main: WorldThing): void {
+  /** All go with the entity that the gizmo is on. */
+  private carry(entities: readonly WorldEntity[], main: WorldEntity): void {
     const to = worldFrame(this.stage).invert().multiply(this.gizmo.pose);
-    const by = to.multiply(thingMatrix(main.pose).invert());
-    const moved = things.map(({ name, pose }) => ({ name, pose: thingPose(by.clone().multiply(thingMatrix(pose))) }));
-    this.changes = same(moved.flatMap(({ pose }) => pose), things.flatMap(({ pose }) => pose)) ? [] : moved;
-    this.displace(new Map(things.map(({ name }) => [name, by])));
+    const by = to.multiply(entityMatrix(main.pose).invert());
+    const moved = entities.map(({ name, pose }) => ({ name, pose: entityPose(by.clone().multiply(entityMatrix(pose))) }));
+    this.changes = same(moved.flatMap(({ pose }) => pose), entities.flatMap(({ pose }) => pose)) ? [] : moved;
+    this.displace(new Map(entities.map(({ name }) => [name, by])));
   }
 
-  private scale(thing: WorldThing, step: number): void {
-    const { name, shape, size, pose } = thing;
+  private scale(entity: WorldEntity, step: number): void {
+    const { name, shape, size, pose } = entity;
     if (shape === null) return;
     const next = scaledSize(shape, size, this.gizmo.scale, step);
-    const change = resized(thing, next);
+    const change = resized(entity, next);
     const stretched = new Matrix4().scale(new Vector3(...stretch(shape, size, next)));
     this.changes = same(size, next) ? [] : [change];
-    this.displace(new Map([[name, thingMatrix(change.pose ?? pose).multiply(stretched).multiply(thingMatrix(pose).invert())]]));
+    this.displace(new Map([[name, entityMatrix(change.pose ?? pose).multiply(stretched).multiply(entityMatrix(pose).invert())]]));
   }
 }
 

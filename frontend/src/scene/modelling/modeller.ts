@@ -62,7 +62,7 @@ export class Modeller {
     return { ...event, click: false };
   }
 
-  /** Esc: releases the thing that is held or in hand, else clears the selection. */
+  /** Esc: releases the entity that is held or in hand, else clears the selection. */
   escape(): void {
     const { modelling } = this.session;
     if (this.manipulation.cancel()) return;
@@ -72,13 +72,13 @@ export class Modeller {
 
   private click({ x, y, shift, ctrl }: ToolEvent): void {
     const { modelling } = this.session;
-    const name = this.thingAt(x, y);
+    const name = this.entityAt(x, y);
     if (name !== null) modelling.select([name], shift || ctrl ? "toggle" : "replace");
     else if (!shift && !ctrl) modelling.select([]);
   }
 
-  /** The thing of the world's file that is seen at a place; the ground does not block any thing. */
-  private thingAt(x: number, y: number): string | null {
+  /** The entity of the world's file that is seen at a place; the ground does not block any entity. */
+  private entityAt(x: number, y: number): string | null {
     const { picker } = this.stage;
     const ray = picker.rayAt(x, y);
     const light = this.lights.pick(ray);
@@ -98,7 +98,7 @@ export class Modeller {
   private openMenu(event: ToolEvent): void {
     const { modelling, sceneMenu } = this.session;
     const words = strings.modelling;
-    const name = this.thingAt(event.x, event.y);
+    const name = this.entityAt(event.x, event.y);
     if (name === null) return;
     if (!modelling.selected.includes(name)) modelling.select([name]);
     const choices = [

@@ -1,5 +1,5 @@
 import type { Connection } from "../../connection/connection";
-import type { ModelChoice, ModellingState, WorldThing } from "../../protocol";
+import type { ModelChoice, ModellingState, WorldEntity } from "../../protocol";
 import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 import type { Change, NewKind, Placement } from "./shapes";
@@ -27,7 +27,7 @@ const NOTHING: Omit<ModellingState, "type"> = {
   unsaved: false,
   can_undo: false,
   can_redo: false,
-  things: [],
+  entities: [],
 };
 /** The least distance between a copy and its original, m. */
 const LEAST_OFFSET = 0.5;
@@ -89,8 +89,8 @@ export class Modelling {
     return this.world.can_redo;
   }
 
-  get things(): readonly WorldThing[] {
-    return this.world.things;
+  get entities(): readonly WorldEntity[] {
+    return this.world.entities;
   }
 
   /** Names, in the order of selecting. */
@@ -98,7 +98,7 @@ export class Modelling {
     return this.names;
   }
 
-  get selectedThings(): WorldThing[] {
+  get selectedEntities(): WorldEntity[] {
     return this.names.flatMap((name) => this.find(name) ?? []);
   }
 
@@ -118,21 +118,21 @@ export class Modelling {
 
   /** Whether the selection can be grouped into one model. */
   get canGroup(): boolean {
-    const things = this.selectedThings;
-    return things.length > 1 && things.every(({ kind }) => kind === "model");
+    const entities = this.selectedEntities;
+    return entities.length > 1 && entities.every(({ kind }) => kind === "model");
   }
 
   get canUngroup(): boolean {
-    return this.selectedThings.some(({ parts }) => parts.length > 0);
+    return this.selectedEntities.some(({ parts }) => parts.length > 0);
   }
 
   get canScale(): boolean {
-    const [thing, ...more] = this.selectedThings;
-    return more.length === 0 && thing !== undefined && thing.shape !== null;
+    const [entity, ...more] = this.selectedEntities;
+    return more.length === 0 && entity !== undefined && entity.shape !== null;
   }
 
-  find(name: string): WorldThing | null {
-    return this.world.things.find((thing) => thing.name === name) ?? null;
+  find(name: string): WorldEntity | null {
+    return this.world.entities.find((entity) => entity.name === name) ?? null;
   }
 
   /** `toggle` adds unselected objects, and removes selected ones. */
@@ -167,7 +167,7 @@ export class Modelling {
 
   add({ kind, address }: Placing, { pose, size }: Placement): void {
     this.makes = true;
-    this.connection.send({ type: "add_thing", shape: kind, address, pose: [...pose], size: [...size] });
+    this.connection.send({ type: "add_entity", shape: kind, address, pose: [...pose], size: [...size] });
   }
 
   /** All of them are one step of undo. */
@@ -175,7 +175,7 @@ export class Modelling {
     if (changes.length === 0) return;
     if (changes.some(({ new_name }) => typeof new_name === "string")) this.makes = true;
     const stays = { pose: null, size: null, new_name: null, static: null, colour: null };
-    this.connection.send({ type: "change_things", changes: changes.map((change) => ({ ...stays, ...change })) });
+    this.connection.send({ type: "change_entities", changes: changes.map((change) => ({ ...stays, ...change })) });
   }
 
   copy(): void {
@@ -191,20 +191,20 @@ export class Modelling {
   }
 
   remove(): void {
-    if (this.names.length > 0) this.connection.send({ type: "delete_things", names: [...this.names] });
+    if (this.names.length > 0) this.connection.send({ type: "delete_entities", names: [...this.names] });
   }
 
   group(): void {
     if (!this.canGroup) return;
     this.makes = true;
-    this.connection.send({ type: "group_things", names: [...this.names], name: "group" });
+    this.connection.send({ type: "group_entities", names: [...this.names], name: "group" });
   }
 
   ungroup(): void {
-    for (const { name, parts } of this.selectedThings) {
+    for (const { name, parts } of this.selectedEntities) {
       if (parts.length === 0) continue;
       this.makes = true;
-      this.connection.send({ type: "ungroup_thing", name });
+      this.connection.send({ type: "ungroup_entity", name });
     }
   }
 
@@ -229,13 +229,13 @@ export class Modelling {
     if (names.length === 0) return;
     this.makes = true;
     const step = Math.max(LEAST_OFFSET, this.snapping.metres);
-    this.connection.send({ type: "copy_things", names: [...names], offset: [step, step, 0] });
+    this.connection.send({ type: "copy_entities", names: [...names], offset: [step, step, 0] });
   }
 
   private take(state: ModellingState): void {
-    const before = new Set(this.world.things.map(({ name }) => name));
+    const before = new Set(this.world.entities.map(({ name }) => name));
     this.world = state;
-    const news = state.things.map(({ name }) => name).filter((name) => !before.has(name));
+    const news = state.entities.map(({ name }) => name).filter((name) => !before.has(name));
     const left = state.active ? this.names.filter((name) => this.find(name)) : [];
     if (!state.active && this.inHand) this.place(null);
     this.changed.emit();

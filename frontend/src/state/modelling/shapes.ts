@@ -1,13 +1,13 @@
-import type { AddThing, ThingChange, WorldThing } from "../../protocol";
+import type { AddEntity, EntityChange, WorldEntity } from "../../protocol";
 import { snapped } from "./snapping";
 
-export type NewKind = AddThing["shape"];
-export type Shape = NonNullable<WorldThing["shape"]>;
+export type NewKind = AddEntity["shape"];
+export type Shape = NonNullable<WorldEntity["shape"]>;
 /** A place of the ground: x and y in the world, m. */
 export type Place = readonly [number, number];
 
 /** A change of an object; properties that are not given stay. */
-export type Change = Pick<ThingChange, "name"> & Partial<ThingChange>;
+export type Change = Pick<EntityChange, "name"> & Partial<EntityChange>;
 
 /** The size of new walls, metres. */
 const THICKNESS = 0.1;
@@ -66,7 +66,7 @@ export function scaledSize(shape: Shape, size: readonly number[], scale: readonl
 }
 
 /** The change that resizes an object; an upright one keeps its foot in place. */
-export function resized({ name, shape, size: before, pose }: WorldThing, size: readonly number[]): Change {
+export function resized({ name, shape, size: before, pose }: WorldEntity, size: readonly number[]): Change {
   const [x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0] = pose;
   const change = { name, size: [...size] };
   if (shape === null || roll !== 0 || pitch !== 0) return change;

@@ -33,7 +33,7 @@ export const modelling = {
   unsaved: "unsaved changes",
   off: "Turn on modelling to add, move and change models of the world.",
   start: "Model the world",
-  things: "In the world",
+  entities: "In the world",
   empty: "The world is empty: add a shape or model from the bar above the scene.",
   duplicate: "Duplicate",
   remove: "Remove",

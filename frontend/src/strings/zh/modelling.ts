@@ -34,7 +34,7 @@ export const modelling: typeof english = {
   unsaved: "有未保存的修改",
   off: "打开编辑模式后，可以添加、移动和修改世界中的物体。",
   start: "编辑世界",
-  things: "世界中的物体",
+  entities: "世界中的物体",
   empty: "这个世界里还没有物体：请从场景上方的工具条中选取。",
   duplicate: "复制一份",
   remove: "移除",

@@ -17,7 +17,7 @@ NewKind = Literal[
 ]
 
 
-class WorldThing(Record):
+class WorldEntity(Record):
     """A model or light of the world.
 
     `shape`, `size` and `colour` are of a model that is one simple shape, else None and empty; `address` is of a model
@@ -39,7 +39,7 @@ class ModellingState(ServerMessage):
     """Whether the world can be edited and is being edited, and its content.
 
     `file` is None for a world without a file of its own, which is saved as one that the user names. While no user edits
-    the world, `things` may be empty.
+    the world, `entities` may be empty.
     """
 
     available: bool
@@ -48,11 +48,11 @@ class ModellingState(ServerMessage):
     unsaved: bool
     can_undo: bool
     can_redo: bool
-    things: list[WorldThing]
+    entities: list[WorldEntity]
 
 
 NO_WORLD = ModellingState(
-    available=False, active=False, file=None, unsaved=False, can_undo=False, can_redo=False, things=[]
+    available=False, active=False, file=None, unsaved=False, can_undo=False, can_redo=False, entities=[]
 )
 
 
@@ -69,7 +69,7 @@ class ModelChoices(ServerMessage):
     models: list[ModelChoice]
 
 
-class ThingChange(Record):
+class EntityChange(Record):
     """The change of a model or light; fields that are None stay."""
 
     name: str
@@ -86,7 +86,7 @@ class SetModelling(PageMessage):
     active: bool
 
 
-class AddThing(PageMessage):
+class AddEntity(PageMessage):
     """The user adds an object; `address` is that of a model, an empty `size` means the default one."""
 
     shape: NewKind
@@ -95,33 +95,33 @@ class AddThing(PageMessage):
     size: list[float]
 
 
-class ChangeThings(PageMessage):
+class ChangeEntities(PageMessage):
     """The user changes objects, in one undo step."""
 
-    changes: list[ThingChange]
+    changes: list[EntityChange]
 
 
-class CopyThings(PageMessage):
+class CopyEntities(PageMessage):
     """The user copies objects; the copies are placed at an offset (x y z) from them."""
 
     names: list[str]
     offset: list[float]
 
 
-class DeleteThings(PageMessage):
+class DeleteEntities(PageMessage):
     """The user deletes objects from the world."""
 
     names: list[str]
 
 
-class GroupThings(PageMessage):
+class GroupEntities(PageMessage):
     """The user makes one model of several, which become its parts."""
 
     names: list[str]
     name: str
 
 
-class UngroupThing(PageMessage):
+class UngroupEntity(PageMessage):
     """The user splits a model into its parts."""
 
     name: str

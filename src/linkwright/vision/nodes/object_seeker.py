@@ -22,7 +22,7 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node, start
 from linkwright.nodes.settings import bad_value, log_unknown, positive
 from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.vision.nodes.nav2_trip import Nav2Trip
-from linkwright.vision.nodes.seen_things import SeenObject, SeenObjects
+from linkwright.vision.nodes.seen_objects import SeenObject, SeenObjects
 from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
 from linkwright.vision.places.words import LANGUAGES, Answer, ObjectRequest, Sighting, answer, described, requested
 

@@ -100,12 +100,12 @@ class ModellingFeature(PageFeature):
         edited = self._edited
         if edited is None:
             return ModellingState(self._available, self._active, None, False, False, False, [])
-        from linkwright.simulation.page.modelling.things import things_of
+        from linkwright.simulation.page.modelling.entities import entities_of
 
         file = None if edited.file is None else str(edited.file)
-        things = things_of(edited.world)
+        entities = entities_of(edited.world)
         return ModellingState(
-            self._available, self._active, file, edited.unsaved, edited.can_undo, edited.can_redo, things
+            self._available, self._active, file, edited.unsaved, edited.can_undo, edited.can_redo, entities
         )
 
     def _publish(self) -> None:
@@ -132,7 +132,7 @@ class ModellingFeature(PageFeature):
 
     async def _do(self, page: Page, message: PageMessage) -> None:
         if isinstance(message, AskModels):
-            from linkwright.simulation.page.modelling.things import choices
+            from linkwright.simulation.page.modelling.entities import choices
 
             page.send(await asyncio.to_thread(choices, self.context.finder))
         elif isinstance(message, SetModelling):
@@ -264,7 +264,7 @@ class ModellingFeature(PageFeature):
 
 def _edit(edited: EditedWorld, message: PageMessage) -> Callable[[], None]:
     """Apply a page's request to a world; slow, for a thread."""
-    from linkwright.simulation.page.modelling.things import changed
+    from linkwright.simulation.page.modelling.entities import changed
 
     if isinstance(message, UndoWorld):
         return edited.undo

@@ -1,6 +1,6 @@
 import { h } from "../../dom";
 import { icon, type IconName } from "../../icons";
-import type { WorldThing } from "../../protocol";
+import type { WorldEntity } from "../../protocol";
 import type { Modelling } from "../../state/modelling/modelling";
 import type { Shape } from "../../state/modelling/shapes";
 import { strings } from "../../strings";
@@ -15,21 +15,21 @@ const ICONS: Readonly<Record<Shape, IconName>> = {
   ramp: "shapeRamp",
 };
 
-/** All things in the world, by name; several can be selected, as in the scene. */
-export class ThingList {
+/** All entities in the world, by name; several can be selected, as in the scene. */
+export class EntityList {
   readonly element: HTMLElement;
   private readonly rows: VirtualRows;
-  private things: readonly WorldThing[] = [];
+  private entities: readonly WorldEntity[] = [];
   /** The row that keys continue from, and where a range begins. */
   private current = 0;
   private anchor = 0;
 
   constructor(private readonly modelling: Modelling) {
-    this.rows = new VirtualRows("thing-list", ROW_HEIGHT, (index) => this.row(index));
+    this.rows = new VirtualRows("entity-list", ROW_HEIGHT, (index) => this.row(index));
     this.element = this.rows.element;
     this.element.setAttribute("role", "listbox");
     this.element.setAttribute("aria-multiselectable", "true");
-    this.element.setAttribute("aria-label", strings.modelling.things);
+    this.element.setAttribute("aria-label", strings.modelling.entities);
     this.element.addEventListener("keydown", (event) => this.keyed(event));
     this.element.addEventListener("mousedown", (event) => this.pressed(event));
     modelling.changed.on(() => this.show());
@@ -38,14 +38,14 @@ export class ThingList {
   }
 
   private show(): void {
-    this.things = this.modelling.things;
-    this.rows.refresh(this.things.length);
+    this.entities = this.modelling.entities;
+    this.rows.refresh(this.entities.length);
     this.mark();
   }
 
   private reveal(): void {
     const last = this.modelling.selected.at(-1);
-    const index = this.things.findIndex(({ name }) => name === last);
+    const index = this.entities.findIndex(({ name }) => name === last);
     if (index >= 0 && index !== this.current) {
       this.current = this.anchor = index;
       this.rows.reveal(index);
@@ -55,16 +55,16 @@ export class ThingList {
   }
 
   private row(index: number): HTMLElement {
-    const thing = this.things[index];
-    const name = thing?.name ?? "";
+    const entity = this.entities[index];
+    const name = entity?.name ?? "";
     const selected = this.modelling.selected.includes(name);
     const row = h(
       "div",
-      { class: selected ? "thing-row selected" : "thing-row", role: "option", title: name, aria: { selected: String(selected) } },
-      icon(thing ? iconOf(thing) : "unknown"),
+      { class: selected ? "entity-row selected" : "entity-row", role: "option", title: name, aria: { selected: String(selected) } },
+      icon(entity ? iconOf(entity) : "unknown"),
       h("span", {}, name),
     );
-    row.id = `thing-${index}`;
+    row.id = `entity-${index}`;
     row.addEventListener("click", (event) => this.take(index, event.shiftKey, event.ctrlKey || event.metaKey));
     return row;
   }
@@ -77,23 +77,23 @@ export class ThingList {
   }
 
   private take(index: number, range: boolean, toggle: boolean): void {
-    const thing = this.things[index];
-    if (!thing) return;
+    const entity = this.entities[index];
+    if (!entity) return;
     this.current = index;
     if (!range) this.anchor = index;
     const [from, to] = [Math.min(this.anchor, index), Math.max(this.anchor, index)];
-    if (toggle) this.modelling.select([thing.name], "toggle");
-    else this.modelling.select(range ? this.things.slice(from, to + 1).map(({ name }) => name) : [thing.name]);
+    if (toggle) this.modelling.select([entity.name], "toggle");
+    else this.modelling.select(range ? this.entities.slice(from, to + 1).map(({ name }) => name) : [entity.name]);
     this.mark();
   }
 
   private mark(): void {
-    if (this.things.length > 0) this.element.setAttribute("aria-activedescendant", `thing-${this.current}`);
+    if (this.entities.length > 0) this.element.setAttribute("aria-activedescendant", `entity-${this.current}`);
     else this.element.removeAttribute("aria-activedescendant");
   }
 
   private keyed(event: KeyboardEvent): void {
-    const last = this.things.length - 1;
+    const last = this.entities.length - 1;
     const to = { ArrowDown: this.current + 1, ArrowUp: this.current - 1, Home: 0, End: last }[event.key];
     if (to === undefined || last < 0) return;
     event.preventDefault();
@@ -103,7 +103,7 @@ export class ThingList {
   }
 }
 
-function iconOf({ kind, shape, parts, address }: WorldThing): IconName {
+function iconOf({ kind, shape, parts, address }: WorldEntity): IconName {
   if (kind === "light") return "bulb";
   if (shape) return ICONS[shape];
   return parts.length > 0 ? "group" : address === null ? "cube" : "library";

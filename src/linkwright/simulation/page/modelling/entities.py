@@ -5,16 +5,16 @@ from __future__ import annotations
 from linkwright.packages import PackageFinder
 from linkwright.page.protocol.message import PageMessage
 from linkwright.page.protocol.modelling import (
-    AddThing,
-    ChangeThings,
-    CopyThings,
-    DeleteThings,
-    GroupThings,
+    AddEntity,
+    ChangeEntities,
+    CopyEntities,
+    DeleteEntities,
+    EntityChange,
+    GroupEntities,
     ModelChoice,
     ModelChoices,
-    ThingChange,
-    UngroupThing,
-    WorldThing,
+    UngroupEntity,
+    WorldEntity,
 )
 from linkwright.sdf.editing import (
     Change,
@@ -34,24 +34,24 @@ from linkwright.sdf.models import Include
 from linkwright.sdf.resources import Missing, ResourceFinder, model_file
 
 
-def things_of(world: WorldText) -> list[WorldThing]:
+def entities_of(world: WorldText) -> list[WorldEntity]:
     """Return the models and lights of a world."""
-    return [_thing(thing) for thing in world.entities.values()]
+    return [_entity(entity) for entity in world.entities.values()]
 
 
-def _thing(thing: Entity) -> WorldThing:
-    pose, shape = pose_of_entity(thing), thing.shape
-    colour = shape.colour if shape is not None else thing.light.diffuse if thing.light is not None else None
-    return WorldThing(
-        name=thing.name,
-        kind=thing.kind,
+def _entity(entity: Entity) -> WorldEntity:
+    pose, shape = pose_of_entity(entity), entity.shape
+    colour = shape.colour if shape is not None else entity.light.diffuse if entity.light is not None else None
+    return WorldEntity(
+        name=entity.name,
+        kind=entity.kind,
         pose=[*pose.xyz, *pose.rpy],
-        static=thing.static,
+        static=entity.static,
         shape=shape.kind if shape is not None else None,
         size=list(shape.size) if shape is not None else [],
         colour=list(colour) if colour is not None else None,
-        address=thing.written.uri.strip() if isinstance(thing.written, Include) else None,
-        parts=list(thing.parts),
+        address=entity.written.uri.strip() if isinstance(entity.written, Include) else None,
+        parts=list(entity.parts),
     )
 
 
@@ -69,31 +69,31 @@ def changed(world: WorldText, message: PageMessage) -> WorldText:
         EditError: the edit is not possible.
     """
     match message:
-        case AddThing("model", address, pose, _):
+        case AddEntity("model", address, pose, _):
             return add_include(world, address, pose)[0]
-        case AddThing("box" | "cylinder" | "sphere" | "wall" | "ramp" as kind, _, pose, size):
+        case AddEntity("box" | "cylinder" | "sphere" | "wall" | "ramp" as kind, _, pose, size):
             return add_shape(world, kind, pose, size)[0]
-        case AddThing("point_light", _, pose, _):
+        case AddEntity("point_light", _, pose, _):
             return add_light(world, "point", pose)[0]
-        case AddThing("directional_light", _, pose, _):
+        case AddEntity("directional_light", _, pose, _):
             return add_light(world, "directional", pose)[0]
-        case AddThing(_, _, pose, _):
+        case AddEntity(_, _, pose, _):
             return add_light(world, "spot", pose)[0]
-        case ChangeThings(changes):
+        case ChangeEntities(changes):
             return change(world, map(_change, changes))
-        case CopyThings(names, offset):
+        case CopyEntities(names, offset):
             return copy(world, names, offset)[0]
-        case DeleteThings(names):
+        case DeleteEntities(names):
             return delete(world, names)
-        case GroupThings(names, name):
+        case GroupEntities(names, name):
             return group(world, names, name)
-        case UngroupThing(name):
+        case UngroupEntity(name):
             return ungroup(world, name)[0]
         case _:
             raise TypeError(f"{type(message).__name__} changes no world")
 
 
-def _change(change: ThingChange) -> Change:
+def _change(change: EntityChange) -> Change:
     return Change(
         change.name,
         pose=None if change.pose is None else tuple(change.pose),

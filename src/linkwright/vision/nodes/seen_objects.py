@@ -54,7 +54,7 @@ class SeenObjects:
     Args:
         node: listens.
         poses: the transforms.
-        fixed_frame: the frame of the things.
+        fixed_frame: the frame of the positions.
 
     Attributes:
         objects: those of the latest image.

@@ -1,0 +1,99 @@
+import type { PropertyValue, WorldEntity } from "../../protocol";
+import type { AngleUnits } from "../../state/angle-unit";
+import type { Modelling } from "../../state/modelling/modelling";
+import { LEAST_SIZE, resized, tidy, type Change } from "../../state/modelling/shapes";
+import { strings } from "../../strings";
+import type { TreeItem } from "../../tree/tree-item";
+
+/** Roll, pitch and yaw in a pose. */
+const ANGLES = 3;
+
+/** The rows of the selection; where several entities differ, the value is empty, and an edit is for all of them. */
+export function entityItems(modelling: Modelling, angles: AngleUnits): TreeItem[] {
+  const entities = modelling.selectedEntities;
+  const [first] = entities;
+  if (!first) return [];
+  const words = strings.modelling;
+  const edit = (change: (entity: WorldEntity) => Change): void => modelling.change(entities.map(change));
+  const models = entities.every(({ kind }) => kind === "model");
+  const alike = models && first.shape !== null && entities.every(({ shape }) => shape === first.shape);
+  return [
+    entities.length === 1 ? nameItem(first, modelling) : note("count", words.several(entities.length)),
+    group("position", words.position, poseItems(entities, 0, ["X", "Y", "Z"], 1, edit)),
+    group("rotation", `${words.rotation}, ${angles.current === "deg" ? "°" : "rad"}`, poseItems(entities, ANGLES, ["Roll", "Pitch", "Yaw"], angles.scale("revolute"), edit)),
+    ...(alike ? [group("size", words.size, sizeItems(entities, edit))] : []),
+    ...(models ? [staticItem(entities, edit)] : []),
+    ...(entities.every(({ colour }) => colour !== null) ? [colourItem(first, edit)] : []),
+    ...(entities.length === 1 && first.address !== null ? [note("address", words.address, first.address)] : []),
+    ...(entities.length === 1 && first.parts.length > 0 ? [note("parts", words.parts, first.parts.join(", "))] : []),
+  ];
+}
+
+type Edit = (change: (entity: WorldEntity) => Change) => void;
+
+function nameItem({ name }: WorldEntity, modelling: Modelling): TreeItem {
+  const set = (value: PropertyValue): void => {
+    const text = String(value).trim();
+    if (text !== "" && text !== name) modelling.change([{ name, new_name: text }]);
+  };
+  return { key: "name", name: strings.modelling.name, kind: "string", value: name, description: "", set };
+}
+
+function poseItems(entities: readonly WorldEntity[], from: number, names: readonly string[], scale: number, edit: Edit): TreeItem[] {
+  return names.map((name, i) => {
+    const values = entities.map(({ pose }) => (pose[from + i] ?? 0) * scale);
+    const set = (value: PropertyValue): void => {
+      if (typeof value === "number") edit((entity) => ({ name: entity.name, pose: entity.pose.with(from + i, tidy(value / scale)) }));
+    };
+    return { key: `pose/${from + i}`, name, kind: "float", value: common(values), description: "", set };
+  });
+}
+
+function sizeItems(entities: readonly WorldEntity[], edit: Edit): TreeItem[] {
+  const [first] = entities;
+  const names = first?.shape ? strings.modelling.lengths[first.shape] : [];
+  return names.map((name, i) => {
+    const set = (value: PropertyValue): void => {
+      if (typeof value === "number") edit((entity) => resized(entity, entity.size.with(i, value)));
+    };
+    return { key: `size/${i}`, name, kind: "float", value: common(entities.map(({ size }) => size[i] ?? 0)), description: "", minimum: LEAST_SIZE, set };
+  });
+}
+
+function staticItem(entities: readonly WorldEntity[], edit: Edit): TreeItem {
+  const { static: name, staticHint: description } = strings.modelling;
+  const value = entities.every((entity) => entity.static);
+  return { key: "static", name, kind: "bool", value, description, set: (on) => edit((entity) => ({ name: entity.name, static: on === true })) };
+}
+
+function colourItem({ colour }: WorldEntity, edit: Edit): TreeItem {
+  const set = (value: PropertyValue): void => {
+    const rgb = channels(String(value));
+    edit((entity) => ({ name: entity.name, colour: [...rgb, entity.colour?.[3] ?? 1] }));
+  };
+  return { key: "colour", name: strings.modelling.colour, kind: "color", value: hex(colour ?? []), description: "", set };
+}
+
+/** `#rrggbb` of red, green, blue from 0 to 1. */
+export function hex(colour: readonly number[]): string {
+  const channel = (i: number): string => Math.round(Math.max(0, Math.min(1, colour[i] ?? 0)) * 255).toString(16).padStart(2, "0");
+  return `#${channel(0)}${channel(1)}${channel(2)}`;
+}
+
+function channels(text: string): number[] {
+  return [1, 3, 5].map((at) => Math.round((parseInt(text.slice(at, at + 2), 16) / 255) * 1e4) / 1e4);
+}
+
+function group(key: string, name: string, items: readonly TreeItem[]): TreeItem {
+  return { key, name, kind: "group", value: "", description: "", strong: true, expanded: true, children: () => items };
+}
+
+function note(key: string, name: string, value = ""): TreeItem {
+  return { key, name, kind: "group", value, description: "", strong: value === "" };
+}
+
+/** The one value that all have; null where they differ. */
+function common(values: readonly number[]): number | null {
+  const [first = null] = values;
+  return values.every((value) => value === first) ? first : null;
+}
