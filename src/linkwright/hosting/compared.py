@@ -92,7 +92,7 @@ class ComparedView(ModelView):
         publish = viewer.attach_comparison(self._pair, node)
 
         def show(text: str) -> None:
-            self.mend(self._old_call)
+            self.clear_failure(self._old_call)
             publish(text)
 
         text = self._read_old()

@@ -106,27 +106,27 @@ class LaunchLog:
         """Log the first lines: the folder of the files, and the log level."""
         folder = self.folder
         if self._has_folder:
-            self.say("launch", f"All log files can be found below {folder}")
-        self.say("launch", f"Default logging verbosity is set to {'DEBUG' if self._debug else 'INFO'}")
+            self.info_line("launch", f"All log files can be found below {folder}")
+        self.info_line("launch", f"Default logging verbosity is set to {'DEBUG' if self._debug else 'INFO'}")
 
-    def detail(self, name: str, text: str) -> None:
+    def debug_line(self, name: str, text: str) -> None:
         """Log a detail for users who debug a launch file."""
         if self._debug:
             self._own_line("DEBUG", name, text)
 
-    def say(self, name: str, text: str) -> None:
+    def info_line(self, name: str, text: str) -> None:
         """Log a line of information."""
         self._own_line("INFO", name, text)
 
-    def caution(self, name: str, text: str) -> None:
+    def warning_line(self, name: str, text: str) -> None:
         """Log a warning."""
         self._own_line("WARNING", name, text)
 
-    def complain(self, name: str, text: str) -> None:
+    def error_line(self, name: str, text: str) -> None:
         """Log an error."""
         self._own_line("ERROR", name, text)
 
-    def announce(self, line: str) -> None:
+    def print_line(self, line: str) -> None:
         """Print a line for programs that read our stdout, without delay."""
         self._print(1, line)
 

@@ -74,7 +74,7 @@ class Network:
             transport = join(graph)
             self.domain_id = None if transport is None else transport.domain_id
         elif self._session.has_processes:
-            self._session.log.caution(
+            self._session.log.warning_line(
                 "launch", f"the nodes in this process and those in others cannot see each other: {why_not()}"
             )
 
@@ -125,7 +125,7 @@ class SharedNames:
         new, self._reported = self._names - self._reported, self._names
         if new:
             (finding,) = translated([self._finding(new)])
-            self._log.caution("launch", f"{finding.message}; {finding.hint}")
+            self._log.warning_line("launch", f"{finding.message}; {finding.hint}")
         self.findings = [self._finding(self._names)] if self._names else []
         self._show()
 

@@ -180,7 +180,7 @@ class NodeHost:
         from linkwright.nodes.options import FinishingNode, LoadingNode
 
         session = self._session
-        session.log.say(plan.process_name, "started in the launcher's process")
+        session.log.info_line(plan.process_name, "started in the launcher's process")
         options = plan.node_options(session.descriptions.library)
         try:
             with self._speak_as(plan.process_name), self._holding_back():
@@ -213,7 +213,7 @@ class NodeHost:
         if found is None or session.ending:
             session.fail(plan)
             session.log.diagnostics(error.diagnostics)
-            session.log.complain(plan.process_name, "node has not started")
+            session.log.error_line(plan.process_name, "node has not started")
             session.node_ended(plan, 1)
             return
         name, call = found
@@ -221,7 +221,7 @@ class NodeHost:
 
         def again(text: str) -> None:
             session.reload.unbind(call, again)
-            session.mend(call)
+            session.clear_failure(call)
             plan.parameters[name] = text
             self._start_node(plan)
 
@@ -322,9 +322,9 @@ class NodeHost:
 
     def _ended(self, plan: HostedPlan, status: int = 0) -> None:
         if status == 0:
-            self._session.log.say(plan.process_name, "has finished cleanly")
+            self._session.log.info_line(plan.process_name, "has finished cleanly")
         else:
-            self._session.log.complain(plan.process_name, f"has ended with exit code {status}")
+            self._session.log.error_line(plan.process_name, f"has ended with exit code {status}")
         if plan.owner is not None:
             self._session.node_ended(plan, status)
         window = self._windows.pop(plan.process_name, None)

@@ -180,7 +180,7 @@ class Supervisor(Protocol):
     def fail(self, what: object) -> None:
         """Record a failure: the exit status is 1 unless it is fixed."""
 
-    def mend(self, what: object) -> None:
+    def clear_failure(self, what: object) -> None:
         """Clear a failure that is fixed."""
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:

@@ -115,7 +115,7 @@ class LiveReload:
             asyncio.get_running_loop().call_later(_CATCH_UP_SECONDS, self._catch_up)
 
     def _on_watch_failure(self, reason: str) -> None:
-        self._log.caution("launch", f"model files are not watched for changes: {reason}")
+        self._log.warning_line("launch", f"model files are not watched for changes: {reason}")
 
     def _catch_up(self) -> None:
         """Reload the files that were saved, or removed, after they were read and before the watch began."""
@@ -194,7 +194,7 @@ class LiveReload:
         except LinkwrightError as error:
             findings = (*findings, *error.diagnostics)
         verb = "repaired" if was_broken and not has_errors(findings) else "reloaded"
-        self._log.say("launch", f"{verb} {display_path(call.path)}")
+        self._log.info_line("launch", f"{verb} {display_path(call.path)}")
         self.report(call, findings)
         self._watch_files()
 

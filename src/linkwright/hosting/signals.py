@@ -185,7 +185,7 @@ def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: L
         except KeyboardInterrupt:
             if signals.received is None:  # not in the main thread, or raised by the user's own code
                 raise
-            log.caution("launch", interruption_text(signals.received))
+            log.warning_line("launch", interruption_text(signals.received))
             succeeded = False
         if signals.exit_status is not None:
             return signals.exit_status

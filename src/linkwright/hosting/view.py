@@ -222,7 +222,7 @@ class ModelView:
         broken, self._call, self._form = self._call, call, None
         self.reload.unbind(broken, self._publish_repaired)
         self.reload.show(broken, ())
-        self.mend(broken)
+        self.clear_failure(broken)
         self._show_form()
         self._publish()
         self._look_at_root()
@@ -301,7 +301,7 @@ class ModelView:
         """Record a failure: the exit status is 1 unless it is fixed."""
         self._failures.add(what)
 
-    def mend(self, what: object) -> None:
+    def clear_failure(self, what: object) -> None:
         """Clear a failure that is fixed."""
         self._failures.discard(what)
 
@@ -328,7 +328,7 @@ class ModelView:
 
     def interrupt(self, reason: str) -> None:
         """End it because the user asked for it."""
-        self.log.caution("launch", reason)
+        self.log.warning_line("launch", reason)
         self._is_over.set()
 
     def shut_down(self, reason: str) -> None:

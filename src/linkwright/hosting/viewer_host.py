@@ -79,7 +79,7 @@ class ViewerHost:
         self._announce(server)
 
     def _announce(self, server: PageServer) -> None:
-        self._session.log.announce(f"Viewer: {server.url}")
+        self._session.log.print_line(f"Viewer: {server.url}")
         if self._session.options.open_browser and not server.pages_wait:
             _open_in_browser(server.url)
 
@@ -139,7 +139,7 @@ class ViewerHost:
         if session.options.open_browser and server.pages_wait:
             session.spawn(self._open_unless_back(viewer))
         instead = "RViz" if plan.owner is not None else "Gazebo's window"
-        session.log.say(
+        session.log.info_line(
             plan.process_name, f"started in the launcher's process: the viewer in the browser replaces {instead}"
         )
         viewer.show_diagnostics([*self._findings, *findings])
@@ -182,7 +182,7 @@ class ViewerHost:
         try:
             await asyncio.wait_for(viewer.close(), _CLOSE_SECONDS)
         except asyncio.TimeoutError:
-            self._session.log.caution(plan.process_name, "a browser did not let go of its connection in time")
+            self._session.log.warning_line(plan.process_name, "a browser did not let go of its connection in time")
 
 
 def load_viewer() -> None:

@@ -78,7 +78,7 @@ class RunningProcess:
         """
         plan = self.plan
         if plan.log_command:
-            self._log.say(self.name, f"process details: cmd='{' '.join(plan.command)}', cwd='{plan.folder}'")
+            self._log.info_line(self.name, f"process details: cmd='{' '.join(plan.command)}', cwd='{plan.folder}'")
         try:
             await self._start()
         except (OSError, ValueError) as error:
@@ -109,7 +109,7 @@ class RunningProcess:
         if self._stopping or self._ended.is_set():
             return
         self._stopping = True
-        self._log.say(self.name, f"sending signal 'SIGINT' to process[{self.name}]")
+        self._log.info_line(self.name, f"sending signal 'SIGINT' to process[{self.name}]")
         self.signal_group(signal.SIGINT)
         for seconds, sent, following in (
             (self.plan.seconds_to_sigterm, "SIGINT", "SIGTERM"),
@@ -119,7 +119,7 @@ class RunningProcess:
             if await self._ends_within(seconds, _HURRIED_SECONDS[following]):
                 return
             waited = round(time.monotonic() - began, 1) if self._hurried else seconds
-            self._log.complain(
+            self._log.error_line(
                 self.name,
                 f"process[{self.name}] failed to terminate '{waited:g}' seconds after receiving '{sent}', "
                 f"escalating to '{following}'",
@@ -141,7 +141,7 @@ class RunningProcess:
 
     def signal(self, number: signal.Signals) -> None:
         """Send a signal on the request of a launch file."""
-        self._log.say(self.name, f"sending signal '{number.name}' to process[{self.name}]")
+        self._log.info_line(self.name, f"sending signal '{number.name}' to process[{self.name}]")
         self.signal_group(number)
 
     def group_lives(self) -> bool:
@@ -198,7 +198,7 @@ class RunningProcess:
         self._guardian.watch(transport.get_pid())
         details = self._details(transport)
         self.plan.action.process_details = details
-        self._log.say(self.name, f"process started with pid [{transport.get_pid()}]")
+        self._log.info_line(self.name, f"process started with pid [{transport.get_pid()}]")
         self._emit(events.ProcessStarted(action=self.plan.action, **details))
         if self._stopping:  # `stop` was called before the process existed
             self.signal_group(signal.SIGINT)
@@ -284,10 +284,10 @@ class RunningProcess:
     def _report_end(self, pid: int, returncode: int) -> None:
         as_asked = returncode in (-signal.SIGINT, 128 + signal.SIGINT) or not _HAS_GROUPS  # there it was ended
         if returncode == 0 or (self._stopping and as_asked):
-            self._log.say(self.name, f"process has finished cleanly [pid {pid}]")
+            self._log.info_line(self.name, f"process has finished cleanly [pid {pid}]")
             return
         command = " ".join(self.plan.command)
-        self._log.complain(self.name, f"process has died [pid {pid}, exit code {returncode}, cmd '{command}'].")
+        self._log.error_line(self.name, f"process has died [pid {pid}, exit code {returncode}, cmd '{command}'].")
 
 
 class _Lines:

@@ -154,7 +154,7 @@ class LaunchSession:
         """Record a failure: the launch exits with 1 unless the failure is cleared."""
         self._failures.add(what)
 
-    def mend(self, what: object) -> None:
+    def clear_failure(self, what: object) -> None:
         """Clear a failure that has been resolved."""
         self._failures.discard(what)
 
@@ -242,7 +242,7 @@ class LaunchSession:
 
     def interrupt(self, reason: str) -> None:
         """End the launch on the user's request; processes that are already ending get half a second."""
-        self.log.caution("launch", reason)
+        self.log.warning_line("launch", reason)
         if self.ending:
             self.processes.hurry()
             return
@@ -261,7 +261,7 @@ class LaunchSession:
     def _tell_what_is_awaited(self) -> None:
         names = self.processes.names
         if names:
-            self.log.say("launch", f"waiting for {', '.join(names)} to end; Ctrl-C again does not wait")
+            self.log.info_line("launch", f"waiting for {', '.join(names)} to end; Ctrl-C again does not wait")
 
     # --- visits ---------------------------------------------------------------------------------------------
 
@@ -297,7 +297,7 @@ class LaunchSession:
 
         def again(_text: str) -> None:
             self.reload.unbind(error.call, again)
-            self.mend(error.call)
+            self.clear_failure(error.call)
             self.visit(entity, context)
             self.spawn(self._start_hosted())
 
@@ -326,7 +326,7 @@ class LaunchSession:
         return bool(self.processes.is_busy or self._tasks or self._waiting or self._held or self.host.is_busy)
 
     def _handle(self, event: events.Event) -> None:
-        self.log.detail("launch", f"processing event: '{event.name}'")
+        self.log.debug_line("launch", f"processing event: '{event.name}'")
         context = self.context
         context.push_locals()
         try:

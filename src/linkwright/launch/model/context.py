@@ -276,11 +276,11 @@ class LaunchContext:
         if self._session is not None:
             log = self._session.log
             if level >= logging.ERROR:
-                log.complain(name, text)
+                log.error_line(name, text)
             elif level >= logging.WARNING:
-                log.caution(name, text)
+                log.warning_line(name, text)
             else:
-                (log.say if level >= logging.INFO else log.detail)(name, text)
+                (log.info_line if level >= logging.INFO else log.debug_line)(name, text)
         else:
             from linkwright.launch.log.loggers import get_logger
 

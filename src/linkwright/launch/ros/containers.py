@@ -134,8 +134,8 @@ class LoadComposableNodes(Action):
             return
         remark = repeated_name(context, name)
         if remark is not None:
-            log.caution(container, remark)
-        log.say(_LOGGER, f"Loaded node '{name}' in container '{container}'")
+            log.warning_line(container, remark)
+        log.info_line(_LOGGER, f"Loaded node '{name}' in container '{container}'")
         if isinstance(description, ComposableLifecycleNode):
             _manage(context, description, name)
 

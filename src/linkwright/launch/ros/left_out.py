@@ -36,7 +36,7 @@ def _present(context: LaunchContext, names: Iterable[str]) -> list[str]:
     kept = []
     for name in names:
         if name.rpartition("/")[2] in context.session.left_out:
-            context.session.log.caution("launch", f"'{name}' is left out, and no lifecycle manager waits for it")
+            context.session.log.warning_line("launch", f"'{name}' is left out, and no lifecycle manager waits for it")
         else:
             kept.append(name)
     return kept

@@ -84,7 +84,7 @@ class LifecycleEventManager:
         if response is not None and not response.success:
             name = TRANSITIONS[transition]
             text = f"Failed to make transition '{name}' for LifecycleNode '{self.node_name}'"
-            context.session.log.complain("launch_ros.actions.lifecycle_node", text)
+            context.session.log.error_line("launch_ros.actions.lifecycle_node", text)
 
 
 async def answered(context: LaunchContext, client: Any, request: Any) -> Any:
@@ -94,7 +94,7 @@ async def answered(context: LaunchContext, client: Any, request: Any) -> Any:
         if context.is_shutdown:
             waited_for = "service response" if client.service_is_ready() else "service"
             text = f"Abandoning wait for the '{client.srv_name}' {waited_for}, due to shutdown."
-            context.session.log.caution("launch_ros", text)
+            context.session.log.warning_line("launch_ros", text)
             client.remove_pending_request(future)
             return None
         await _done_or_time(future)

@@ -104,7 +104,7 @@ class LifecycleTransition(Action):
         def end(context: LaunchContext) -> None:
             if reason is not None:
                 text = f"Stopping transitions for {name} because '{reason}'"
-                context.session.log.say("launch_ros.actions.lifecycle_transition", text)
+                context.session.log.info_line("launch_ros.actions.lifecycle_transition", text)
             for handler in self._handlers.pop(name, ()):
                 with suppress(ValueError):  # it has handled its event and is unregistered
                     context.unregister_event_handler(handler)

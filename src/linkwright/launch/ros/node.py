@@ -202,7 +202,7 @@ class Node(ExecuteProcess):
         if self.is_node_name_fully_specified():
             remark = repeated_name(context, self.node_name)
             if remark is not None:
-                context.session.log.caution(process_name, remark)
+                context.session.log.warning_line(process_name, remark)
         return None
 
     def __extended(self, context: LaunchContext) -> list[Any]:
