@@ -70,7 +70,13 @@ def theirs() -> Engine | None:
 
 def forget() -> None:
     """Drop everything that was kept from earlier expansions."""
-    for kept in (sources.kept.values, template.templates, expression.expressions, yamldata.kept.values, yamlnodes.tags):
+    for kept in (
+        sources.cache.values,
+        template.templates,
+        expression.expressions,
+        yamldata.cache.values,
+        yamlnodes.tags,
+    ):
         kept.clear()
     macros.parse_parameters.cache_clear()
     literals.number_or_boolean.cache_clear()

@@ -13,13 +13,13 @@ from linkwright.geometry.outlines import Outline, SmallMesh, read_small
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Mesh
-from linkwright.xacro.kept import Kept
+from linkwright.xacro.cache import BoundedCache
 from linkwright.xmltree import Element
 
 if TYPE_CHECKING:
     from linkwright.geometry.meshes import TriangleMesh
 
-_MOST_KEPT = 256 << 20
+_CACHE_SIZE = 256 << 20
 """Bytes of meshes that are kept from one description to the next."""
 _SMALL, _MOST_SMALL = 100_000, 500_000
 """Bytes of a file, and of all files of a process, that are read for outlines without arrays. To read more, numpy is
@@ -123,7 +123,7 @@ def _size_of(_: object, mesh: TriangleMesh) -> int:
     return 2 * (mesh.vertices.nbytes + mesh.faces.nbytes)
 
 
-_KEPT: Kept[tuple[str, int, int], TriangleMesh] = Kept(_MOST_KEPT, _size_of)
+_CACHE: BoundedCache[tuple[str, int, int], TriangleMesh] = BoundedCache(_CACHE_SIZE, _size_of)
 """The meshes of files, by the path, the time of the last change in ns, and the size in bytes."""
 
 
@@ -138,15 +138,15 @@ def _unchanged(path: Path, real: str) -> TriangleMesh:
     except OSError:
         return read_mesh(path)  # which tells why
     key = real, facts.st_mtime_ns, facts.st_size
-    found = _KEPT.values.get(key)
+    found = _CACHE.values.get(key)
     if found is None:
         found = read_mesh(path)
-        _KEPT.keep(key, found)
+        _CACHE.store(key, found)
     return found
 
 
 _SMALL_MESHES: dict[tuple[str, int, int], SmallMesh] = {}
-"""The meshes of files that were read without arrays, with the keys of `_KEPT`."""
+"""The meshes of files that were read without arrays, with the keys of `_CACHE`."""
 
 
 def _small(real: str, kind: str) -> SmallMesh | None:

@@ -15,9 +15,9 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Span
 from linkwright.lint.xacro_names import Mentions, identifiers, mentions
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import TYPE_CHECKING, TypeVar
+from linkwright.xacro.cache import BoundedCache
 from linkwright.xacro.expressions.symbols import MATHEMATICS
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.kept import Kept
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xmltree import Comment, Document, Element, Text
 from linkwright.xmltree.positions import attribute_value_range
@@ -32,7 +32,7 @@ TAGS = frozenset(
 _BARE = frozenset({"include", "insert_block", "macro"})
 _DIRECTIVE_IN_COMMENT = "xacro:eval-comments"
 _LARGEST_FOLDER = 200
-_MOST_KEPT = 2_000_000
+_CACHE_SIZE = 2_000_000
 """Characters of documents whose facts are kept."""
 _DEEPEST = 1_000
 """Levels below which nothing is looked at: an expansion does not go deeper either."""
@@ -150,11 +150,11 @@ class FileFacts:
     @classmethod
     def of(cls, document: Document) -> FileFacts:
         """The facts of a parsed file, worked out once for each document: one is checked with many sets of arguments."""
-        facts = _KEPT.values.get(id(document))
+        facts = _CACHE.values.get(id(document))
         if facts is None:
             facts = cls(document)
             facts._walk()
-            _KEPT.keep(id(document), facts)
+            _CACHE.store(id(document), facts)
         return facts
 
     def parameters(self, macro: Element) -> tuple[Parameter, ...]:
@@ -253,7 +253,7 @@ def _size_of(_: int, facts: FileFacts) -> int:
     return 1 if source is None else len(source.text) + 1
 
 
-_KEPT: Kept[int, FileFacts] = Kept(_MOST_KEPT, _size_of)
+_CACHE: BoundedCache[int, FileFacts] = BoundedCache(_CACHE_SIZE, _size_of)
 """The facts of documents by their identity, which is theirs as long as the facts hold them."""
 
 

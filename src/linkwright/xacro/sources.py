@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 
-from linkwright.xacro.kept import Kept
+from linkwright.xacro.cache import BoundedCache
 from linkwright.xmltree import Document, Overlay, parse_file
 
 _LINKS = f"{os.sep}shares{os.sep}"
 _MOST_TEXT = 24_000_000
 """How many bytes the files that are kept have together, which a thousand robots have; a parsed one takes fifteen times
 as much memory."""
-kept: Kept[tuple[str, str], tuple[int, int, Document]] = Kept(_MOST_TEXT, lambda _, file: file[1])
+cache: BoundedCache[tuple[str, str], tuple[int, int, Document]] = BoundedCache(_MOST_TEXT, lambda _, file: file[1])
 """Path and current folder -> time of change, size and document."""
 
 
@@ -37,9 +37,9 @@ def read(path: str, overlay: Overlay | None = None) -> Document:
         status = os.stat(path)  # noqa: PTH116
     except (OSError, ValueError):
         return parse_file(path)  # its error gives the reason
-    known = kept.values.get(key)
+    known = cache.values.get(key)
     if known is not None and known[:2] == (status.st_mtime_ns, status.st_size):
         return known[2]
     document = parse_file(path)
-    kept.keep(key, (status.st_mtime_ns, status.st_size, document))
+    cache.store(key, (status.st_mtime_ns, status.st_size, document))
     return document

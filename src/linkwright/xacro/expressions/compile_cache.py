@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from linkwright.loading.lean_typing import Generic, TypeVar
-from linkwright.xacro.kept import Kept
+from linkwright.xacro.cache import BoundedCache
 
 _Form = TypeVar("_Form")
 
@@ -25,8 +25,8 @@ class TextCompiler(Generic[_Form]):
     """
 
     def __init__(self, compile_text: Callable[[str], _Form]) -> None:
-        self._kept: Kept[str, _Form] = Kept(_MOST_CHARACTERS, lambda text, _: len(text) + _AROUND)
-        self.forms = self._kept.values
+        self._cache: BoundedCache[str, _Form] = BoundedCache(_MOST_CHARACTERS, lambda text, _: len(text) + _AROUND)
+        self.forms = self._cache.values
         self._compile = compile_text
 
     def make(self, text: str) -> _Form:
@@ -36,5 +36,5 @@ class TextCompiler(Generic[_Form]):
             Fault: the text is malformed.
         """
         form = self._compile(text)
-        self._kept.keep(text, form)
+        self._cache.store(text, form)
         return form

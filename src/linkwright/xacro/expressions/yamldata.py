@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 
 from linkwright.diagnostics import phrase
 from linkwright.loading.lean_typing import Any
-from linkwright.xacro.kept import Kept
+from linkwright.xacro.cache import BoundedCache
 
 UNITS = {
     "!radians": 1.0,
@@ -97,14 +97,14 @@ def load(text: str, evaluate: Callable[[str], Any]) -> Any:
     if "!" in text:
         return dotted(_load(text, evaluate))
     try:
-        value = kept.values[text]
+        value = cache.values[text]
     except KeyError:
         value = _load(text, None)
-        kept.keep(text, value)
+        cache.store(text, value)
     return dotted(value)
 
 
-kept: Kept[str, Any] = Kept(200, lambda *_: 1)
+cache: BoundedCache[str, Any] = BoundedCache(200, lambda *_: 1)
 """Text -> its value, for texts without tags, whose values never differ; a caller gets a copy."""
 
 

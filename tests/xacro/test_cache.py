@@ -1,34 +1,34 @@
 from __future__ import annotations
 
 from linkwright.xacro import expand, sources
-from linkwright.xacro.kept import Kept
+from linkwright.xacro.cache import BoundedCache
 
 
 def test_what_is_kept_stays_below_the_bound() -> None:
-    kept: Kept[int, str] = Kept(100, lambda _, text: len(text))
+    cache: BoundedCache[int, str] = BoundedCache(100, lambda _, text: len(text))
     for number in range(1000):
-        kept.keep(number, "x" * (number % 7))
-        assert sum(map(len, kept.values.values())) <= 100
-        assert number in kept.values
+        cache.store(number, "x" * (number % 7))
+        assert sum(map(len, cache.values.values())) <= 100
+        assert number in cache.values
 
 
 def test_a_round_through_more_than_is_kept_finds_a_part_of_it_again() -> None:
-    kept: Kept[int, int] = Kept(100, lambda *_: 1)
+    cache: BoundedCache[int, int] = BoundedCache(100, lambda *_: 1)
     found = 0
     for _ in range(10):
         for number in range(150):
-            found += number in kept.values
-            if number not in kept.values:
-                kept.keep(number, number)
+            found += number in cache.values
+            if number not in cache.values:
+                cache.store(number, number)
     assert found > 9 * 50
 
 
 def test_one_in_the_place_of_another_counts_once() -> None:
-    kept: Kept[str, int] = Kept(100, lambda _, size: size)
-    kept.keep("first", 40)
+    cache: BoundedCache[str, int] = BoundedCache(100, lambda _, size: size)
+    cache.store("first", 40)
     for _ in range(50):
-        kept.keep("edited", 50)
-    assert kept.values == {"first": 40, "edited": 50}
+        cache.store("edited", 50)
+    assert cache.values == {"first": 40, "edited": 50}
 
 
 def test_more_files_than_a_package_has_are_parsed_once(tmp_path) -> None:
@@ -37,4 +37,4 @@ def test_more_files_than_a_package_has_are_parsed_once(tmp_path) -> None:
     robots = [tmp_path / f"{number}.urdf" for number in range(600)]
     for robot in robots:
         expand(robot)
-    assert {str(robot) for robot in robots} <= {path for path, _ in sources.kept.values}
+    assert {str(robot) for robot in robots} <= {path for path, _ in sources.cache.values}

@@ -12,7 +12,7 @@ _Value = TypeVar("_Value")
 _STRIDE = 16
 
 
-class Kept(Generic[_Key, _Value]):
+class BoundedCache(Generic[_Key, _Value]):
     """A cache of values with a bound on their total size.
 
     When it is full, it drops every sixteenth value, each time starting at another one. So a user that cycles through
@@ -34,8 +34,8 @@ class Kept(Generic[_Key, _Value]):
         self._size = 0
         self._start = 0
 
-    def keep(self, key: _Key, value: _Value) -> None:
-        """Keep one more, or one instead of another."""
+    def store(self, key: _Key, value: _Value) -> None:
+        """Store a value, instead of the old one with the same key."""
         values, size_of = self.values, self._size_of
         values.pop(key, None)
         own = size_of(key, value)
