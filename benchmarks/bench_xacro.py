@@ -70,14 +70,14 @@ def theirs() -> Engine | None:
 
 def forget() -> None:
     """Drop everything that was kept from earlier expansions."""
-    for kept in (
+    for cache in (
         sources.cache.values,
         template.templates,
         expression.expressions,
         yamldata.cache.values,
         yamlnodes.tags,
     ):
-        kept.clear()
+        cache.clear()
     macros.parse_parameters.cache_clear()
     literals.number_or_boolean.cache_clear()
     gc.collect()

@@ -143,10 +143,10 @@ export function publishInspection(
       return session.selection.items.map((item) => ({ ...item }));
     },
     get timeline() {
-      const { timeline, position, playing, problem, live, kept } = session.timeline;
+      const { timeline, position, playing, problem, live, extent } = session.timeline;
       if (!timeline) return null;
       const { name, start, end } = timeline;
-      return { name, position: position - start, length: end - start, playing, problem, live, kept: kept?.size ?? 0 };
+      return { name, position: position - start, length: end - start, playing, problem, live, kept: extent?.size ?? 0 };
     },
     get recording() {
       const { path, length, saved, problem, files } = session.recording;

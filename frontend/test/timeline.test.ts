@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { agoText, clockText, densities, keptText, momentText, passedText } from "../src/panels/timeline/timeline-text";
+import { agoText, clockText, densities, extentText, momentText, passedText } from "../src/panels/timeline/timeline-text";
 import type { PageMessage, Playhead } from "../src/protocol";
 import { TimelineState } from "../src/state/timeline";
 
@@ -55,7 +55,7 @@ describe("the timeline", () => {
   it("is at the end of the last minutes while the present is shown, however these move on", () => {
     connection.message.emit({ type: "timeline", name: "", start: 100, end: 110, topics: [], live: true });
     connection.message.emit(playhead({ live: true }));
-    connection.message.emit({ type: "kept", start: 105, end: 120, size: 5e6, most: 1e7 });
+    connection.message.emit({ type: "history_extent", start: 105, end: 120, size: 5e6, most: 1e7 });
     expect([timeline.playing, timeline.live, timeline.position]).toEqual([true, true, 120]);
     timeline.play(false);
     connection.message.emit(playhead({ position: 119 }));
@@ -63,7 +63,7 @@ describe("the timeline", () => {
     expect(agoText(1)).toBe("−0:01.000");
     expect(momentText(52.304)).toBe("0:52.304");
     expect(momentText(new Date(2026, 1, 3, 14, 3, 7, 256).getTime() / 1000)).toBe("14:03:07.256");
-    expect(keptText({ type: "kept", start: 105, end: 120, size: 5e6, most: 1e7 })).toBe("0:15 · 5.0 MB");
+    expect(extentText({ type: "history_extent", start: 105, end: 120, size: 5e6, most: 1e7 })).toBe("0:15 · 5.0 MB");
     timeline.goLive();
     expect(sent).toEqual([{ type: "play", playing: false }, { type: "go_live" }]);
   });

@@ -190,7 +190,7 @@ describe("talking", () => {
     await soon();
     expect(voice.hasGaps).toBe(true);
     expect(obstacle(voice)).toContain("gaps");
-    connection.message.emit({ type: "voice_said", number: 1, part: "response", text: "forward" });
+    connection.message.emit({ type: "conversation_text", number: 1, part: "response", text: "forward" });
     expect(obstacle(voice)).toBe(null); // it was understood after all, or the robot asks for it again itself
     voice.press();
     expect(voice.hasGaps).toBe(false);
@@ -244,7 +244,7 @@ describe("talking", () => {
   it("the conversation is kept, and what is being heard gives way to what was", () => {
     const voice = new VoiceState(connection, storage, new Microphone(openFake));
     const says = (part: "partial" | "text" | "response", text: string): void =>
-      connection.message.emit({ type: "voice_said", number: 1, part, text });
+      connection.message.emit({ type: "conversation_text", number: 1, part, text });
     says("partial", "turn");
     expect([voice.partial, voice.history.length]).toEqual(["turn", 0]);
     says("text", "turn left");

@@ -121,7 +121,7 @@ import type {
   SpawnModel,
 } from "./simulation";
 import type { Clock, ResetTime, SetTime, TimeReset, TimeState, WatchClock } from "./time";
-import type { GoLive, Kept, Play, Playhead, SeekTime, SetPlayback, StepTime, Timeline } from "./timeline";
+import type { GoLive, HistoryExtent, Play, Playhead, SeekTime, SetPlayback, StepTime, Timeline } from "./timeline";
 import type {
   AddTool,
   ChangeSavedView,
@@ -139,7 +139,7 @@ import type {
   ViewClasses,
   ViewState,
 } from "./views-and-tools";
-import type { SayCommand, Talk, VoiceNode, VoiceSaid, VoiceState, WatchVoice } from "./voice";
+import type { ConversationText, SayCommand, Talk, VoiceNode, VoiceState, WatchVoice } from "./voice";
 import type {
   AskWordsFile,
   BeginTake,
@@ -190,6 +190,7 @@ export type ServerMessage =
   | ConfigurationRefused
   | ConfigurationSaved
   | ConfigurationText
+  | ConversationText
   | Description
   | DescriptionChanged
   | DescriptionText
@@ -208,10 +209,10 @@ export type ServerMessage =
   | FrameTable
   | GoalOutcome
   | Hello
+  | HistoryExtent
   | InertiaFindings
   | JointPositions
   | Joints
-  | Kept
   | LinkProvenance
   | LogLines
   | ModelAdded
@@ -249,7 +250,6 @@ export type ServerMessage =
   | ViewClasses
   | ViewState
   | VoiceNode
-  | VoiceSaid
   | VoiceState
   | VoiceWords
   | VoiceWordsFile;

@@ -19,12 +19,12 @@ export interface Timeline {
 }
 
 /** The stored part of the last minutes: its first and last time, its bytes, and their limit. */
-export interface Kept {
+export interface HistoryExtent {
   start: number;
   end: number;
   size: number;
   most: number;
-  type: "kept";
+  type: "history_extent";
 }
 
 /** The position in a recording. While `playing`, sent a few times a second. */

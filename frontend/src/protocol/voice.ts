@@ -46,12 +46,12 @@ export interface VoiceState {
   type: "voice_state";
 }
 
-export type SaidPart = "partial" | "text" | "command" | "response";
+export type ConversationPart = "partial" | "text" | "command" | "response";
 
 /** A text of the conversation: partial or final speech, a recognized command, or an answer. */
-export interface VoiceSaid {
+export interface ConversationText {
   number: number;
-  part: SaidPart;
+  part: ConversationPart;
   text: string;
-  type: "voice_said";
+  type: "conversation_text";
 }

@@ -1,5 +1,5 @@
 import type { Connection } from "../connection/connection";
-import type { Kept, Playhead, Timeline } from "../protocol";
+import type { HistoryExtent, Playhead, Timeline } from "../protocol";
 import { Signal } from "../signal";
 
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10] as const;
@@ -16,7 +16,7 @@ export class TimelineState {
   readonly moved = new Signal();
   private recording: Timeline | null = null;
   private playhead: Playhead | null = null;
-  private keptNow: Kept | null = null;
+  private extentNow: HistoryExtent | null = null;
   /** The time that the user seeks, s; shown until the server reaches it. */
   private target: number | null = null;
   private asked = false;
@@ -28,7 +28,7 @@ export class TimelineState {
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
       // A new connection knows no earlier requests; a program without a recording reports none.
-      this.recording = this.playhead = this.keptNow = this.target = this.marked = null;
+      this.recording = this.playhead = this.extentNow = this.target = this.marked = null;
       this.asked = false;
       this.stepTopic = "";
       this.changed.emit();
@@ -37,9 +37,9 @@ export class TimelineState {
       this.recording = timeline;
       this.changed.emit();
     });
-    connection.on("kept", (kept) => {
-      this.keptNow = kept;
-      if (this.recording?.live) this.recording = { ...this.recording, start: kept.start, end: kept.end };
+    connection.on("history_extent", (extent) => {
+      this.extentNow = extent;
+      if (this.recording?.live) this.recording = { ...this.recording, start: extent.start, end: extent.end };
       this.moved.emit();
     });
     connection.on("playhead", (playhead) => this.take(playhead));
@@ -55,9 +55,9 @@ export class TimelineState {
     return this.playhead?.live ?? false;
   }
 
-  /** The kept part of the last minutes; null for a recording. */
-  get kept(): Kept | null {
-    return this.keptNow;
+  /** The extent of the last minutes; null for a recording. */
+  get extent(): HistoryExtent | null {
+    return this.extentNow;
   }
 
   get playing(): boolean {

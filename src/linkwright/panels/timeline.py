@@ -13,7 +13,7 @@ from linkwright.page.protocol.message import ServerMessage
 from linkwright.page.protocol.time import TimeReset
 from linkwright.page.protocol.timeline import (
     GoLive,
-    Kept,
+    HistoryExtent,
     Play,
     Playhead,
     SeekTime,
@@ -37,7 +37,7 @@ _PERIOD = 0.1
 _PARTS = 200
 """Equal parts of a recording whose messages are counted."""
 
-_KEPT_PERIOD = 1.0
+_EXTENT_PERIOD = 1.0
 """Seconds between two reports to pages of the extent of the live history."""
 
 _CAUGHT_UP_NS = 100_000_000
@@ -222,13 +222,13 @@ class TimelineFeature(PageFeature):
             return self._playhead(live.playback)
         return Playhead(live.span_ns[0] / NANOSECONDS_PER_SECOND, False, 1.0, False, 0, self._problem, live=True)
 
-    def _extent(self, live: LiveHistory) -> Kept:
+    def _extent(self, live: LiveHistory) -> HistoryExtent:
         start_ns, end_ns = live.span_ns
-        return Kept(start_ns / NANOSECONDS_PER_SECOND, end_ns / NANOSECONDS_PER_SECOND, live.size, live.most_bytes)
+        return HistoryExtent(start_ns / NANOSECONDS_PER_SECOND, end_ns / NANOSECONDS_PER_SECOND, live.size, live.most_bytes)
 
     def _publish_extent_later(self) -> None:
         if self._publish_timer is None:
-            self._publish_timer = self._loop.call_later(_KEPT_PERIOD, self._publish_extent)
+            self._publish_timer = self._loop.call_later(_EXTENT_PERIOD, self._publish_extent)
 
     def _publish_extent(self) -> None:
         """Report the extent of the history to pages, as long as there are any."""

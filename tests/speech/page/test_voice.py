@@ -225,7 +225,7 @@ async def test_pages_hear_the_conversation():
         for topic in ("partial_text", "text", "command", "response"):
             part = topic.removesuffix("_text")
             ears.say(f"/voice/{topic}", f"turn left: {part}")
-            assert (await client.until("voice_said", part=part))["text"] == f"turn left: {part}"
+            assert (await client.until("conversation_text", part=part))["text"] == f"turn left: {part}"
         await client.send("watch_voice", watched=False)
         await eventually(lambda: made.graph.count_subscribers("/voice/text") == 0)
 

@@ -51,15 +51,15 @@ export class RecordButton {
 
   private entries(): MenuEntry[] {
     const { recording, timeline } = this.session;
-    const { kept, mark } = timeline;
+    const { extent, mark } = timeline;
     const words = strings.recording;
     const saving = recording.saved !== null;
     const minutes: MenuEntry[] = [
       {
-        label: words.saveMinutes(kept ? lengthText(kept.end - kept.start) : ""),
+        label: words.saveMinutes(extent ? lengthText(extent.end - extent.start) : ""),
         hint: words.saveHint,
         separate: true,
-        disabled: saving || kept === null,
+        disabled: saving || extent === null,
         run: () => recording.save(null, null),
       },
       {

@@ -1,21 +1,21 @@
 import { button, coalesced, h } from "../../dom";
 import { icon } from "../../icons";
-import type { Kept } from "../../protocol";
+import type { HistoryExtent } from "../../protocol";
 import { TAKES_LETTERS } from "../../scene/keyboard";
 import type { RecordingControl } from "../../state/recording";
 import type { Session } from "../../state/session";
 import { SPEEDS, type TimelineState } from "../../state/timeline";
 import { strings } from "../../strings";
 import { RecordButton } from "./record-button";
-import { agoText, clockText, densities, keptText, momentText, passedText } from "./timeline-text";
+import { agoText, clockText, densities, extentText, momentText, passedText } from "./timeline-text";
 
 /** From this part of its room on, what is kept is as much as there can be. */
 const FULL = 0.9;
 
 /** The tooltip about what is kept, and how to keep more where the room is used up. */
-function keptTip(kept: Kept): string {
-  const text = strings.timeline.kept(keptText(kept), (kept.most / 1e6).toFixed(0));
-  return kept.size < FULL * kept.most ? text : `${text}\n${strings.timeline.more}`;
+function extentTip(extent: HistoryExtent): string {
+  const text = strings.timeline.kept(extentText(extent), (extent.most / 1e6).toFixed(0));
+  return extent.size < FULL * extent.most ? text : `${text}\n${strings.timeline.more}`;
 }
 
 /** Parts of the whole that Page Up and Page Down go. */
@@ -137,15 +137,15 @@ export class TimelineBar {
   }
 
   private move(): void {
-    const { timeline, position, live, kept } = this.timeline;
+    const { timeline, position, live, extent } = this.timeline;
     if (!timeline) return;
     const { start, end } = timeline;
     const part = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
     this.head.style.left = `${(part * 100).toFixed(3)}%`;
     // The age keeps growing while time is paused: it is not a name for the displayed moment.
-    const passed = kept ? (live ? keptText(kept) : momentText(position)) : passedText(position - start, end - start);
+    const passed = extent ? (live ? extentText(extent) : momentText(position)) : passedText(position - start, end - start);
     this.time.textContent = passed;
-    this.time.title = kept ? `${clockText(position)}${live ? "" : ` ${agoText(end - position)}`}\n${keptTip(kept)}` : clockText(position);
+    this.time.title = extent ? `${clockText(position)}${live ? "" : ` ${agoText(end - position)}`}\n${extentTip(extent)}` : clockText(position);
     this.showMark(start, end);
     this.track.setAttribute("aria-valuemin", "0");
     this.track.setAttribute("aria-valuemax", String(end - start));

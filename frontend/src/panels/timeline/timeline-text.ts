@@ -1,4 +1,4 @@
-import type { Kept, TimelineTopic } from "../../protocol";
+import type { HistoryExtent, TimelineTopic } from "../../protocol";
 
 /** Most topics that have a line of their own in the timeline. */
 const MOST_ROWS = 12;
@@ -13,7 +13,7 @@ export function passedText(passed: number, whole: number): string {
 }
 
 /** `1:30 · 45 MB`: how long a time is kept, and what it takes. */
-export function keptText({ start, end, size }: Kept): string {
+export function extentText({ start, end, size }: HistoryExtent): string {
   return amountText(end - start, size);
 }
 

@@ -1,6 +1,6 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
-import type { SaidPart } from "../../protocol";
+import type { ConversationPart } from "../../protocol";
 import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
 import { strings } from "../../strings";
@@ -13,7 +13,7 @@ import { talkButton } from "./talk-button";
 import { activity, obstacle } from "./voice-words";
 import { WordsBox } from "./words-box";
 
-const ICONS = { partial: "microphone", text: "microphone", command: "check", response: "speech" } as const satisfies Record<SaidPart, string>;
+const ICONS = { partial: "microphone", text: "microphone", command: "check", response: "speech" } as const satisfies Record<ConversationPart, string>;
 
 /** Talk to the robot, and see what it heard, understood and answered. */
 export class VoicePanel implements Panel {
@@ -126,7 +126,7 @@ export class VoicePanel implements Panel {
   private showHistory(): void {
     const { history, partial } = this.voice;
     const words = strings.voice;
-    const row = (part: SaidPart, text: string): HTMLElement =>
+    const row = (part: ConversationPart, text: string): HTMLElement =>
       h("div", { class: `voice-said ${part}` }, h("span", { title: words.parts[part] }, icon(ICONS[part])), h("span", { class: "voice-part" }, words.parts[part]), h("span", {}, text));
     const rows = history.map(({ part, text }) => row(part, text));
     if (partial !== "") rows.push(row("partial", partial));

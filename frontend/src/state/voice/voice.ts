@@ -1,5 +1,5 @@
 import type { Connection } from "../../connection/connection";
-import { MOST_LOST_SAMPLES, SOUND_KIND, SOUND_RATE, type SaidPart, type TalkMode, type VoiceState as Told } from "../../protocol";
+import { MOST_LOST_SAMPLES, SOUND_KIND, SOUND_RATE, type ConversationPart, type TalkMode, type VoiceState as Told } from "../../protocol";
 import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 import { Microphone } from "./microphone";
@@ -14,7 +14,7 @@ const HEADER_BYTES = 16;
 
 /** A line of the conversation. */
 export interface Said {
-  part: SaidPart;
+  part: ConversationPart;
   text: string;
 }
 
@@ -66,7 +66,7 @@ export class VoiceState {
       if (told.cut) this.release();
       this.changed.emit();
     });
-    connection.on("voice_said", ({ part, text }) => this.take(part, text));
+    connection.on("conversation_text", ({ part, text }) => this.take(part, text));
     connection.on("hello", () => {
       this.mode = "off";
       this.announce();
@@ -249,7 +249,7 @@ export class VoiceState {
     this.connection.sendBytes(soundFrame(samples, lost));
   }
 
-  private take(part: SaidPart, text: string): void {
+  private take(part: ConversationPart, text: string): void {
     if (part === "response") this.isAnswered = true;
     if (part === "partial") this.partial = text;
     else {

@@ -20,7 +20,7 @@ class TimelineTopic(Record):
 class Timeline(ServerMessage):
     """The recording that is shown: its name, its times and topics.
 
-    With `live` it is the history of the last minutes: it has no name, and `Kept` reports how its ends move.
+    With `live` it is the history of the last minutes: it has no name, and `HistoryExtent` reports how its ends move.
     """
 
     name: str
@@ -30,7 +30,7 @@ class Timeline(ServerMessage):
     live: bool
 
 
-class Kept(ServerMessage):
+class HistoryExtent(ServerMessage):
     """The stored part of the last minutes: its first and last time, its bytes, and their limit."""
 
     start: float

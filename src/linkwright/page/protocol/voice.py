@@ -106,14 +106,14 @@ class VoiceState(ServerMessage):
     proposes_enrolling: bool
 
 
-SaidPart = Literal["partial", "text", "command", "response"]
+ConversationPart = Literal["partial", "text", "command", "response"]
 
 
-class VoiceSaid(ServerMessage):
+class ConversationText(ServerMessage):
     """A text of the conversation: partial or final speech, a recognized command, or an answer."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("number",)
 
     number: int
-    part: SaidPart
+    part: ConversationPart
     text: str

@@ -11,13 +11,13 @@ from linkwright.graph.endpoints.event_types import QoSPublisherMatchedInfo
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import ServerMessage
 from linkwright.page.protocol.voice import (
-    SaidPart,
+    ConversationPart,
+    ConversationText,
     SayCommand,
     SoundBlock,
     Talk,
     Talking,
     VoiceNode,
-    VoiceSaid,
     VoiceState,
     WatchVoice,
 )
@@ -27,7 +27,7 @@ from linkwright.speech.page.floor import Floor, SoundBudget
 from linkwright.speech.page.words import WordBook
 from linkwright.speech.sound.samples import RATE
 
-_SAID: dict[SaidPart, str] = {
+_SAID: dict[ConversationPart, str] = {
     "partial": "/voice/partial_text",
     "text": "/voice/text",
     "command": "/voice/command",
@@ -188,10 +188,10 @@ class VoiceFeature(PageFeature):
                 self._text_input = None
         self._review()
 
-    def _send_text(self, part: SaidPart, message: Any) -> None:
+    def _send_text(self, part: ConversationPart, message: Any) -> None:
         self._text_count += 1
         for page in self._watchers:
-            page.send(VoiceSaid(self._text_count, part, message.data[:_LONGEST_TEXT]))
+            page.send(ConversationText(self._text_count, part, message.data[:_LONGEST_TEXT]))
 
     def _handle_proposal(self, message: Any) -> None:
         self._proposes = message.data
