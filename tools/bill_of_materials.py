@@ -35,7 +35,7 @@ def complete(listed: str) -> str:
         links = [link for link in component.pop("externalReferences", ()) if not link["url"].startswith(_LOCAL)]
         if links:
             component["externalReferences"] = links
-    page = [_npm_component(name, said) for name, said in build_page.bundled().items()]
+    page = [_npm_component(name, package) for name, package in build_page.bundled().items()]
     others = [component for component in components if component is not root]
     bill["components"] = sorted([*others, *page], key=_reference)
     bill["metadata"]["component"] = {**root, "type": "application"}
@@ -69,15 +69,15 @@ def _reference(each: dict[str, Any]) -> str:
     return str(each.get("bom-ref") or each["ref"])
 
 
-def _npm_component(name: str, said: dict[str, str]) -> dict[str, Any]:
-    algorithm, _, digest = said["integrity"].partition("-")
+def _npm_component(name: str, package: dict[str, str]) -> dict[str, Any]:
+    algorithm, _, digest = package["integrity"].partition("-")
     return {
-        "bom-ref": f"npm-{name}=={said['version']}",
+        "bom-ref": f"npm-{name}=={package['version']}",
         "type": "library",
         "name": name,
-        "version": said["version"],
+        "version": package["version"],
         "description": "bundled in the page",
         "hashes": [{"alg": algorithm.upper().replace("SHA", "SHA-"), "content": base64.b64decode(digest).hex()}],
-        "licenses": [{"license": {"id": said["license"], "acknowledgement": "declared"}}],
-        "purl": f"pkg:npm/{name.replace('@', '%40')}@{said['version']}",
+        "licenses": [{"license": {"id": package["license"], "acknowledgement": "declared"}}],
+        "purl": f"pkg:npm/{name.replace('@', '%40')}@{package['version']}",
     }

@@ -89,9 +89,9 @@ def bundled() -> dict[str, dict[str, str]]:
     """What the lock says of each npm package in the page, by name: its ``version``, ``license``, ``integrity``."""
     packages = json.loads((FRONTEND / "package-lock.json").read_text(encoding="utf-8"))["packages"]
     return {
-        path.removeprefix(_INSTALLED): said
-        for path, said in sorted(packages.items())
-        if path.startswith(_INSTALLED) and not said.get("dev")
+        path.removeprefix(_INSTALLED): package
+        for path, package in sorted(packages.items())
+        if path.startswith(_INSTALLED) and not package.get("dev")
     }
 
 
@@ -102,12 +102,12 @@ def licences() -> str:
         SystemExit: when a package comes without one.
     """
     texts = []
-    for name, said in bundled().items():
+    for name, package in bundled().items():
         files = sorted((FRONTEND / _INSTALLED / name).glob("LICEN[CS]E*"))
         if not files:
-            raise SystemExit(f"the npm package {name} comes without the text of its licence ({said['license']})")
+            raise SystemExit(f"the npm package {name} comes without the text of its licence ({package['license']})")
         text = files[0].read_text(encoding="utf-8").strip()
-        texts.append(f"{name} {said['version']} ({said['license']})\n\n{text}\n")
+        texts.append(f"{name} {package['version']} ({package['license']})\n\n{text}\n")
     return "\n\n".join(texts)
 
 

@@ -2,9 +2,9 @@
 
 Usage: python tools/catalogues.py [update | check | compile]
 
-``update`` takes what the source says, and the titles of the pages of `linkwright explain`, into the catalogues: what is
-new comes without a translation, what is no longer said is removed. ``check`` names what lacks a translation, what is
-stale, which placeholders differ and which file ``update`` would change, and exits with 1 when there is anything.
+``update`` writes the texts of the source, and the titles of the pages of `linkwright explain`, into the catalogues: new
+texts have no translation yet, and texts that the source no longer has are removed. ``check`` prints which texts lack a
+translation, are stale or have other placeholders, and which files ``update`` would change; then it exits with 1.
 ``compile`` writes the files that the program reads, where they are older than the catalogues.
 """
 
@@ -43,14 +43,14 @@ _NO_DATE = datetime(1970, 1, 1, tzinfo=timezone.utc)
 
 
 @dataclass
-class Said:
-    """A text of the source.
+class Template:
+    """A template of the source.
 
     Attributes:
-        template: in English; with `several`, what is said of one thing.
-        several: what is said of several things, or None.
+        template: in English; with `several`, the singular.
+        several: the plural, or None.
         filled: whether it has arguments; without, its braces are braces.
-        places: where it is said, as ``file:line``.
+        places: where it stands, as ``file:line``.
     """
 
     template: str
@@ -60,21 +60,21 @@ class Said:
 
     @property
     def rooms(self) -> list[str]:
-        """The rooms that say it."""
+        """The rooms that have it."""
         return sorted({place.partition("/")[0] for place in self.places})
 
 
 class Source:
-    """What the modules below a folder say.
+    """The texts of the modules below a folder.
 
     Attributes:
-        said: the texts, by their templates.
+        templates: by their English texts.
         titles: of the pages that `linkwright explain` prints -> where each stands.
         problems: calls that cannot be translated, each as a line.
     """
 
     def __init__(self, package: Path = PACKAGE) -> None:
-        self.said: dict[str, Said] = {}
+        self.templates: dict[str, Template] = {}
         self.titles: dict[str, str] = {}
         self.problems: list[str] = []
         for path in sorted(package.rglob("*.py")):
@@ -113,7 +113,7 @@ class Source:
             return
         for text in texts:
             if isinstance(text, ast.Constant) and isinstance(text.value, str):
-                self.said.setdefault(text.value, Said(text.value, None, False)).places.append(place)
+                self.templates.setdefault(text.value, Template(text.value, None, False)).places.append(place)
 
     def _call(self, node: ast.Call, called: str, place: str) -> None:
         if called == "phrase":
@@ -132,10 +132,10 @@ class Source:
             if None not in given and (not wanted <= given or (called == "phrase" and given > wanted)):
                 self.problems.append(f"{place}: the placeholders of '{template}' are not its arguments")
         several = templates[1] if len(templates) > 1 else None
-        said = self.said.setdefault(templates[0], Said(templates[0], several, bool(given)))
-        if several != said.several:
-            self.problems.append(f"{place}: '{said.template}' is said with and without a plural")
-        said.places.append(place)
+        found = self.templates.setdefault(templates[0], Template(templates[0], several, bool(given)))
+        if several != found.several:
+            self.problems.append(f"{place}: '{found.template}' occurs with and without a plural")
+        found.places.append(place)
 
 
 def placeholders(template: str) -> set[str]:
@@ -160,13 +160,13 @@ def problems_of(catalogue: Catalog, source: Source) -> Iterator[str]:
             if english not in source.titles:
                 yield f"no page has the title '{english}'"
         elif message.context not in LOOKED_UP:
-            if english not in source.said:
+            if english not in source.templates:
                 yield f"nothing says '{english}'"
-            elif source.said[english].filled and any(map(partial(_differ, message.id), _translations(message))):
+            elif source.templates[english].filled and any(map(partial(_differ, message.id), _translations(message))):
                 yield f"the translation of '{english}' has other placeholders"
-    for template, said in source.said.items():
-        if catalogue.get(template) is None:
-            yield f"{said.places[0]}: '{template}' is not in the catalogue"
+    for english, template in source.templates.items():
+        if catalogue.get(english) is None:
+            yield f"{template.places[0]}: '{english}' is not in the catalogue"
     for title, place in source.titles.items():
         if catalogue.get(title, TITLES) is None:
             yield f"{place}: the title '{title}' is not in the catalogue"
@@ -190,15 +190,15 @@ def _formats(template: str) -> set[tuple[str, str | None]]:
 def updated(catalogue: Catalog, source: Source) -> Catalog:
     """The catalogue with what the source says, in the order of rooms and templates, then titles, then the rest."""
     new = Catalog(catalogue.locale, "linkwright", _HEADER.format(catalogue.locale.english_name), fuzzy=False)
-    for said in sorted(source.said.values(), key=lambda each: (each.rooms, each.template)):
-        identity = (said.template, said.several) if said.several else said.template
-        before = catalogue.get(said.template)
+    for template in sorted(source.templates.values(), key=lambda each: (each.rooms, each.template)):
+        identity = (template.template, template.several) if template.several else template.template
+        before = catalogue.get(template.template)
         string = before.string if before is not None else ""
-        if said.several and isinstance(string, str):
+        if template.several and isinstance(string, str):
             string = (string,) * catalogue.num_plurals
-        elif not said.several and not isinstance(string, str):
+        elif not template.several and not isinstance(string, str):
             string = string[0]
-        new.add(identity, string, locations=[(room, None) for room in said.rooms])
+        new.add(identity, string, locations=[(room, None) for room in template.rooms])
     for title in sorted(source.titles):
         before = catalogue.get(title, TITLES)
         new.add(title, before.string if before is not None else "", context=TITLES)

@@ -19,7 +19,7 @@ from typing import Any
 from packaging.requirements import Requirement
 
 from linkwright.cli.command import groups, help_texts, parser_for
-from linkwright.cli.language import said_in_help
+from linkwright.cli.language import translate_help
 from linkwright.descriptions import load
 from linkwright.diagnostics.translation import set_language
 
@@ -138,7 +138,7 @@ def commands(chinese: bool) -> str:
     try:
         title = "用途" if chinese else "what it does"
         return "\n\n".join(
-            "\n".join([f"| {_capital(said_in_help(group))} | {title} |", "| --- | --- |", *map(_command, verbs)])
+            "\n".join([f"| {_capital(translate_help(group))} | {title} |", "| --- | --- |", *map(_command, verbs)])
             for group, verbs in groups().items()
         )
     finally:
@@ -194,7 +194,7 @@ TABLES: dict[str, Callable[[bool], str]] = {
 
 def _command(name: str) -> str:
     first = next(describe(parser_for(name), "")).partition("\n")[0].removeprefix("## ").strip()
-    return f"| [`linkwright {name}`](commands.md#{first.replace(' ', '-')}) | {said_in_help(help_texts()[name])} |"
+    return f"| [`linkwright {name}`](commands.md#{first.replace(' ', '-')}) | {translate_help(help_texts()[name])} |"
 
 
 def _row(cells: Sequence[str]) -> str:

@@ -49,7 +49,7 @@ class Chinese(NullTranslations):
 
 
 def in_chinese(text: Phrase) -> str:
-    return text.said_in(Chinese())
+    return text.translated_text(Chinese())
 
 
 def test_a_phrase_is_its_english_text() -> None:

@@ -49,13 +49,13 @@ class Recording:
         return self._heard(several, self._translations.ngettext(one, several, count))
 
     def pgettext(self, context: str, message: str) -> str:
-        said = self._translations.pgettext(context, message)
-        return said if context == FOREIGN else self._heard(message, said)
+        translation = self._translations.pgettext(context, message)
+        return translation if context == FOREIGN else self._heard(message, translation)
 
-    def _heard(self, english: str, said: str) -> str:
-        if said == english and re.search("[a-z]{3}", re.sub(r"\{\w*[^}]*\}", "", english)):
+    def _heard(self, english: str, translation: str) -> str:
+        if translation == english and re.search("[a-z]{3}", re.sub(r"\{\w*[^}]*\}", "", english)):
             self.missing.append(english)
-        return said
+        return translation
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +67,7 @@ def source() -> Any:
 @pytest.mark.slow  # reads all of the source, which is the same with each Python
 def test_the_catalogues_say_what_the_source_says(source: Any) -> None:
     tool = load_tool("catalogues")
-    assert len(source.said) > 1000
+    assert len(source.templates) > 1000
     for path in sorted(tool.FOLDER.glob("*.po")):
         catalogue = tool.read(path)
         assert list(tool.problems_of(catalogue, source)) == []
@@ -183,11 +183,11 @@ def test_findings_of_the_rules(words: Recording, tmp_path: Path, monkeypatch: py
 
 def test_the_meaning_of_every_element_and_attribute(words: Recording) -> None:
     def visit(rule: schema.ElementRule) -> None:
-        term(rule.meaning).said_in(words)
+        term(rule.meaning).translated_text(words)
         for attribute in rule.attributes:
-            term(attribute.meaning).said_in(words)
+            term(attribute.meaning).translated_text(words)
             if attribute.unit:
-                term(attribute.unit).said_in(words)
+                term(attribute.unit).translated_text(words)
         for child in rule.children:
             visit(child)
 
@@ -202,5 +202,5 @@ def assert_translated(diagnostics: Iterable[Diagnostic], words: Recording) -> No
         for text in (diagnostic.message, diagnostic.hint, *(note.message for note in diagnostic.notes)):
             if text is not None:
                 assert isinstance(text, Phrase), (diagnostic.code, text)
-                text.said_in(words)
+                text.translated_text(words)
         assert words.missing == [], diagnostic.code

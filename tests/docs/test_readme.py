@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from linkwright.cli.command import SUMMARY_HELP, parser_for
-from linkwright.cli.language import said_in_help
+from linkwright.cli.language import translate_help
 from linkwright.diagnostics.translation import set_language
 from tests.docs.pages import DOCS, READMES
 from tests.places import REPOSITORY
@@ -41,7 +41,7 @@ def test_badges_say_what_the_project_says(page):
 def test_one_sentence_says_what_linkwright_is(page, language):
     set_language(language)
     try:
-        assert f"\n**{said_in_help(SUMMARY_HELP)}**\n" in page.read_text(encoding="utf-8")
+        assert f"\n**{translate_help(SUMMARY_HELP)}**\n" in page.read_text(encoding="utf-8")
     finally:
         set_language(None)
     assert PROJECT["description"] == SUMMARY_HELP

@@ -12,7 +12,7 @@ from importlib import import_module
 
 from linkwright._version import __version__
 from linkwright.cli.endings import FINE, USAGE, status_of
-from linkwright.cli.language import LANGUAGE_HELP, said_in_help, take_language
+from linkwright.cli.language import LANGUAGE_HELP, take_language, translate_help
 from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import set_language
 from linkwright.loading.lean_typing import TYPE_CHECKING, Any, Protocol, cast
@@ -191,10 +191,14 @@ def _unknown(name: str, known: Iterable[str], prog: str) -> int:
 def _overview() -> str:
     shown = groups()
     width = max(len(name) for verbs in shown.values() for name in verbs)
-    lines = ["usage: linkwright COMMAND ...", "", said_in_help(SUMMARY_HELP)]
+    lines = ["usage: linkwright COMMAND ...", "", translate_help(SUMMARY_HELP)]
     for title, verbs in shown.items():
-        lines += ["", f"{said_in_help(title)}:"]
-        lines += [f"  {name:{width}}  {said_in_help(text)}" for name, text in verbs.items()]
-    lines += ["", f"{said_in_help('options of all commands')}:", f"  --lang LANGUAGE  {said_in_help(LANGUAGE_HELP)}"]
-    lines += ["", said_in_help(MORE_HELP)]
+        lines += ["", f"{translate_help(title)}:"]
+        lines += [f"  {name:{width}}  {translate_help(text)}" for name, text in verbs.items()]
+    lines += [
+        "",
+        f"{translate_help('options of all commands')}:",
+        f"  --lang LANGUAGE  {translate_help(LANGUAGE_HELP)}",
+    ]
+    lines += ["", translate_help(MORE_HELP)]
     return "\n".join(lines)

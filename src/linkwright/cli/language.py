@@ -46,7 +46,7 @@ def _language(written: str) -> str:
     return found
 
 
-def said_in_help(text: str) -> str:
+def translate_help(text: str) -> str:
     """Return a help text in the user's language; texts that are not in the catalogue stay unchanged."""
     lang = language()
     if lang == "en" or not text:

@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 
-from linkwright.cli.language import said_in_help
+from linkwright.cli.language import translate_help
 from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import language
 from linkwright.loading.lean_typing import Any, NoReturn
@@ -38,7 +38,7 @@ class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Print a usage error and end the process."""
         meant = None
-        unrecognised = said_in_help("unrecognized arguments: %s").removesuffix("%s")
+        unrecognised = translate_help("unrecognized arguments: %s").removesuffix("%s")
         if message.startswith(f"{unrecognised}-"):
             option = message.removeprefix(unrecognised).split()[0].partition("=")[0]
             meant = did_you_mean(option, _options_below(self))
@@ -71,7 +71,7 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
 
 # The function with which argparse translates its own texts, such as "the following arguments are required". By default
 # it is gettext's, which searches for catalogues that do not exist and imports `locale` for that.
-argparse._ = said_in_help  # type: ignore[attr-defined]  # argparse imports it so
+argparse._ = translate_help  # type: ignore[attr-defined]  # argparse imports it so
 
 
 def _translate_help(parser: argparse.ArgumentParser) -> None:
@@ -81,14 +81,14 @@ def _translate_help(parser: argparse.ArgumentParser) -> None:
 
 
 def _translate(parser: argparse.ArgumentParser) -> None:
-    parser.description = said_in_help(parser.description or "")
+    parser.description = translate_help(parser.description or "")
     for group in parser._action_groups:
-        group.title = said_in_help(group.title or "")
+        group.title = translate_help(group.title or "")
     for action in parser._actions:
         if action.help and action.help != argparse.SUPPRESS:
-            action.help = said_in_help(action.help)
+            action.help = translate_help(action.help)
         if isinstance(action, argparse._SubParsersAction):
             for choice in action._choices_actions:
-                choice.help = said_in_help(choice.help or "")
+                choice.help = translate_help(choice.help or "")
             for below in action.choices.values():
                 _translate(below)

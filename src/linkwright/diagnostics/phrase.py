@@ -63,7 +63,7 @@ class Phrase(str):
     def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
         return type(self), (self.template, self.arguments)
 
-    def said_in(self, wording: Wording) -> str:
+    def translated_text(self, wording: Wording) -> str:
         """The text in another language."""
         return self._filled(wording.gettext(self.template), wording) if self.template else ""
 
@@ -74,7 +74,7 @@ class Phrase(str):
 
     def translated(self, wording: Wording) -> Phrase:
         """Return the text in another language, with its template and arguments."""
-        return _Said(self.said_in(wording), self)
+        return _Translated(self.translated_text(wording), self)
 
     def _filled(self, template: str, wording: Wording) -> str:
         if not self.arguments:
@@ -90,13 +90,13 @@ class Phrase(str):
             value = self.arguments[name]
             after_phrase = isinstance(value, Phrase)
             if isinstance(value, Phrase):
-                text = _spaced(text, value.said_in(wording))
+                text = _spaced(text, value.translated_text(wording))
             else:
                 text += format(value, spec or "")
         return text
 
 
-class _Said(Phrase):
+class _Translated(Phrase):
     """A phrase in another language."""
 
     __slots__ = ("original",)
@@ -116,8 +116,8 @@ class _Said(Phrase):
     def chosen_template(self) -> str:
         return self.original.chosen_template
 
-    def said_in(self, wording: Wording) -> str:
-        return self.original.said_in(wording)
+    def translated_text(self, wording: Wording) -> str:
+        return self.original.translated_text(wording)
 
 
 class _Counted(Phrase):
@@ -139,7 +139,7 @@ class _Counted(Phrase):
     def chosen_template(self) -> str:
         return self.template if self.arguments["count"] == 1 else self.several
 
-    def said_in(self, wording: Wording) -> str:
+    def translated_text(self, wording: Wording) -> str:
         count = self.arguments["count"]
         assert isinstance(count, int)
         return self._filled(wording.ngettext(self.template, self.several, count), wording)
@@ -159,7 +159,7 @@ class _Known(Phrase):
     def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
         return type(self), (self.template, self.context)
 
-    def said_in(self, wording: Wording) -> str:
+    def translated_text(self, wording: Wording) -> str:
         return wording.pgettext(self.context, self.template) if self.template else ""
 
 
@@ -181,8 +181,8 @@ class _Joined(Phrase):
     def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
         return type(self), (self.items, self.separator, self.last)
 
-    def said_in(self, wording: Wording) -> str:
-        items = [item.said_in(wording) if isinstance(item, Phrase) else item for item in self.items]
+    def translated_text(self, wording: Wording) -> str:
+        items = [item.translated_text(wording) if isinstance(item, Phrase) else item for item in self.items]
         return _in_a_row(items, wording.pgettext(TERMS, self.separator), wording.pgettext(TERMS, self.last))
 
 

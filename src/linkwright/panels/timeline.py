@@ -224,7 +224,9 @@ class TimelineFeature(PageFeature):
 
     def _extent(self, live: LiveHistory) -> HistoryExtent:
         start_ns, end_ns = live.span_ns
-        return HistoryExtent(start_ns / NANOSECONDS_PER_SECOND, end_ns / NANOSECONDS_PER_SECOND, live.size, live.most_bytes)
+        return HistoryExtent(
+            start_ns / NANOSECONDS_PER_SECOND, end_ns / NANOSECONDS_PER_SECOND, live.size, live.most_bytes
+        )
 
     def _publish_extent_later(self) -> None:
         if self._publish_timer is None:

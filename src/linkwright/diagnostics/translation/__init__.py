@@ -5,7 +5,7 @@ language; a template that it does not have stays English. Codes, places and the 
 """
 
 from linkwright.diagnostics.translation.language import LANGUAGES, asked_language, language, language_of, set_language
-from linkwright.diagnostics.translation.translate import labels, localized, said_in, translate, translated
+from linkwright.diagnostics.translation.translate import labels, localized, translate, translate_phrase, translated
 
 __all__ = [
     "LANGUAGES",
@@ -14,8 +14,8 @@ __all__ = [
     "language",
     "language_of",
     "localized",
-    "said_in",
     "set_language",
     "translate",
+    "translate_phrase",
     "translated",
 ]

@@ -15,7 +15,7 @@ _LABELS = ("error", "warning", "info", "note", "hint", ": ")
 def labels(lang: str | None = None) -> Mapping[str, str]:
     """Return the labels of severities, notes and hints, and the colon after them, by default in the user's language."""
     lang = language() if lang is None else lang
-    return {label: label if lang == "en" else term(label).said_in(wording(lang)) for label in _LABELS}
+    return {label: label if lang == "en" else term(label).translated_text(wording(lang)) for label in _LABELS}
 
 
 def translated(diagnostics: Iterable[Diagnostic], *, for_programs: bool = False) -> Iterable[Diagnostic]:
@@ -44,12 +44,12 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
 def localized(text: str, lang: str | None = None) -> str:
     """Return a text in a language of `LANGUAGES`, by default the user's; a text that is not a phrase stays the same."""
     lang = language() if lang is None else lang
-    return text.said_in(wording(lang)) if lang != "en" and isinstance(text, Phrase) else text
+    return text.translated_text(wording(lang)) if lang != "en" and isinstance(text, Phrase) else text
 
 
-def said_in(text: Phrase, lang: str) -> str:
+def translate_phrase(text: Phrase, lang: str) -> str:
     """Return a phrase in a language of `LANGUAGES`, whatever its present language."""
-    return text.said_in(wording(lang))
+    return text.translated_text(wording(lang))
 
 
 def _translated(text: Phrase, words: Wording) -> Phrase:

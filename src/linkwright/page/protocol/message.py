@@ -14,7 +14,7 @@ import msgspec
 from msgspec import Struct
 
 from linkwright.diagnostics import Phrase
-from linkwright.diagnostics.translation import said_in
+from linkwright.diagnostics.translation import translate_phrase
 
 
 def _tag(name: str) -> str:
@@ -84,7 +84,7 @@ def _encoder(language: str | None) -> msgspec.json.Encoder:
 
 def _plain_or_localized(value: Any, language: str | None) -> Any:
     """Return a phrase in the language, or another value as `plain` has it."""
-    return plain(said_in(value, language) if language is not None and isinstance(value, Phrase) else value)
+    return plain(translate_phrase(value, language) if language is not None and isinstance(value, Phrase) else value)
 
 
 def redundancy_key(message: ServerMessage) -> str:
