@@ -41,8 +41,8 @@ def try_it(version: str) -> str:
     """
     with tempfile.TemporaryDirectory() as home:
         environment = {**os.environ, "HOME": home, "XDG_CONFIG_HOME": home, "XDG_CACHE_HOME": home}
-        shown = _run(environment, "--version")
-        assert shown.strip() == f"linkwright {version}", shown
+        out = _run(environment, "--version")
+        assert out.strip() == f"linkwright {version}", out
         specification = importlib.util.find_spec("linkwright")
         assert specification is not None
         assert specification.origin is not None
@@ -51,7 +51,9 @@ def try_it(version: str) -> str:
         fetched = _page(environment, robot)
     python = f"{sys.version_info[0]}.{sys.version_info[1]}"
     tree = checked.count("\n")
-    return f"installed for Python {python}: {shown.strip()}, check ({tree} lines), the page with {fetched} files of its own"
+    return (
+        f"installed for Python {python}: {out.strip()}, check ({tree} lines), the page with {fetched} files of its own"
+    )
 
 
 def try_engine(version: str) -> str:

@@ -107,7 +107,7 @@ class LiveHistory:
         self._went_back = False
         self._known = set(self._subscriptions())
         self.playback.take_over(now)
-        self._context.graph_changes.listen(self._review)
+        self._context.graph_changes.watch(self._review)
         self.changed()
 
     def go_live(self) -> None:
@@ -115,7 +115,7 @@ class LiveHistory:
         if self.live:
             return
         self.playback.pause()
-        self._context.graph_changes.ignore(self._review)
+        self._context.graph_changes.unwatch(self._review)
         self._context.held_time.release(self._context.node.get_clock())
         # A turn of the loop later: listeners to the time jump drop the past data first, then the present is shown.
         asyncio.get_running_loop().call_soon(self._show_present)
@@ -172,7 +172,7 @@ class LiveHistory:
     def close(self) -> None:
         """Stop storing messages."""
         self._handle.intake = None
-        self._context.graph_changes.ignore(self._review)
+        self._context.graph_changes.unwatch(self._review)
         if self._stored is not None:
             self._stored.close()
         if self.has_playback:

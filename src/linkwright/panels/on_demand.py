@@ -74,7 +74,7 @@ class OnDemandFeatures(PageFeature):
         """Return the messages of features that do not exist yet; watches their topics while there are pages."""
         if not self._listening and self._asleep:
             self._listening = True
-            self.context.graph_changes.listen(self._review)
+            self.context.graph_changes.watch(self._review)
         self._review()
         waiting = (feature.until for feature in self._declared if feature not in self._created)
         return sorted((message for message in waiting if message is not None), key=tag_of)
@@ -100,7 +100,7 @@ class OnDemandFeatures(PageFeature):
 
     def _stop(self) -> None:
         self._listening = False
-        self.context.graph_changes.ignore(self._review)
+        self.context.graph_changes.unwatch(self._review)
 
     def _review(self) -> None:
         """Create the features whose topics are published now."""

@@ -91,7 +91,7 @@ class TimelineFeature(PageFeature):
         self._recorded = playback
         playback.begin_anew = self._begin_anew
         playback.changed.append(self._changed)
-        self.context.graph_changes.listen(playback.review)
+        self.context.graph_changes.watch(playback.review)
         self.context.pages.publish(self._timeline)
         self._changed()
 
@@ -173,7 +173,7 @@ class TimelineFeature(PageFeature):
         if self._live is not None:
             self._live.close()
         elif self._recorded is not None:
-            self.context.graph_changes.ignore(self._recorded.review)
+            self.context.graph_changes.unwatch(self._recorded.review)
             self._recorded.close()
 
     # -----------------------------------------------------------------------------------------------------------

@@ -25,7 +25,7 @@ _QUIET = 0.1
 
 
 class GraphChanges:
-    """Notifies listeners of the changes of a graph; costs nothing while there are none.
+    """Calls callbacks for the changes of a graph; costs nothing while there are none.
 
     Args:
         graph: the graph to listen to; its changes may happen in any thread.
@@ -37,14 +37,14 @@ class GraphChanges:
         self._loop = asyncio.get_running_loop()
         self._due: asyncio.TimerHandle | None = None
 
-    def listen(self, changed: Callable[[], None]) -> None:
+    def watch(self, changed: Callable[[], None]) -> None:
         """Register a callback for changes, called on the loop."""
         if not self._listeners:
             self._graph.watch(self._changed)
         self._listeners[changed] = None
 
-    def ignore(self, changed: Callable[[], None]) -> None:
-        """Unregister a callback of `listen`."""
+    def unwatch(self, changed: Callable[[], None]) -> None:
+        """Unregister a callback of `watch`."""
         self._listeners.pop(changed, None)
         if not self._listeners:
             self._graph.unwatch(self._changed)

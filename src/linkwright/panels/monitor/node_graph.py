@@ -24,18 +24,18 @@ class NodeGraphFeature(PageFeature):
             return
         self._sent[page] = current = node_graph(self.context.node.graph)
         page.send(current)
-        self.context.graph_changes.listen(self._publish)
+        self.context.graph_changes.watch(self._publish)
 
     def page_gone(self, page: Page) -> None:
         """Forget the page."""
         self._sent.pop(page, None)
         if not self._sent:
-            self.context.graph_changes.ignore(self._publish)
+            self.context.graph_changes.unwatch(self._publish)
 
     def close(self) -> None:
         """Stop sending."""
         self._sent.clear()
-        self.context.graph_changes.ignore(self._publish)
+        self.context.graph_changes.unwatch(self._publish)
 
     def _publish(self) -> None:
         current = node_graph(self.context.node.graph)

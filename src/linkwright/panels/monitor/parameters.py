@@ -294,9 +294,9 @@ class ParametersFeature(PageFeature):
             self._events.close()
             self._events = None
         if any(request.listed for request in requests):
-            self.context.graph_changes.listen(self._send_lists)
+            self.context.graph_changes.watch(self._send_lists)
         else:
-            self.context.graph_changes.ignore(self._send_lists)
+            self.context.graph_changes.unwatch(self._send_lists)
 
     def _receive(self, event: Any, _: MessageInfo) -> None:
         node = self._nodes.get(event.node)

@@ -33,7 +33,7 @@ class TeleopFeature(PageFeature):
         self.page_gone(page)
         if message.target is not None:
             self._pads[page] = _Pad(self.context.node, message.target, page.send)
-            self.context.graph_changes.listen(self._review)
+            self.context.graph_changes.watch(self._review)
 
     def page_gone(self, page: Page) -> None:
         """Stop the robot that the page drives."""
@@ -41,7 +41,7 @@ class TeleopFeature(PageFeature):
         if pad is not None:
             pad.close()
         if not self._pads:
-            self.context.graph_changes.ignore(self._review)
+            self.context.graph_changes.unwatch(self._review)
 
     def close(self) -> None:
         """Stop all robots."""

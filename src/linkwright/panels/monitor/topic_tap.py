@@ -91,12 +91,12 @@ class TopicTap:
         self._changed = changed
         self._subscription: Subscription[Any] | None = None
         self._qos: QoSProfile | None = None
-        self._changes.listen(self._look)
+        self._changes.watch(self._look)
         self._review()
 
     def close(self) -> None:
         """Unsubscribe."""
-        self._changes.ignore(self._look)
+        self._changes.unwatch(self._look)
         self._leave()
 
     def _look(self) -> None:

@@ -196,9 +196,9 @@ class TopicsFeature(PageFeature):
         for topic in sorted(requested - self._gauges.keys()):
             self._gauges[topic] = _Gauge(self, self.context, topic)
         if any(request.listed for request in requests):
-            self.context.graph_changes.listen(self._send_lists)
+            self.context.graph_changes.watch(self._send_lists)
         else:
-            self.context.graph_changes.ignore(self._send_lists)
+            self.context.graph_changes.unwatch(self._send_lists)
         if not requested:
             self._figures.cancel()
             self._messages.cancel()

@@ -161,14 +161,14 @@ class Simulator(SingleNode):
 
     def _renew(self, robot: str, parameters: Sequence[Parameter]) -> SetParametersResult:
         """Replace the robot by a changed description, in its present state; an invalid one is refused."""
-        from linkwright.simulation.plugins.entities import told
+        from linkwright.simulation.plugins.entities import in_one_line
 
         for parameter in parameters:
             if parameter.name == _DESCRIPTION:
                 try:
                     self.services.renew(parameter.value, robot)
                 except LinkwrightError as error:
-                    return SetParametersResult(successful=False, reason=told(error.diagnostics[0]))
+                    return SetParametersResult(successful=False, reason=in_one_line(error.diagnostics[0]))
         return SetParametersResult(successful=True)
 
     def _finish(self, status: int) -> None:

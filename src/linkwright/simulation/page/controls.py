@@ -80,7 +80,7 @@ class SimulationFeature(PageFeature):
         """Return the state of the simulation."""
         if not self._listening and not self._recorded:
             self._listening = True
-            self.context.graph_changes.listen(self._review)
+            self.context.graph_changes.watch(self._review)
             self._review()
         return [self._status]
 
@@ -158,7 +158,7 @@ class SimulationFeature(PageFeature):
 
     def _stop(self) -> None:
         self._listening = False
-        self.context.graph_changes.ignore(self._review)
+        self.context.graph_changes.unwatch(self._review)
         self._leave()
         self._status = NO_SIMULATION
 

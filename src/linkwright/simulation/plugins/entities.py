@@ -132,7 +132,7 @@ def answered(response: Any, work: Callable[[], str]) -> Any:
     try:
         response.success, response.status_message = True, work()
     except LinkwrightError as error:
-        response.success, response.status_message = False, told(error.diagnostics[0])
+        response.success, response.status_message = False, in_one_line(error.diagnostics[0])
     return response
 
 
@@ -157,7 +157,7 @@ def refused(service: str, error: LinkwrightError) -> Phrase:
     return phrase("{service}: {problem}", service=service, problem=finding.message)
 
 
-def told(finding: Diagnostic) -> str:
+def in_one_line(finding: Diagnostic) -> str:
     """Return a finding in one line: place, message and hint."""
     place = f"{finding.span}: " if finding.span else ""
     hint = f" ({finding.hint})" if finding.hint else ""

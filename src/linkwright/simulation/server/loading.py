@@ -13,7 +13,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
 from linkwright.messages import get_message
-from linkwright.simulation.plugins.entities import told
+from linkwright.simulation.plugins.entities import in_one_line
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.server.worlds import LoadedWorld, load_world
 from linkwright.xmltree.decoding import decoded
@@ -113,7 +113,7 @@ class WorldLoader:
         except LinkwrightError as error:
             finding = error.diagnostics[0]
             response.result.result = _result(finding)
-            response.result.error_message = told(finding)
+            response.result.error_message = in_one_line(finding)
             return response
         response.result.result = _OK
         response.world.name = self.loaded.world.name

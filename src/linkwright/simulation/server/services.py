@@ -19,9 +19,9 @@ from linkwright.sdf.poses import WORLD
 from linkwright.simulation.plugins.entities import (
     Entities,
     answered,
+    in_one_line,
     numbers,
     refused,
-    told,
     transform_in,
 )
 from linkwright.simulation.server.entities import Entity, entity_from
@@ -147,7 +147,7 @@ class Services:
                 self._server.renew(entity.model, name)
                 self._server.report(entity.diagnostics, name)
             except LinkwrightError as error:
-                self._server.node.get_logger().error(told(error.diagnostics[0]))
+                self._server.node.get_logger().error(in_one_line(error.diagnostics[0]))
 
         self._server.exchange.post(renew)
 

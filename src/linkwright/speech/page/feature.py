@@ -176,9 +176,9 @@ class VoiceFeature(PageFeature):
                 self._node.create_subscription("std_msgs/msg/Bool", _PROPOSE, self._handle_proposal, _DEPTH)
             )
             self._text_input = self._node.create_publisher("std_msgs/msg/String", _TEXT_INPUT, _DEPTH)
-            self.context.graph_changes.listen(self._review)
+            self.context.graph_changes.watch(self._review)
         elif not self._watchers and self._subscriptions:
-            self.context.graph_changes.ignore(self._review)
+            self.context.graph_changes.unwatch(self._review)
             for subscription in self._subscriptions:
                 self._node.destroy_subscription(subscription)
             self._subscriptions.clear()

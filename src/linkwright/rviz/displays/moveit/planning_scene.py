@@ -201,14 +201,14 @@ class PlanningSceneDisplay(MoveItDisplay):
         namespace = self.properties.text(NAMESPACE).strip("/ ")
         name = f"/{namespace}/{_SERVICE}" if namespace else f"/{_SERVICE}"
         self._client = self.context.node.create_client(get_service("moveit_msgs/srv/GetPlanningScene"), name)
-        self.context.graph_changes.listen(self._ask_if_ready)
+        self.context.graph_changes.watch(self._ask_if_ready)
         self._ask_if_ready()
 
     def _ask_if_ready(self) -> None:
         client = self._client
         if client is None or not client.service_is_ready():
             return
-        self.context.graph_changes.ignore(self._ask_if_ready)
+        self.context.graph_changes.unwatch(self._ask_if_ready)
         components = get_message("moveit_msgs/msg/PlanningSceneComponents")
         asked = components(components=_PARTS)
         future = client.call_async(client.srv_type.Request(components=asked))
@@ -225,7 +225,7 @@ class PlanningSceneDisplay(MoveItDisplay):
             self._process(scene, None)
 
     def _leave(self) -> None:
-        self.context.graph_changes.ignore(self._ask_if_ready)
+        self.context.graph_changes.unwatch(self._ask_if_ready)
         if self._due is not None:
             self._due.cancel()
             self._due = None

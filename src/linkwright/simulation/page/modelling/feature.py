@@ -55,7 +55,7 @@ class ModellingFeature(PageFeature):
         """Return whether the world can be edited and, while a user edits it, its content."""
         if not self._listening:
             self._listening = True
-            self.context.graph_changes.listen(self._review)
+            self.context.graph_changes.watch(self._review)
             self._available = self._is_available()
         return [self._state()]
 
@@ -63,7 +63,7 @@ class ModellingFeature(PageFeature):
         """Stop listening after the last page; edits stay."""
         if self._listening and len(self.context.pages) == 0:
             self._listening = False
-            self.context.graph_changes.ignore(self._review)
+            self.context.graph_changes.unwatch(self._review)
 
     def keep_unsaved(self) -> list[Diagnostic]:
         """Store the text of an unsaved world."""
@@ -73,7 +73,7 @@ class ModellingFeature(PageFeature):
 
     def close(self) -> None:
         """Stop for good."""
-        self.context.graph_changes.ignore(self._review)
+        self.context.graph_changes.unwatch(self._review)
         self._services.close()
         if self._worker is not None:
             self._worker.cancel()
