@@ -41,8 +41,8 @@ def try_it(version: str) -> str:
     """
     with tempfile.TemporaryDirectory() as home:
         environment = {**os.environ, "HOME": home, "XDG_CONFIG_HOME": home, "XDG_CACHE_HOME": home}
-        out = _run(environment, "--version")
-        assert out.strip() == f"linkwright {version}", out
+        text = _run(environment, "--version")
+        assert text.strip() == f"linkwright {version}", text
         specification = importlib.util.find_spec("linkwright")
         assert specification is not None
         assert specification.origin is not None
@@ -52,7 +52,7 @@ def try_it(version: str) -> str:
     python = f"{sys.version_info[0]}.{sys.version_info[1]}"
     tree = checked.count("\n")
     return (
-        f"installed for Python {python}: {out.strip()}, check ({tree} lines), the page with {fetched} files of its own"
+        f"installed for Python {python}: {text.strip()}, check ({tree} lines), the page with {fetched} files of its own"
     )
 
 

@@ -170,7 +170,7 @@ class Shown:
         self.listener = self.graph.create_node("listener")
         self.times: list[int] = []
         self.listener.create_subscription("rosgraph_msgs/msg/Clock", "/clock", self._tick, QoSProfile(depth=1000))
-        self.playback.begin_anew = lambda: self.heard.append("anew")
+        self.playback.on_reset = lambda: self.heard.append("reset")
 
     def listen(self, topic: str) -> None:
         self.listener.create_subscription(String, topic, lambda message: self.heard.append(message.data), 100)
@@ -225,10 +225,10 @@ async def test_a_seek_shows_the_state_of_its_time_after_listeners_began_anew(sho
     await shown.taken()
     shown.playback.seek(START + 3 * SECOND)
     shown.playback.seek(START + 10 * SECOND + 5)
-    assert await shown.taken() == ["anew", "b 8", "a 10"], "of several seeks the newest"
+    assert await shown.taken() == ["reset", "b 8", "a 10"], "of several seeks the newest"
     assert shown.playback.position_ns == START + 10 * SECOND + 5
     shown.playback.seek(START + 2 * SECOND)
-    assert await shown.taken() == ["anew", "b 0", "a 2"]
+    assert await shown.taken() == ["reset", "b 0", "a 2"]
     assert shown.times[-1] == 2 * SECOND
     shown.playback.play()
     await shown.clock.advance(1.1)
@@ -243,7 +243,7 @@ async def test_steps_go_from_message_to_message_of_what_somebody_listens_to(show
     assert await shown.taken() == ["b 4", "b 8"]
     assert shown.playback.position_ns == START + 8 * SECOND
     shown.playback.step(forward=False)
-    assert await shown.taken() == ["anew", "b 4"]
+    assert await shown.taken() == ["reset", "b 4"]
     shown.playback.seek(START)
     await shown.taken()
     shown.playback.step(forward=False)
@@ -257,7 +257,7 @@ async def test_steps_may_go_by_the_messages_of_one_topic(shown: Shown) -> None:
     assert await shown.taken() == ["a 1", "a 2", "a 3", "a 4"], "what lies between is shown, too"
     assert shown.playback.position_ns == START + 4 * SECOND
     shown.playback.step(False, "/tf_static")
-    assert await shown.taken() == ["anew", "a 0"]
+    assert await shown.taken() == ["reset", "a 0"]
     shown.playback.seek(START + 19 * SECOND)
     await shown.taken()
     shown.playback.step(True, "/b")
@@ -270,7 +270,7 @@ async def test_a_step_over_more_than_goes_in_a_turn_is_a_jump(shown: Shown, monk
     shown.listen("/a")
     await shown.taken()
     shown.playback.step(True, "/b")
-    assert (await shown.taken())[-2:] == ["anew", "a 4"]
+    assert (await shown.taken())[-2:] == ["reset", "a 4"]
     assert shown.playback.position_ns == START + 4 * SECOND
 
 
@@ -314,7 +314,7 @@ async def test_at_the_end_it_stays_or_begins_anew(shown: Shown) -> None:
     shown.playback.set_loop(True)
     shown.playback.play()
     await shown.clock.advance(0.1)
-    assert (await shown.taken())[:2] == ["anew", "b 0"]
+    assert (await shown.taken())[:2] == ["reset", "b 0"]
     assert shown.playback.playing
     await shown.clock.advance(20.0)
     assert shown.playback.position_ns < START + 2 * SECOND, "it has begun anew"

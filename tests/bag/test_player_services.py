@@ -134,7 +134,7 @@ async def test_it_goes_on_from_another_time(scene, clock, paused):
     assert scene.heard[-2:] == ["0", "1"]
 
 
-async def test_it_is_stopped_and_does_not_begin_anew(scene, clock):
+async def test_it_is_stopped_and_does_not_restart(scene, clock):
     scene = scene()
     await clock.advance(0.5)
     assert not (await scene.call("play")).success

@@ -136,7 +136,7 @@ async def test_physics_gravity_light_and_plugins_follow(tmp_path):
         assert simulation.model_pose("one")[2] < 9.0
 
 
-async def test_plugins_of_what_has_not_changed_run_on_and_those_of_others_begin_anew(tmp_path):
+async def test_plugins_of_what_has_not_changed_run_on_and_those_of_others_restart(tmp_path):
     async with simulator(tmp_path, robot(joint_states())) as it:
         server = it.simulator.server
         before = server.plugins("mbot")

@@ -52,7 +52,7 @@ class Output(Protocol):
     def wanted(self) -> frozenset[str]:
         """The topics of the recording that have subscriptions."""
 
-    def tell_time(self, stamp_ns: int, /) -> None:
+    def publish_time(self, stamp_ns: int, /) -> None:
         """Set the time of the playback, nanoseconds since the epoch."""
 
     def publish(self, topic: str, stamp_ns: int, data: bytes, /) -> None:
@@ -75,7 +75,7 @@ class Playback:
         loop: whether playback restarts at the end.
         seeks: the number of seeks, whether or not the recording could be read there.
         changed: called when one of these changes other than by the passing of time.
-        begin_anew: makes subscribers forget their state, because another time is shown.
+        on_reset: called when another time is shown, so that subscribers forget their state.
     """
 
     def __init__(
@@ -97,7 +97,7 @@ class Playback:
         self.loop = False
         self.seeks = 0
         self.changed: list[Callable[[], object]] = []
-        self.begin_anew: Callable[[], object] = lambda: None
+        self.on_reset: Callable[[], object] = lambda: None
 
     @property
     def start_ns(self) -> int:
@@ -230,7 +230,7 @@ class Playback:
         return self.position_ns if self._target_ns is None else self._target_ns
 
     def _begin_landing(self) -> None:
-        self._output.tell_time(self._aim())
+        self._output.publish_time(self._aim())
         asyncio.get_running_loop().call_soon(self._land)
 
     def _land(self) -> None:
@@ -243,8 +243,8 @@ class Playback:
         except LinkwrightError as error:
             self._fail(error)
             return
-        self._output.tell_time(self.position_ns)
-        self.begin_anew()
+        self._output.publish_time(self.position_ns)
+        self.on_reset()
         for message in state:
             self._output.publish(*message)
         self._ticked_ns = self._steady_ns()
@@ -277,7 +277,7 @@ class Playback:
 
     def _show_until(self, stamp_ns: int) -> None:
         """Publish the messages up to a time, or as many as go in one turn."""
-        self._output.tell_time(stamp_ns)
+        self._output.publish_time(stamp_ns)
         if self._next is None:
             self._next = next(self._stream, None)  # a recording in progress has grown
         size = 0

@@ -92,7 +92,7 @@ class PublishedRecording:
         publishers = [*self._publishers.items(), *self._doubles.items()]
         return frozenset(name for name, each in publishers if each.get_subscription_count())
 
-    def tell_time(self, stamp_ns: int) -> None:
+    def publish_time(self, stamp_ns: int) -> None:
         """Publish on ``/clock``."""
         self._clock.publish(self._clock.msg_type(clock=Time.from_nanoseconds(stamp_ns)))
 

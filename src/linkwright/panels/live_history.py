@@ -40,7 +40,7 @@ class LiveHistory:
 
     Attributes:
         live: whether the present is shown.
-        begin_anew: called when time goes back, so that displays forget what they show.
+        on_reset: called when time goes back, so that displays forget what they show.
         changed: called when `live` has changed.
     """
 
@@ -51,7 +51,7 @@ class LiveHistory:
         self._known: set[Subscription[Any]] = set()
         self._went_back = False
         self.live = True
-        self.begin_anew: Callable[[], object] = lambda: None
+        self.on_reset: Callable[[], object] = lambda: None
         self.changed: Callable[[], object] = lambda: None
         self.most_bytes = most_bytes
         self._failed = failed
@@ -73,7 +73,7 @@ class LiveHistory:
         from linkwright.bag.playback import Playback
 
         made = Playback(self._handle, self.history, self, self._failed)
-        made.begin_anew = self._begin_anew
+        made.on_reset = self._reset
         made.changed.append(self.changed)
         return made
 
@@ -181,10 +181,10 @@ class LiveHistory:
     # --- the output of the playback ---------------------------------------------------------------------------
 
     def wanted(self) -> frozenset[str]:
-        """Return the topics that the viewer is subscribed to, except the clock, which `tell_time` sets."""
+        """Return the topics that the viewer is subscribed to, except the clock, which `publish_time` sets."""
         return frozenset(subscription.name for subscription in self._subscriptions()) - {CLOCK_TOPIC}
 
-    def tell_time(self, stamp_ns: int) -> None:
+    def publish_time(self, stamp_ns: int) -> None:
         """Set the viewer's clock to a time, or publish the simulated time of then."""
         if self.live:
             return
@@ -256,16 +256,16 @@ class LiveHistory:
         for message in self.history.state_at({subscription.name for subscription in fresh} - {CLOCK_TOPIC}, position):
             self._give(fresh, *message)
 
-    def _begin_anew(self) -> None:
+    def _reset(self) -> None:
         if not self.live:
             self._known = set(self._subscriptions())
-            self.begin_anew()
+            self.on_reset()
 
     def _show_present(self) -> None:
         if self.live:
             return
         if self._went_back:
-            self.begin_anew()
+            self.on_reset()
         subscriptions = self._subscriptions()
         with self._lock:
             for message in self.history.state_at(

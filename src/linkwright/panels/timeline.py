@@ -89,7 +89,7 @@ class TimelineFeature(PageFeature):
         if findings := [*bag.findings, *untyped(bag)]:
             self._problem = in_one_line(findings)
         self._recorded = playback
-        playback.begin_anew = self._begin_anew
+        playback.on_reset = self._reset
         playback.changed.append(self._changed)
         self.context.graph_changes.watch(playback.review)
         self.context.pages.publish(self._timeline)
@@ -98,7 +98,7 @@ class TimelineFeature(PageFeature):
     def keep(self, most_bytes: int) -> LiveHistory:
         """Store messages of the last minutes, up to so many bytes, for pages; returns the history."""
         self._live = LiveHistory(self.context, most_bytes, self.failed)
-        self._live.begin_anew = self._begin_anew
+        self._live.on_reset = self._reset
         self._live.changed = self._changed
         return self._live
 
@@ -178,7 +178,7 @@ class TimelineFeature(PageFeature):
 
     # -----------------------------------------------------------------------------------------------------------
 
-    def _begin_anew(self) -> None:
+    def _reset(self) -> None:
         """Drop the displayed and queued messages: they belong to another time."""
         for subscription in self.context.node.subscriptions:
             subscription.discard()

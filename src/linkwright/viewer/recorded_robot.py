@@ -93,9 +93,9 @@ class PlacedRobot:
             topics |= {topic for topic in (self._description, self._joint_states) if topic is not None}
         return topics
 
-    def tell_time(self, stamp_ns: int) -> None:
+    def publish_time(self, stamp_ns: int) -> None:
         """Publish a time on ``/clock``."""
-        self._recording.tell_time(stamp_ns)
+        self._recording.publish_time(stamp_ns)
 
     def publish(self, topic: str, stamp_ns: int, data: bytes) -> None:
         """Publish a message, and the transforms that it changes."""

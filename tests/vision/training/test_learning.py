@@ -181,7 +181,7 @@ def test_as_it_learns_it_says_nearly_the_same_because_its_statistics_are_measure
     assert (found - wanted).abs().mean() < 0.2 * wanted.std()
 
 
-def test_classes_of_a_file_keep_their_weights_by_their_names_and_others_begin_anew(exported):
+def test_classes_of_a_file_keep_their_weights_by_their_names_and_others_start_at_random(exported):
     other, file = exported
     network, image = Network(Shape(2, 4)), torch.rand(1, 3, 64, 64)
     load_weights(network, ("ring", "square"), file, [torch.rand(8, 3, 64, 64)])

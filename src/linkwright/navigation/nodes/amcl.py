@@ -216,9 +216,9 @@ class AmclNode(ManagedNode):
         """Initialise the particles around a pose; if it is unknown, around the origin of the map."""
         self._pose, self._covariance = pose, covariance
         self._filter.begin_at(pose or (0.0, 0.0, 0.0), covariance)
-        self._begin_anew()
+        self._reset()
 
-    def _begin_anew(self) -> None:
+    def _reset(self) -> None:
         self._begun = self._forced = False
         self._measured = self._misfits = 0
 
@@ -338,7 +338,7 @@ class AmclNode(ManagedNode):
             return response
         self.get_logger().info("Initializing with uniform distribution")
         self._filter.begin(self._map.random_poses(self._settings.filter.max_particles, self._filter.random))
-        self._begin_anew()
+        self._reset()
         self._pose = self._pose or (0.0, 0.0, 0.0)
         self.get_logger().info("Global initialisation done!")
         return response

@@ -114,7 +114,7 @@ class InteractiveMarkerClient:
         self._look = asyncio.get_running_loop().call_later(_PERIOD, self._watch)
         there = self._service.service_is_ready()
         if not there and (self._sequence is not None or self._request is not None):
-            self._begin_anew()
+            self._reset()
         if not there:
             self._events.status(
                 "warn", phrase("Service is not available: {name}", name=f"{self._namespace}/get_interactive_markers")
@@ -146,7 +146,7 @@ class InteractiveMarkerClient:
             return  # the first answer includes it already
         expected = self._sequence + (1 if update.type == _UPDATE else 0)
         if update.seq_num != expected:
-            self._begin_anew()
+            self._reset()
             self._events.status(
                 "warn",
                 phrase(
@@ -158,7 +158,7 @@ class InteractiveMarkerClient:
             self._sequence = update.seq_num
             self._events.update(update)
 
-    def _begin_anew(self) -> None:
+    def _reset(self) -> None:
         self._sequence = self._request = None
         self._early.clear()
         self._events.gone()
