@@ -127,11 +127,11 @@ def test_noise_is_kept_as_it_is() -> None:
 
 
 def test_what_was_dropped_before_it_was_packed_does_no_harm(monkeypatch: pytest.MonkeyPatch) -> None:
-    go_on = threading.Event()
+    proceed = threading.Event()
     compress = shrinking._zstd().compress
 
     def slow(data: bytes, level: int) -> bytes:
-        go_on.wait(10)
+        proceed.wait(10)
         return bytes(compress(data, level))
 
     monkeypatch.setattr(shrinking._zstd(), "compress", slow)
@@ -139,7 +139,7 @@ def test_what_was_dropped_before_it_was_packed_does_no_harm(monkeypatch: pytest.
     for shade in range(5):
         history.add("/camera", image(shade))
     assert history.size == 2 * 200_200, "one, and the one before it"
-    go_on.set()
+    proceed.set()
     packed(history, 210_000)
     assert [data[0] for _, _, data in history.messages(["/camera"], 0)] == [4]
     history.close()

@@ -52,7 +52,7 @@ class House(SteppedSimulation):
         BtNavigator(self.graph, self._options("bt_navigator"))
         self._kind = get_action("nav2_msgs/action/NavigateToPose")
         self._client = ActionClient(self.node, self._kind, "navigate_to_pose")
-        self.go_on(3.0)
+        self.advance_and_watch(3.0)
         return self
 
     def _options(self, name: str, costmap: str = "", **more: Any) -> NodeOptions:
@@ -63,7 +63,7 @@ class House(SteppedSimulation):
                 options.for_others.set(f"/{costmap}/{costmap}", key, value)
         return options
 
-    def go_on(self, seconds: float) -> None:
+    def advance_and_watch(self, seconds: float) -> None:
         """Let time pass, and note what mbot's body and wheels touch but the ground."""
         for _ in range(round(seconds / STEP)):
             self.advance(STEP)
@@ -94,7 +94,7 @@ class House(SteppedSimulation):
         """Go to a pose; what became of it."""
         results = self.send(x, y, yaw)
         for _ in range(round(seconds)):
-            self.go_on(1.0)
+            self.advance_and_watch(1.0)
             if results:
                 return GoalStatus(results[0].status)
         return GoalStatus.EXECUTING

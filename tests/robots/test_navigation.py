@@ -52,14 +52,14 @@ def test_it_goes_through_a_door_and_is_stopped():
         assert house.go_to(-1.9, 1.6, 1.57) == GoalStatus.SUCCEEDED
         assert math.dist(house.place(), (-1.9, 1.6)) < 0.3
         results = house.send(0.0, 0.0)
-        house.go_on(3.0)
+        house.advance_and_watch(3.0)
         before = house.place()
         house.goal.cancel_goal_async()
-        house.go_on(2.0)
+        house.advance_and_watch(2.0)
         assert results[0].status == GoalStatus.CANCELED
         after = house.place()
         assert math.dist(before, after) < 0.3
-        house.go_on(1.0)
+        house.advance_and_watch(1.0)
         assert math.dist(after, house.place()) < 0.01, "it stands still"
         assert house.touched == set()
 
@@ -67,7 +67,7 @@ def test_it_goes_through_a_door_and_is_stopped():
 def test_what_it_touches_is_noticed():
     with House() as house:
         house.drive(0.5)
-        house.go_on(5.0)
+        house.advance_and_watch(5.0)
         assert house.touched == {"walls::link::wall_13#collision"}
 
 
@@ -82,10 +82,10 @@ def test_a_goal_in_a_wall_is_refused_with_a_reason():
 def test_an_obstacle_that_appears_on_the_way_is_driven_around():
     with House() as house:
         results = house.send(-3.2, 0.0)
-        house.go_on(2.0)
+        house.advance_and_watch(2.0)
         house.spawn(GAZEBO_PACKAGE / "models" / "crate" / "model.sdf", "crate", pose=(-1.6, 0.0, 0.0, 0.0, 0.0, 0.0))
         for _ in range(90):
-            house.go_on(1.0)
+            house.advance_and_watch(1.0)
             if results:
                 break
         assert results, house.said()[-5:]

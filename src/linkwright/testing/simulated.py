@@ -360,7 +360,7 @@ class _Progress:
     def pause(self) -> None:
         self.paused = True
 
-    def go_on(self) -> None:
+    def resume(self) -> None:
         self.paused = False
 
     def step(self, count: int) -> None:

@@ -29,7 +29,7 @@ class Robot:
         assert self.manager.configure("arm")
         assert self.manager.switch(["arm"], [], STRICT)[0]
 
-    async def go_on(self, seconds: float) -> None:
+    async def advance(self, seconds: float) -> None:
         for _ in range(round(seconds * 100)):
             await self.graph.settle()
             self.time_ns += 10_000_000
@@ -46,12 +46,12 @@ class Robot:
 
 async def test_it_holds_where_it_is_and_follows_a_trajectory(graph):
     arm = Robot(graph)
-    await arm.go_on(0.1)
+    await arm.advance(0.1)
     assert arm.positions() == [0.2, 0.0]
     asked = arm.ask((1.0, [1.2, -1.0]))
-    await arm.go_on(0.5)
+    await arm.advance(0.5)
     assert arm.positions() == pytest.approx([0.7, -0.5], abs=0.021)
-    await arm.go_on(0.6)
+    await arm.advance(0.6)
     assert asked.status == SUCCEEDED
     assert arm.positions() == [1.2, -1.0]
 
@@ -59,12 +59,12 @@ async def test_it_holds_where_it_is_and_follows_a_trajectory(graph):
 async def test_a_goal_is_canceled_on_the_event_loop_too(graph):
     arm = Robot(graph)
     asked = arm.ask((1.0, [1.2, 1.0]))
-    await arm.go_on(0.5)
+    await arm.advance(0.5)
     asked.cancel()
-    await arm.go_on(0.1)
+    await arm.advance(0.1)
     assert asked.status == CANCELED
     held = arm.positions()
-    await arm.go_on(0.5)
+    await arm.advance(0.5)
     assert arm.positions() == pytest.approx(held)
     assert held[0] == pytest.approx(0.7, abs=0.03)
 
@@ -72,15 +72,15 @@ async def test_a_goal_is_canceled_on_the_event_loop_too(graph):
 async def test_a_goal_ends_when_its_controller_is_deactivated_and_another_may_follow(graph):
     arm = Robot(graph)
     first = arm.ask((1.0, [1.2, 1.0]))
-    await arm.go_on(0.5)
+    await arm.advance(0.5)
     assert arm.manager.switch([], ["arm"], STRICT)[0]
-    await arm.go_on(0.1)
+    await arm.advance(0.1)
     assert first.status == CANCELED
     late = arm.ask((1.0, [0.0, 0.0]))
-    await arm.go_on(0.1)
+    await arm.advance(0.1)
     assert late.accepted is False
     assert arm.manager.switch(["arm"], [], STRICT)[0]
     second = arm.ask((0.5, [0.0, 0.0]))
-    await arm.go_on(0.7)
+    await arm.advance(0.7)
     assert second.status == SUCCEEDED
     assert arm.positions() == [0.0, 0.0]

@@ -12,7 +12,7 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.loading import extensions
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions
-from tests.control.manager.test_ros2_control_node import ask, go_on
+from tests.control.manager.test_ros2_control_node import advance, ask
 from tests.control.robots import joint, robot
 
 State = get_message("lifecycle_msgs/msg/State")
@@ -90,11 +90,11 @@ async def test_its_controllers_stop_the_others_go_on_and_it_can_be_activated_aga
     wanted = {each: node.create_publisher(array, f"/{each}/commands", 10) for each in ("hips", "knees")}
     for each in wanted.values():
         each.publish(array(data=[2.0]))
-    await go_on(graph, clock, 3)
+    await advance(graph, clock, 3)
     assert arm.sent == 2.0
 
     arm.wrong = wrong
-    await go_on(graph, clock, 3)
+    await advance(graph, clock, 3)
     listed = (await ask(graph, node, "list_controllers")).controller
     assert {each.name: each.state for each in listed} == {"hips": "inactive", "knees": "active"}
     components = (await ask(graph, node, "list_hardware_components")).component
@@ -108,7 +108,7 @@ async def test_its_controllers_stop_the_others_go_on_and_it_can_be_activated_aga
     assert first.endswith("the cable is out")
     assert second == ("Deactivating controllers : [ hips ] as their hardware components failed: [ arm ]")
     wanted["knees"].publish(array(data=[3.0]))
-    await go_on(graph, clock, 2)
+    await advance(graph, clock, 2)
     leg = running._manager.resources.components["leg"]
     assert [command.value for command in leg.commands] == [3.0]
 
@@ -119,5 +119,5 @@ async def test_its_controllers_stop_the_others_go_on_and_it_can_be_activated_aga
     assert (await ask(graph, node, "set_hardware_component_state", **set_state)).ok
     assert (await ask(graph, node, "switch_controller", activate_controllers=["hips"], strictness=2)).ok
     wanted["hips"].publish(array(data=[1.0]))
-    await go_on(graph, clock, 3)
+    await advance(graph, clock, 3)
     assert (arm.sent, arm.life) == (1.0, ("on", "error", "on"))

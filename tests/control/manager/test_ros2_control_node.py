@@ -41,7 +41,7 @@ async def ask(graph, node, service, **fields):
     return future.result()
 
 
-async def go_on(graph, clock, count):
+async def advance(graph, clock, count):
     for _ in range(count):
         await clock.advance(0.01)
         await graph.settle()
@@ -67,7 +67,7 @@ async def test_controllers_run_by_services_and_topics(graph, clock, tmp_path, sa
         graph, node, "switch_controller", activate_controllers=["broadcaster", "positions"], strictness=2
     )
     assert switched.ok, switched.message
-    await go_on(graph, clock, 2)
+    await advance(graph, clock, 2)
     assert list(states[-1].position) == [0.5, 0.0]
     listed = (await ask(graph, node, "list_controllers")).controller
     assert [(each.name, each.state, list(each.claimed_interfaces)) for each in listed] == [
@@ -103,7 +103,7 @@ async def test_remappings_of_the_process_reach_controllers(graph, clock, tmp_pat
         await ask(graph, node, "configure_controller", name=name)
     await ask(graph, node, "switch_controller", activate_controllers=["broadcaster", "positions"], strictness=2)
     wanted.publish(wanted.msg_type(data=[1.0, -1.0]))
-    await go_on(graph, clock, 3)
+    await advance(graph, clock, 3)
     assert list(states[-1].position) == [1.0, -1.0]
     running.close()
 

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.control.hardware.timing import Timing
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
-from tests.control.manager.test_ros2_control_node import CONTROL, ask, go_on, start
+from tests.control.manager.test_ros2_control_node import CONTROL, advance, ask, start
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -34,7 +34,7 @@ async def test_they_are_published_each_second_while_somebody_listens(graph, cloc
     assert (await ask(graph, node, "load_controller", name="broadcaster")).ok
     assert (await ask(graph, node, "configure_controller", name="broadcaster")).ok
     assert (await ask(graph, node, "switch_controller", activate_controllers=["broadcaster"], strictness=2)).ok
-    await go_on(graph, clock, 150)
+    await advance(graph, clock, 150)
     loaded = running._manager.controllers["broadcaster"]
     assert loaded.timing is None
     values, full, names = [], [], []
@@ -42,7 +42,7 @@ async def test_they_are_published_each_second_while_somebody_listens(graph, cloc
     subscription = node.create_subscription(f"{kind}Values", "/controller_manager/statistics/values", values.append, 10)
     node.create_subscription(f"{kind}Names", "/controller_manager/statistics/names", names.append, LATCHED)
     listening = node.create_subscription(kind, "/controller_manager/statistics/full", full.append, 10)
-    await go_on(graph, clock, 250)
+    await advance(graph, clock, 250)
     assert loaded.timing is not None
     assert len(names) == 1
     assert len(names[0].names) == len(values[-1].values)
@@ -54,7 +54,7 @@ async def test_they_are_published_each_second_while_somebody_listens(graph, cloc
     assert told["arm.stats/write_cycle/execution_time/min"] >= 0.0
     for each in (subscription, listening):
         node.destroy_subscription(each)
-    await go_on(graph, clock, 150)
+    await advance(graph, clock, 150)
     assert loaded.timing is None
 
 

@@ -83,7 +83,7 @@ class Arm:
         """Start the controller; ``wait`` is what passes in the world after each call, in s."""
         node = self.graph.create_node("robot_state_publisher")
         node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data=description(kind)))
-        await self.go_on(wait / 2)
+        await self.advance(wait / 2)
         for service, fields in (
             ("LoadController", {"name": "arm"}),
             ("ConfigureController", {"name": "arm"}),
@@ -92,10 +92,10 @@ class Arm:
             asked = get_service(f"controller_manager_msgs/srv/{service}")
             name = service.replace("Controller", "_controller").lower()
             future = self.node.create_client(asked, f"/controller_manager/{name}").call_async(asked.Request(**fields))
-            await self.go_on(wait)
+            await self.advance(wait)
             assert future.result().ok, service
 
-    async def go_on(self, seconds: float) -> None:
+    async def advance(self, seconds: float) -> None:
         """Let time pass in chunks, between which messages are handed over."""
         left = round(seconds * SECOND)
         while True:
@@ -132,14 +132,14 @@ async def test_an_arm_follows_a_trajectory_against_gravity(kind, tmp_path):
         states: list[Any] = []
         graph.create_node("listener").create_subscription(STATE, "/arm/controller_state", states.append, 10)
         asked = arm.ask((2.0, [-0.6, 0.9], [0.0, 0.0]))
-        await arm.go_on(2.5)
+        await arm.advance(2.5)
         assert asked.status == SUCCEEDED, asked.result
         assert arm.positions() == pytest.approx([-0.6, 0.9], abs=0.02)
         errors = [abs(error) for state in states for error in state.error.positions]
         assert max(errors) < 0.2
         wanted = [state.reference.positions[1] for state in states]
         assert max(wanted) == pytest.approx(0.9, abs=0.01)
-        await arm.go_on(1.0)
+        await arm.advance(1.0)
         assert arm.positions() == pytest.approx([-0.6, 0.9], abs=0.02)
 
 
@@ -148,11 +148,11 @@ async def test_a_goal_that_is_canceled_stops_the_arm(tmp_path):
         arm = Arm(server, graph)
         await arm.begin("position")
         asked = arm.ask((2.0, [-0.6, 0.9]))
-        await arm.go_on(1.0)
+        await arm.advance(1.0)
         asked.cancel()
-        await arm.go_on(0.1)
+        await arm.advance(0.1)
         held = arm.positions()
-        await arm.go_on(1.0)
+        await arm.advance(1.0)
         assert asked.status == CANCELED
         assert arm.positions() == pytest.approx(held, abs=0.01)
         assert held == pytest.approx([-0.3, 0.45], abs=0.05)
@@ -164,7 +164,7 @@ async def test_the_same_trajectory_gives_the_same_bits(tmp_path):
             arm = Arm(server, graph)
             await arm.begin("effort")
             arm.ask((1.0, [-0.3, 0.4]))
-            await arm.go_on(1.5)
+            await arm.advance(1.5)
             return arm.positions()
 
     assert await run() == await run()

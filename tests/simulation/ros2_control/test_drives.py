@@ -133,7 +133,7 @@ class Drive(Controlled):
         """Tell a velocity as often as it has to be, for so long."""
         for _ in range(round(seconds / 0.1)):
             self._publisher.publish(stamped(self.server.simulation.time, *velocity))
-            await self.go_on(0.1)
+            await self.advance(0.1)
 
     @property
     def truth(self) -> PlanarPose:
@@ -160,7 +160,7 @@ async def driven(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
         drive = Drive(server, graph, robot)
         await drive.describe(robot.described(hardware))
         await drive.start("base")
-        await drive.go_on(0.5)
+        await drive.advance(0.5)
         yield drive
         assert not [each.text for each in log if each.level.name in ("WARN", "ERROR")]
 
@@ -169,7 +169,7 @@ async def driven(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
 async def test_five_metres_straight(robot, tmp_path):
     async with driven(robot, tmp_path) as drive:
         await drive.drive(5.0, 1.0)
-        await drive.go_on(1.0)
+        await drive.advance(1.0)
         truth, odometry = drive.truth, drive.odometry
         assert odometry.x == pytest.approx(5.0 + TIMEOUT / 2.0, abs=0.02)
         assert (truth.x, truth.y) == pytest.approx((odometry.x, 0.0), abs=0.05)
@@ -179,7 +179,7 @@ async def test_five_metres_straight(robot, tmp_path):
 async def test_an_arc(robot, tmp_path):
     async with driven(robot, tmp_path) as drive:
         await drive.drive(6.0, 0.4, 0.3)
-        await drive.go_on(1.0)
+        await drive.advance(1.0)
         truth, odometry = drive.truth, drive.odometry
         assert odometry.yaw == pytest.approx(0.3 * (6.0 + TIMEOUT / 2.0), abs=0.05)
         assert (odometry.x, odometry.y, odometry.yaw) == pytest.approx((truth.x, truth.y, truth.yaw), abs=0.04)
@@ -189,11 +189,11 @@ async def test_an_arc(robot, tmp_path):
 async def test_a_robot_stops_when_commands_stop(robot, tmp_path):
     async with driven(robot, tmp_path) as drive:
         await drive.drive(1.0, 0.5)
-        await drive.go_on(0.09)
+        await drive.advance(0.09)
         moving = drive.truth
-        await drive.go_on(1.0)
+        await drive.advance(1.0)
         stopped = drive.truth
-        await drive.go_on(0.5)
+        await drive.advance(0.5)
         assert 0.0 < stopped.x - moving.x < 0.1
         assert drive.truth.x == pytest.approx(stopped.x, abs=1e-3)
 

@@ -44,16 +44,16 @@ async def test_a_joint_that_takes_efforts_is_held_while_no_controller_has_it_and
         world = Controlled(server, graph)
         await world.describe(text)
         server.simulation.push("mbot::left_wheel", (0.0, 0.0, 0.0), (0.0, 0.01, 0.0), by="test")
-        await world.go_on(0.3)
+        await world.advance(0.3)
         assert angle(server) == pytest.approx(0.0, abs=0.01)
         await world.start("arm")
         begin = angle(server)
         await world.command(0.01, topic="/arm/commands")
-        await world.go_on(0.3)
+        await world.advance(0.3)
         assert angle(server) - begin > way
         assert (await world.ask("switch_controller", deactivate_controllers=["arm"], strictness=2)).ok
         stopped = angle(server)
-        await world.go_on(0.5)
+        await world.advance(0.5)
         assert angle(server) == pytest.approx(stopped, abs=0.3)
 
 
@@ -64,7 +64,7 @@ async def test_with_hold_joints_false_it_turns_as_it_will(written, kind, way):
         world = Controlled(server, graph)
         await world.describe(description(wheel("left_joint", kind)))
         server.simulation.push("mbot::left_wheel", (0.0, 0.0, 0.0), (0.0, 0.01, 0.0), by="test")
-        await world.go_on(0.3)
+        await world.advance(0.3)
         assert angle(server) > way
 
 
@@ -75,7 +75,7 @@ async def test_with_a_gain_a_position_is_approached_by_a_part_of_what_is_missing
         await world.describe(description(wheel("left_joint", "position")))
         await world.start("arm")
         await world.command(1.0, topic="/arm/commands")
-        await world.go_on(0.08)
+        await world.advance(0.08)
         assert 0.3 < angle(server) < 1.0 - 0.9**10  # and 0.9 without the gain
-        await world.go_on(1.0)
+        await world.advance(1.0)
         assert angle(server) == pytest.approx(1.0, abs=0.01)

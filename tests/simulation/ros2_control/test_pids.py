@@ -45,15 +45,15 @@ async def test_a_pid_controller_brings_a_joint_to_its_command_and_ends_with_the_
         await world.start("arm")
         server.simulation.push("mbot::base_link", (0.0, 0.0, 40.0), by="test")  # the wheels are in the air
         await world.command(1.5, topic="/arm/commands")
-        await world.go_on(0.02)
+        await world.advance(0.02)
         position, velocity = server.simulation.joint_state("mbot::left_joint")
         assert 0.0 < (position if kind == "position" else velocity) < 1.2  # pushed, and not put there
-        await world.go_on(2.0)
+        await world.advance(2.0)
         position, velocity = server.simulation.joint_state("mbot::left_joint")
         assert (position if kind == "position" else velocity) == pytest.approx(1.5, abs=0.15)
         assert [each.text for each in log if each.level >= LogLevel.ERROR] == []
         assert (await world.ask("switch_controller", deactivate_controllers=["arm"], strictness=2)).ok
-        await world.go_on(1.0)
+        await world.advance(1.0)
         assert server.simulation.joint_state("mbot::left_joint")[1] == pytest.approx(0.0, abs=0.05)
 
 

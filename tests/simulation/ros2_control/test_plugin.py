@@ -58,9 +58,9 @@ class Controlled:
 
     async def describe(self, text: str, topic: str = "/robot_description") -> None:
         self.node.create_publisher(String, topic, DESCRIPTION_QOS).publish(String(text))
-        await self.go_on(0.01)
+        await self.advance(0.01)
 
-    async def go_on(self, seconds: float) -> None:
+    async def advance(self, seconds: float) -> None:
         await self.graph.settle()
         self.server.advance(round(seconds * SECOND))
         await self.graph.settle()
@@ -68,7 +68,7 @@ class Controlled:
     async def ask(self, service: str, manager: str = "/controller_manager", **fields):
         kind = get_service("controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_")))
         future = self.node.create_client(kind, f"{manager}/{service}").call_async(kind.Request(**fields))
-        await self.go_on(0.01)
+        await self.advance(0.01)
         return future.result()
 
     async def start(self, *names: str, manager: str = "/controller_manager") -> None:
@@ -80,7 +80,7 @@ class Controlled:
     async def command(self, *values: float, topic: str = "/wheels/commands") -> None:
         publisher = self.node.create_publisher("std_msgs/msg/Float64MultiArray", topic, 10)
         publisher.publish(publisher.msg_type(data=list(values)))
-        await self.go_on(0.02)
+        await self.advance(0.02)
 
 
 def controlled(path, which: str = "classic", more: str = "", inside: str = "") -> str:
@@ -104,13 +104,13 @@ async def test_wheels_turn_as_they_are_told_and_stop_with_their_controller(file,
         await world.describe(description(wheel("left_joint") + wheel("right_joint"), PLUGINS[which][2]))
         await world.start("broadcaster", "wheels")
         await world.command(2.0, 2.0)
-        await world.go_on(2.0)
+        await world.advance(2.0)
         assert states.last.name == ["left_joint", "right_joint"]
         assert list(states.last.velocity) == pytest.approx([2.0, 2.0], abs=0.05)
         before = server.simulation.model_pose("mbot")[0]
         assert before > 0.15
         assert (await world.ask("switch_controller", deactivate_controllers=["wheels"], strictness=2)).ok
-        await world.go_on(0.5)
+        await world.advance(0.5)
         assert list(states.last.velocity) == pytest.approx([0.0, 0.0], abs=0.05)
         assert not [each.text for each in log if each.level.name in ("WARN", "ERROR")]
 
@@ -122,7 +122,7 @@ async def test_servos_of_all_joints_come_with_one_new_model_and_each_holds_its_j
         wheels = wheel("left_joint", "position", "0.5") + wheel("right_joint", "position", "-0.4")
         await world.describe(description(wheels))
         assert server.simulation.revision == before + 1
-        await world.go_on(0.5)
+        await world.advance(0.5)
         positions = [server.simulation.joint_state(f"mbot::{side}_joint")[0] for side in ("left", "right")]
         assert positions == pytest.approx([0.5, -0.4], abs=0.01)
 
@@ -140,7 +140,7 @@ async def test_positions_are_held_from_their_initial_values_on(file, tmp_path):
         assert server.simulation.joint_state("mbot::left_joint")[0] == pytest.approx(0.5, abs=0.01)
         await world.start("arm")
         await world.command(-0.25, topic="/arm/commands")
-        await world.go_on(0.5)
+        await world.advance(0.5)
         assert server.simulation.joint_state("mbot::left_joint")[0] == pytest.approx(-0.25, abs=0.01)
 
 
@@ -157,7 +157,7 @@ async def test_efforts_push_and_are_measured(file, tmp_path):
         await world.describe(description(wheel("left_joint", "effort")))
         await world.start("arm", "broadcaster")
         await world.command(0.01, topic="/arm/commands")
-        await world.go_on(0.2)
+        await world.advance(0.2)
         assert list(states.last.effort) == pytest.approx([0.01])
         assert server.simulation.joint_state("mbot::left_joint")[1] > 0.05
 
@@ -170,7 +170,7 @@ async def test_an_imu_is_hardware_too(file):
         states = Recording(graph, server.node, "/dynamic_joint_states")
         await world.describe(description(wheel("left_joint") + sensor))
         await world.start("broadcaster")
-        await world.go_on(0.5)
+        await world.advance(0.5)
         values = dict(zip(states.last.joint_names, states.last.interface_values, strict=True))["imu"]
         assert values.interface_names == ["orientation.w", "linear_acceleration.z"]
         assert list(values.values) == pytest.approx([1.0, 9.8], abs=0.05)
@@ -210,9 +210,9 @@ async def test_a_reset_goes_on_with_what_is_active(file):
         await world.describe(description(wheel("left_joint") + wheel("right_joint")))
         await world.start("broadcaster", "wheels")
         await world.command(2.0, 2.0)
-        await world.go_on(0.5)
+        await world.advance(0.5)
         server.reset()
-        await world.go_on(1.0)
+        await world.advance(1.0)
         assert states.last.header.stamp.sec == 1
         assert list(states.last.velocity) == pytest.approx([2.0, 2.0], abs=0.05)
         assert not any(isnan(each) for each in states.last.effort)
@@ -224,7 +224,7 @@ async def test_the_manager_goes_with_its_robot(file):
         await world.describe(description(wheel("left_joint") + wheel("right_joint")))
         await world.start("broadcaster", "wheels")
         server.delete("mbot")
-        await world.go_on(0.1)
+        await world.advance(0.1)
         assert graph.node_names() == ["/audience", "/gazebo"]
 
 
@@ -236,11 +236,11 @@ async def test_controllers_go_on_when_the_model_is_changed(file):
         await world.start("broadcaster", "wheels")
         heavier = text.replace("<mass>", "<mass>1", 1)
         server.renew(model(heavier), "mbot")
-        await world.go_on(0.1)
+        await world.advance(0.1)
         listed = (await world.ask("list_controllers")).controller
         assert {each.name: each.state for each in listed} == {"broadcaster": "active", "wheels": "active"}
         await world.command(2.0, 2.0)
-        await world.go_on(1.0)
+        await world.advance(1.0)
         assert server.simulation.joint_state("mbot::left_joint")[1] == pytest.approx(2.0, abs=0.05)
 
 
@@ -252,7 +252,7 @@ async def test_a_robot_that_comes_anew_has_no_controllers_yet(file):
         await world.start("wheels")
         server.delete("mbot")
         server.spawn(model(text), "mbot")
-        await world.go_on(0.1)
+        await world.advance(0.1)
         assert (await world.ask("list_controllers")).controller == []
 
 

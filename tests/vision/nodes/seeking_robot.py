@@ -121,7 +121,7 @@ class SeekingRobot(SteppedSimulation):
         """What the robot has said."""
         return [said_message.data for said_message in self.said_messages]
 
-    def go_on_until_said(self, word: str, seconds: float = 60.0) -> bool:
+    def advance_until_said(self, word: str, seconds: float = 60.0) -> bool:
         """Let time pass until the robot says something with a word in it."""
         for _ in range(round(seconds / 0.5)):
             self.advance(0.5)

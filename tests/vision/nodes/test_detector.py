@@ -376,11 +376,11 @@ class Slow:
     """Has detectors loaded when it is told to."""
 
     def __init__(self, make):
-        self._make, self.go_on, self.begun = make, threading.Event(), threading.Event()
+        self._make, self.proceed, self.begun = make, threading.Event(), threading.Event()
 
     def __call__(self, model, options):
         self.begun.set()
-        assert self.go_on.wait(SECONDS)
+        assert self.proceed.wait(SECONDS)
         return self._make(model, options)
 
 
@@ -389,7 +389,7 @@ def slow(monkeypatch):
     made = Slow(detector.make_detector)
     monkeypatch.setattr(detector, "make_detector", made)
     yield made
-    made.go_on.set()
+    made.proceed.set()
 
 
 async def test_the_node_answers_while_its_detector_is_loaded(test, start, slow):
@@ -404,7 +404,7 @@ async def test_the_node_answers_while_its_detector_is_loaded(test, start, slow):
     (result,) = running.node.set_parameters([Parameter("classes", value=["red"])])
     assert (result.successful, "is being loaded" in result.reason) == (False, True)
     assert test.graph.count_subscribers("/yolo/image_raw") == 0
-    slow.go_on.set()
+    slow.proceed.set()
     await eventually(running.loaded.done)
     await test.settle()
     assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
@@ -419,7 +419,7 @@ async def test_classes_that_are_chosen_while_the_detector_is_loaded_count_when_i
     answers = [client.call_async(choose.Request(classes=[name])) for name in ("rd", "red")]
     await test.settle()
     assert not any(answer.done() for answer in answers)
-    slow.go_on.set()
+    slow.proceed.set()
     await eventually(lambda: all(answer.done() for answer in answers))
     assert [answer.result().success for answer in answers] == [False, True]
     assert "did you mean 'red'?" in answers[0].result().message

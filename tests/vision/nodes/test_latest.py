@@ -10,11 +10,11 @@ from tests.waiting import SECONDS, wait_until
 
 def test_what_comes_while_it_works_waits_and_only_the_latest_of_it():
     done: list[int] = []
-    begun, go_on = threading.Event(), threading.Event()
+    begun, proceed = threading.Event(), threading.Event()
 
     def work(item: int) -> None:
         begun.set()
-        assert go_on.wait(SECONDS)
+        assert proceed.wait(SECONDS)
         done.append(item)
 
     worker = LatestWorker(lambda: work, "slow")
@@ -22,7 +22,7 @@ def test_what_comes_while_it_works_waits_and_only_the_latest_of_it():
     assert begun.wait(SECONDS)
     for item in range(1, 50):
         worker.offer(item)
-    go_on.set()
+    proceed.set()
     wait_until(lambda: len(done) == 2)
     worker.close()
     assert done == [0, 49]
@@ -30,11 +30,11 @@ def test_what_comes_while_it_works_waits_and_only_the_latest_of_it():
 
 def test_at_its_end_the_work_at_hand_is_waited_for_and_the_rest_left():
     done: list[int] = []
-    begun, go_on = threading.Event(), threading.Event()
+    begun, proceed = threading.Event(), threading.Event()
 
     def work(item: int) -> None:
         begun.set()
-        assert go_on.wait(SECONDS)
+        assert proceed.wait(SECONDS)
         done.append(item)
 
     worker = LatestWorker(lambda: work, "slow")
@@ -44,7 +44,7 @@ def test_at_its_end_the_work_at_hand_is_waited_for_and_the_rest_left():
     closing = threading.Thread(target=worker.close)
     closing.start()
     wait_until(lambda: not worker.waits)
-    go_on.set()
+    proceed.set()
     closing.join(SECONDS)
     worker.offer(2)
     assert done == [0]

@@ -76,4 +76,4 @@ def test_a_stop_cancels_the_goal(tmp_path):
 def test_without_nav2_it_drives_itself(tmp_path):
     with SeekingRobot(tmp_path, (1.5, 0.0), seeker={"use_nav2": True}) as test:
         test.tell("/vision/go_to", "ball")
-        assert test.go_on_until_said("I am at the ball")
+        assert test.advance_until_said("I am at the ball")

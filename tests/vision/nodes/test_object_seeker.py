@@ -16,7 +16,7 @@ TRIGGER = get_service("std_srvs/srv/Trigger")
 def test_it_goes_to_the_ball(tmp_path, ball):
     with SeekingRobot(tmp_path, ball) as test:
         test.tell("/vision/go_to", "ball")
-        assert test.go_on_until_said("I am at the ball")
+        assert test.advance_until_said("I am at the ball")
         assert test.said() == [
             "I am looking for the ball.",
             "I see the ball, and go there.",
@@ -36,7 +36,7 @@ def test_it_goes_to_the_ball(tmp_path, ball):
 def test_it_goes_to_the_red_ball_that_its_camera_sees(tmp_path):
     with SeekingRobot(tmp_path, (1.6, -0.9), images=True, laser=True) as test:
         test.tell("/vision/go_to", "红色的球")
-        assert test.go_on_until_said("我到红色的球这里了")
+        assert test.advance_until_said("我到红色的球这里了")
         assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.08)
         described = test.call("/vision/describe", TRIGGER.Request())
         assert described.message.startswith("I see a red ball 0.")
@@ -86,7 +86,7 @@ def test_it_follows_a_ball_that_is_moved_until_it_is_told_to_stop(tmp_path):
 def test_what_is_not_there_is_not_found(tmp_path):
     with SeekingRobot(tmp_path, (2.0, 0.0)) as test:
         test.tell("/vision/go_to", "crate")
-        assert test.go_on_until_said("I cannot find the crate")
+        assert test.advance_until_said("I cannot find the crate")
         x, y, *_ = test.robot_pose()
         assert (x, y) == pytest.approx((0.0, 0.0), abs=0.02)
 
@@ -96,7 +96,7 @@ def test_what_is_lost_is_looked_for_and_given_up(tmp_path):
         test.tell("/vision/go_to", "ball")
         test.advance(2.0)
         test.hide()
-        assert test.go_on_until_said("I have lost the ball")
+        assert test.advance_until_said("I have lost the ball")
         assert test.distance() > 1.5
         assert test.commands.last.angular.z == 0.0
 
@@ -106,7 +106,7 @@ def test_a_detector_that_ends_stops_it(tmp_path):
         test.tell("/vision/go_to", "ball")
         test.advance(2.0)
         test.detector.cancel()
-        assert test.go_on_until_said("no detections arrive", 5.0)
+        assert test.advance_until_said("no detections arrive", 5.0)
         assert test.commands.last.linear.x == 0.0
         assert test.distance() > 2.0
 
@@ -120,7 +120,7 @@ def test_a_laser_sees_what_stands_in_the_way(tmp_path):
         )
         test.spawn(box, "box", pose=(1.5, 0.0, 0.3, 0.0, 0.0, 0.0))
         test.tell("/vision/go_to", "ball")
-        assert test.go_on_until_said("Something is between me and the ball")
+        assert test.advance_until_said("Something is between me and the ball")
         x, *_ = test.robot_pose()
         assert 0.8 < x < 1.2
 

@@ -41,7 +41,7 @@ class Robot:
         self.time += PERIOD
         return move
 
-    def go_on(self, seconds):
+    def advance(self, seconds):
         """The events of the next seconds, and the largest speeds."""
         moves = [self.step() for _ in range(round(seconds / PERIOD))]
         return [move.event for move in moves if move.event is not None]
@@ -52,7 +52,7 @@ def test_it_turns_until_it_sees_the_thing_and_goes_there(thing):
     seeker = Seeker()
     robot = Robot(seeker, thing)
     seeker.begin()
-    assert robot.go_on(60)[-1] is Answer.ARRIVED
+    assert robot.advance(60)[-1] is Answer.ARRIVED
     assert seeker.phase is Phase.IDLE
     surface = hypot(thing[0] - robot.x, thing[1] - robot.y) - robot.radius
     assert surface == pytest.approx(0.5, abs=0.05) or (surface < 0.5 and robot.way == 0.0)
@@ -62,7 +62,7 @@ def test_what_is_nowhere_is_not_found_after_one_turn():
     seeker = Seeker()
     robot = Robot(seeker)
     seeker.begin()
-    assert robot.go_on(60) == [Answer.NOT_FOUND]
+    assert robot.advance(60) == [Answer.NOT_FOUND]
     assert 2 * pi < robot.heading < 2 * pi + 0.5
     assert robot.way == 0.0
 
@@ -71,34 +71,34 @@ def test_what_is_lost_stops_it_and_is_looked_for():
     seeker = Seeker()
     robot = Robot(seeker, (8.0, 0.0))
     seeker.begin()
-    assert robot.go_on(3) == [Answer.FOUND]
+    assert robot.advance(3) == [Answer.FOUND]
     robot.hidden = True
     way = robot.way
-    assert robot.go_on(5) == []
+    assert robot.advance(5) == []
     assert robot.way - way < seeker.settings.speed * (seeker.settings.lost_time + 0.2)
-    assert robot.go_on(30) == [Answer.LOST]
+    assert robot.advance(30) == [Answer.LOST]
 
 
 def test_what_is_hidden_for_a_moment_is_no_loss():
     seeker = Seeker()
     robot = Robot(seeker, (3.0, 0.0))
     seeker.begin()
-    events = robot.go_on(3)
+    events = robot.advance(3)
     robot.hidden = True
-    events += robot.go_on(2)
+    events += robot.advance(2)
     robot.hidden = False
-    assert events + robot.go_on(20) == [Answer.FOUND, Answer.ARRIVED]
+    assert events + robot.advance(20) == [Answer.FOUND, Answer.ARRIVED]
 
 
 def test_a_detector_that_says_nothing_stops_it():
     seeker = Seeker()
     robot = Robot(seeker, (3.0, 0.0))
     seeker.begin()
-    robot.go_on(2)
+    robot.advance(2)
     robot.silence = 3.5
-    assert robot.go_on(1) == [Answer.BLIND]
+    assert robot.advance(1) == [Answer.BLIND]
     way = robot.way
-    robot.go_on(2)
+    robot.advance(2)
     assert robot.way == way
 
 
@@ -106,16 +106,16 @@ def test_it_waits_before_an_obstacle_and_gives_up():
     seeker = Seeker()
     robot = Robot(seeker, (3.0, 0.0))
     seeker.begin()
-    robot.go_on(2)
+    robot.advance(2)
     robot.free = 0.3
     way = robot.way
-    assert robot.go_on(3) == []
+    assert robot.advance(3) == []
     assert robot.way == way
     robot.free = inf
-    robot.go_on(1)
+    robot.advance(1)
     assert robot.way > way
     robot.free = 0.3
-    assert robot.go_on(7) == [Answer.BLOCKED]
+    assert robot.advance(7) == [Answer.BLOCKED]
 
 
 def test_the_thing_itself_is_no_obstacle():
@@ -141,5 +141,5 @@ def test_it_follows_a_thing_that_moves_until_it_is_told_to_stop():
     assert events == [Answer.FOUND]
     assert hypot(robot.thing[0] - robot.x, robot.thing[1] - robot.y) < 1.3
     seeker.stop()
-    assert robot.go_on(1) == []
+    assert robot.advance(1) == []
     assert robot.step().linear == 0.0

@@ -47,9 +47,9 @@ class SlicedWork:
         self._end_timer()
 
     def _later(self) -> None:
-        self._turn = asyncio.get_running_loop().call_soon(self._go_on)
+        self._turn = asyncio.get_running_loop().call_soon(self._resume)
 
-    def _go_on(self) -> None:
+    def _resume(self) -> None:
         self._end_timer()
         if not self._is_wanted():
             self._work.close()
@@ -59,7 +59,7 @@ class SlicedWork:
         try:
             while perf_counter() < until:
                 if next(self._work) == WAIT:
-                    self._timer = self._node.create_timer(_SECONDS_TO_WAIT, self._go_on)
+                    self._timer = self._node.create_timer(_SECONDS_TO_WAIT, self._resume)
                     return
         except StopIteration as end:
             self._done(end.value, None)

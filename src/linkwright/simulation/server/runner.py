@@ -63,7 +63,7 @@ class Runner:
         self._left = None if seconds is None else round(seconds * NANOSECONDS_PER_SECOND)
         self._watch, self._on_state, self._on_end = watch, on_state, on_end
         self._ends = False
-        server.on_change.append(self._resume)
+        server.on_change.append(self._wake)
         self._began = (0.0, 0)
         self._measured = (0.0, 0)
         self._thread = threading.Thread(target=self._run, name="linkwright-simulation", daemon=True)
@@ -83,7 +83,7 @@ class Runner:
         """Pause the simulation."""
         self._set(paused=True)
 
-    def go_on(self) -> None:
+    def resume(self) -> None:
         """Resume the simulation."""
         self._set(paused=False)
 
@@ -94,22 +94,22 @@ class Runner:
             UnstableError: a value in the simulation is not a number any more.
         """
         self._server.simulation.advance(count * self._server.simulation.step)
-        self._resume()
+        self._wake()
 
     def _set(self, *, paused: bool) -> None:
         if paused != self.paused:
             self.paused = paused
-            self._resume()
+            self._wake()
             self._on_state()
 
-    def _resume(self) -> None:
+    def _wake(self) -> None:
         """Restart counting real time, at the world's real time factor; the world may be another one."""
         self._factor = self._given_factor or max(physics_of(self._server.simulation.world).real_time_factor, 0.0) or 1.0
         self._began = self._measured = (time.monotonic(), self._server.simulation.time)
 
     def _run(self) -> None:
         exchange, dispatcher = self._server.exchange, self._server.node.graph.dispatcher
-        self._resume()
+        self._wake()
         while not self._ends:
             self._safely(exchange.work)
             wait = _IDLE

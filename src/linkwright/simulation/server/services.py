@@ -44,7 +44,7 @@ class Progress(Protocol):
     def pause(self) -> None:
         """Pause the simulation."""
 
-    def go_on(self) -> None:
+    def resume(self) -> None:
         """Resume the simulation."""
 
     def step(self, count: int) -> None:
@@ -94,7 +94,7 @@ class Services:
             ("gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", self._push),
             ("gazebo_msgs/srv/LinkRequest", "/clear_link_wrenches", self._let_go),
             ("std_srvs/srv/Empty", "/pause_physics", self._pause),
-            ("std_srvs/srv/Empty", "/unpause_physics", self._go_on),
+            ("std_srvs/srv/Empty", "/unpause_physics", self._resume),
             ("std_srvs/srv/Empty", "/reset_simulation", self._reset),
             ("std_srvs/srv/Empty", "/reset_world", self._reset),
             ("simulation_interfaces/srv/StepSimulation", "/step_simulation", self._step),
@@ -212,8 +212,8 @@ class Services:
         self._runner.pause()
         return response
 
-    def _go_on(self, _: Any, response: Any) -> Any:
-        self._runner.go_on()
+    def _resume(self, _: Any, response: Any) -> Any:
+        self._runner.resume()
         return response
 
     def _reset(self, _: Any, response: Any) -> Any:
