@@ -6,7 +6,7 @@ from typing import Any
 
 from linkwright.diagnostics import phrase
 from linkwright.graph import Node, Publisher
-from linkwright.graph.endpoints.commander import who_was_lost
+from linkwright.graph.endpoints.commander import describe_lost_publisher
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED
 
@@ -27,5 +27,5 @@ def send_stop(node: Node, publisher: Publisher[Any], lost: EndpointInfo) -> None
         message.header.stamp = node.get_clock().now().to_msg()
     publisher.publish(message)
     node.get_logger().warning(
-        phrase("{who}: a stop is sent to '{topic}'", who=who_was_lost(lost), topic=publisher.name)
+        phrase("{who}: a stop is sent to '{topic}'", who=describe_lost_publisher(lost), topic=publisher.name)
     )

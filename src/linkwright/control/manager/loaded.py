@@ -65,7 +65,7 @@ class Loaded:
         wanted = self.controller.state_interfaces()
         return [*known] if isinstance(wanted, Interfaces) else [*wanted]
 
-    def take_back_wrong_commands(self) -> str:
+    def replace_invalid_commands(self) -> str:
         """Replace commands that are not finite by the last position, or by a velocity or effort of 0.
 
         Returns:

@@ -376,7 +376,7 @@ class ControllerManager:
     def _deactivate(self, loaded: Loaded, *, halts: bool = False) -> None:
         controller = loaded.controller
         self._call(loaded, "on_deactivate", controller.on_deactivate)
-        loaded.take_back_wrong_commands()
+        loaded.replace_invalid_commands()
         if halts:
             loaded.halt()
         controller.state = INACTIVE
@@ -450,7 +450,7 @@ class ControllerManager:
             except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
                 self._fail(loaded, error)  # `_active` was replaced
                 continue
-            wrong = loaded.take_back_wrong_commands()
+            wrong = loaded.replace_invalid_commands()
             if wrong:
                 self._log_wrong_command(loaded, wrong)
         if self.limits is not None:

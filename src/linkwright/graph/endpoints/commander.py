@@ -21,42 +21,42 @@ class Commander:
     crashed or is out of reach, so it cannot replace its command. Its loss does not affect commands of other publishers.
 
     Args:
-        take_back: called with the publisher that is lost, after the last of its commands, as callbacks of its
+        revoke: called with the publisher that is lost, after the last of its commands, as callbacks of its
             subscription are.
-        drivers: receives each command of `taking`, to warn of several publishers that command at once; None for no
+        drivers: receives each command of `accepting`, to warn of several publishers that command at once; None for no
             warning.
     """
 
-    def __init__(self, take_back: Callable[[EndpointInfo], object], drivers: DriverWatch | None = None) -> None:
-        self._take_back = take_back
+    def __init__(self, revoke: Callable[[EndpointInfo], object], drivers: DriverWatch | None = None) -> None:
+        self._revoke = revoke
         self._drivers = drivers
         self._gid: bytes | None = None
 
-    def taking(self, take: Callable[[Any], object]) -> Callable[[Any, MessageInfo], object]:
+    def accepting(self, callback: Callable[[Any], object]) -> Callable[[Any, MessageInfo], object]:
         """A callback for a subscription to commands: it notes the publisher and passes the message on."""
-        return partial(self._taken, take)
+        return partial(self._accept, callback)
 
-    def obey(self, info: MessageInfo) -> None:
-        """Note the publisher of a command that arrived by another callback than those of `taking`."""
+    def note_publisher(self, info: MessageInfo) -> None:
+        """Note the publisher of a command that arrived by another callback than those of `accepting`."""
         self._gid = info.publisher_gid
 
     def watch(self, subscription: Subscription[Any]) -> None:
-        """Watch for lost publishers of a subscription, whose callback is one of `taking` or calls `obey`."""
+        """Watch for lost publishers of a subscription, whose callback is one of `accepting` or calls `note_publisher`."""
         subscription.watch_lost(self._lost)
 
-    def _taken(self, take: Callable[[Any], object], message: Any, info: MessageInfo) -> None:
-        self.obey(info)
+    def _accept(self, callback: Callable[[Any], object], message: Any, info: MessageInfo) -> None:
+        self.note_publisher(info)
         if self._drivers is not None:
             self._drivers.hear(message, info)
-        take(message)
+        callback(message)
 
     def _lost(self, publisher: EndpointInfo) -> None:
         if publisher.gid == self._gid:
             self._gid = None
-            self._take_back(publisher)
+            self._revoke(publisher)
 
 
-def who_was_lost(publisher: EndpointInfo) -> Any:
+def describe_lost_publisher(publisher: EndpointInfo) -> Any:
     """A publisher that was lost, for the log: its node, and its topic."""
     node = publisher.node.full_name if publisher.node is not None else ""
     if not node:

@@ -9,7 +9,7 @@ from typing import Any
 
 from linkwright.diagnostics import phrase
 from linkwright.graph.endpoints.base import Endpoint
-from linkwright.graph.endpoints.commander import Commander, who_was_lost
+from linkwright.graph.endpoints.commander import Commander, describe_lost_publisher
 from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.endpoints.publisher import Publisher
@@ -244,7 +244,7 @@ class SteppedNode:
         if rest is not None:
             callback = partial(self._sound, callback, rest, topic)
         received: Callable[..., object] = partial(self._received, callback)
-        return received if commander is None else commander.taking(received)
+        return received if commander is None else commander.accepting(received)
 
     def _subscribe_to(
         self,
@@ -276,7 +276,7 @@ class SteppedNode:
 
     def _rest(self, rest: Callable[[], bool], publisher: EndpointInfo) -> None:
         if rest():
-            self.logger.warning(phrase("{who}: the motion stops", who=who_was_lost(publisher)))
+            self.logger.warning(phrase("{who}: the motion stops", who=describe_lost_publisher(publisher)))
 
     def _sound(self, callback: Callable[[Any], object], rest: Callable[[], object], topic: str, message: Any) -> None:
         """Pass a command on if its numbers are finite; stop otherwise."""

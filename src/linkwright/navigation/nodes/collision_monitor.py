@@ -14,7 +14,7 @@ from typing import Any
 
 from linkwright.diagnostics import phrase
 from linkwright.graph import EndpointInfo, Subscription
-from linkwright.graph.endpoints.commander import Commander, who_was_lost
+from linkwright.graph.endpoints.commander import Commander, describe_lost_publisher
 from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
@@ -91,8 +91,8 @@ class MonitorNode(ManagedNode):
         topic = given.cmd_vel_in_topic
         for kind in velocity_types(self, topic, self._stamped):
             commander = Commander(self._on_lost, DriverWatch.of(self))
-            take = commander.taking(self._on_velocity)
-            heard: Subscription[Any] = self.create_subscription(kind, topic, take, _DEPTH)
+            callback = commander.accepting(self._on_velocity)
+            heard: Subscription[Any] = self.create_subscription(kind, topic, callback, _DEPTH)
             commander.watch(self.register(heard))
 
     def activate(self) -> None:
@@ -157,7 +157,9 @@ class MonitorNode(ManagedNode):
 
     def _on_lost(self, publisher: EndpointInfo) -> None:
         if self._output is not None and self._verdict.velocity != STILL:
-            self.get_logger().warning(str(phrase("{who}: the robot is stopped", who=who_was_lost(publisher))))
+            self.get_logger().warning(
+                str(phrase("{who}: the robot is stopped", who=describe_lost_publisher(publisher)))
+            )
             self._output.stop()
             self._verdict = Verdict(STILL)
 

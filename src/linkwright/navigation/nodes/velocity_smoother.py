@@ -14,7 +14,7 @@ from typing import Any
 
 from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.graph import Parameter, ParameterType, SetParametersResult, Subscription
-from linkwright.graph.endpoints.commander import Commander, who_was_lost
+from linkwright.graph.endpoints.commander import Commander, describe_lost_publisher
 from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
@@ -77,7 +77,7 @@ class _ManagedSmoother(ManagedNode):
         commander = Commander(self._lose, DriverWatch.of(self))
         for kind in velocity_types(self, "cmd_vel", stamped):
             heard: Subscription[Any] = self.create_subscription(
-                kind, "cmd_vel", commander.taking(self._receive), _DEPTH
+                kind, "cmd_vel", commander.accepting(self._receive), _DEPTH
             )
             commander.watch(self.register(heard))
         if self._value("feedback") == "CLOSED_LOOP":
@@ -182,7 +182,7 @@ class _ManagedSmoother(ManagedNode):
         """Decelerate to zero when the publisher of commands is lost."""
         if self._command is not None and any(self._command):
             self._command = [0.0] * len(_AXES)
-            self.get_logger().warning(phrase("{who}: the robot is stopped", who=who_was_lost(publisher)))
+            self.get_logger().warning(phrase("{who}: the robot is stopped", who=describe_lost_publisher(publisher)))
 
     def _on_odometry(self, message: Any) -> None:
         now = self.get_clock().now().nanoseconds

@@ -156,7 +156,7 @@ class _Bridge(SingleNode):
             # A bidirectional bridge receives its own messages.
             if all(info.publisher_gid != publisher.gid for publisher in self._publishers):
                 if commander is not None and drivers is not None:
-                    commander.obey(info)
+                    commander.note_publisher(info)
                     drivers.hear(message, info)
                 publishers[0].publish(convert(message))
 

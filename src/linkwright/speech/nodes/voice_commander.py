@@ -148,8 +148,8 @@ class VoiceCommander(SingleNode):
 
     def _listen_to_texts(self) -> None:
         commander = Commander(self._lost)
-        take = commander.taking(lambda message: self._execute(message.data, by_voice=False))
-        commander.watch(self._node.create_subscription(_STRING, "voice/text_input", take, _DEPTH))
+        callback = commander.accepting(lambda message: self._execute(message.data, by_voice=False))
+        commander.watch(self._node.create_subscription(_STRING, "voice/text_input", callback, _DEPTH))
 
     # --- listening -----------------------------------------------------------------------------------------------
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from linkwright.geometry.single import Transform, invert, rotate, rpy_from_quaternion
 from linkwright.graph import SENSOR_DATA_QOS, EndpointInfo, Graph
-from linkwright.graph.endpoints.commander import Commander, who_was_lost
+from linkwright.graph.endpoints.commander import Commander, describe_lost_publisher
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
@@ -70,8 +70,8 @@ class ObjectSeeker(SingleNode):
         node.create_subscription(get_message("sensor_msgs/msg/LaserScan"), "scan", self._feel, SENSOR_DATA_QOS)
         for name, language in (("", None), *((f"/{language}", language) for language in LANGUAGES)):
             for topic, follow in (("vision/go_to", False), ("vision/follow", True)):
-                take = self._commander.taking(partial(self._begin, language, follow))
-                self._commander.watch(node.create_subscription(text, topic + name, take, _DEPTH))
+                callback = self._commander.accepting(partial(self._begin, language, follow))
+                self._commander.watch(node.create_subscription(text, topic + name, callback, _DEPTH))
             answer_in = partial(self._describe, language or self._language)
             node.create_service("std_srvs/srv/Trigger", f"vision/describe{name}", answer_in)
         node.create_timer(_PERIOD, self._step)
@@ -132,7 +132,7 @@ class ObjectSeeker(SingleNode):
 
     def _commander_lost(self, publisher: EndpointInfo) -> None:
         if self._seeker.phase is not Phase.IDLE:
-            self._node.get_logger().warning(who_was_lost(publisher))
+            self._node.get_logger().warning(describe_lost_publisher(publisher))
             self._stop()
 
     def _feel(self, scan: Any) -> None:

@@ -110,7 +110,7 @@ class TwistMux(SingleNode):
         lock = self._lock_priority(now)
         open_ones = [topic for topic in self._topics if topic.priority and not self._masked(topic, lock, now)]
         if open_ones and max(open_ones, key=lambda open_one: open_one.priority) is source:
-            self._commander.obey(info)
+            self._commander.note_publisher(info)
             self._publisher.publish(message)
 
     def _lock(self, source: _Source, message: Any) -> None:
