@@ -287,7 +287,7 @@ def _view(folder: Path, count: int) -> list[str]:
         "finder, library = PackageFinder(), DescriptionLibrary()\n"
         "def load():\n"
         "    made = examine('made.urdf', packages=finder, xacro=True)\n"
-        "    snapshot_of_model(library.remember(made), made.robot, library, finder)\n"
+        "    snapshot_of_model(library.store(made), made.robot, library, finder)\n"
         "    return 0\n"
         "raise SystemExit(status_of(load))"
     )

@@ -110,7 +110,7 @@ class TestLibrary:
     def test_a_remembered_document_gives_the_places(self):
         library = DescriptionLibrary()
         document = parse("\n\n" + GOOD.replace("fixed", "fixt"), "robot.xacro")
-        library.remember(Description("robot.xacro", document, read(document)), GOOD)
+        library.store(Description("robot.xacro", document, read(document)), GOOD)
         found = library.read(GOOD).diagnostics[0]
         assert (found.span.file, found.span.line) == ("robot.xacro", 3)
 
@@ -121,7 +121,7 @@ class TestLibrary:
         (tmp_path / "robot.xacro").write_text(
             f'<robot name="r" {XACRO_PREFIX}><xacro:include filename="wheel.xacro"/></robot>'
         )
-        text = library.remember(examine(tmp_path / "robot.xacro"))
+        text = library.store(examine(tmp_path / "robot.xacro"))
         assert library.files(text) == (tmp_path / "robot.xacro", tmp_path / "wheel.xacro")
 
     def test_no_xml_is_a_reading_without_a_robot(self):

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.files.scratch_folders import ScratchFolder, forget_abandoned
+from linkwright.files.scratch_folders import ScratchFolder, remove_abandoned
 from tests.places import REPOSITORY
 
 KILLED = """
@@ -71,7 +71,7 @@ def test_what_may_be_in_use_or_is_of_others_stays(place: Path) -> None:
         (place / name).mkdir()
     (place / "another" / "file").touch()
     os.utime(place / "linkwright_test_old", (1, 1))
-    forget_abandoned(place)
+    remove_abandoned(place)
     assert names(place) == ["another", "linkwright_link", "linkwright_of_nobody", "linkwright_test_new"]
 
 

@@ -72,10 +72,10 @@ class Compared:
 
     def show_old(self) -> None:
         found = examine(self.pair.old.path)
-        self.publish_old(self.made.library.remember(found, text_of_old(found), self.pair.old.finder))
+        self.publish_old(self.made.library.store(found, text_of_old(found), self.pair.old.finder))
 
     def show_new(self) -> None:
-        self.made.describe(self.made.library.remember(examine(self.pair.new.path)))
+        self.made.describe(self.made.library.store(examine(self.pair.new.path)))
 
     def move(self, **positions: float) -> None:
         stamp = self.made.graph.timebase.now_ns()

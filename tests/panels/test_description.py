@@ -60,7 +60,7 @@ def files(tmp_path):
 
 
 def describe(scene, folder: Path) -> str:
-    text = scene.library.remember(examine(folder / "robot.xacro"))
+    text = scene.library.store(examine(folder / "robot.xacro"))
     scene.describe(text)
     return text
 

@@ -45,7 +45,7 @@ def file(tmp_path: Path) -> Path:
 
 
 def describe(scene: Any, file: Path) -> None:
-    scene.describe(scene.library.remember(examine(file)))
+    scene.describe(scene.library.store(examine(file)))
 
 
 def said(file: Path) -> str:

@@ -195,6 +195,6 @@ def test_an_encoding_that_was_asked_for_is_kept(monkeypatch, tmp_path):
     monkeypatch.setenv("PYTHONIOENCODING", "cp1252")
     with (tmp_path / "out").open("w", encoding="cp1252") as stream:
         monkeypatch.setattr(sys, "stdout", stream)
-        standard_streams.take_any_text()
+        standard_streams.accept_any_text()
         stream.write(NAMES)
     assert (tmp_path / "out").read_bytes() == b"\xe4\\u6f22\\u5b57"

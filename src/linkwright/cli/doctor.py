@@ -68,10 +68,10 @@ def run(arguments: argparse.Namespace) -> int:
     if "run_verb" in arguments:
         return run_nested(arguments)
     from linkwright.doctor import examine, examine_parameter_files, observe, report
-    from linkwright.wire.unfollowed import untold_settings
+    from linkwright.wire.unfollowed import new_unfollowed_settings
 
     frames = _fixed_frames(arguments)
-    settings = untold_settings()  # reported with the other findings, not on joining
+    settings = new_unfollowed_settings()  # reported with the other findings, not on joining
 
     async def job(session: Session) -> int:
         if arguments.format == "text":

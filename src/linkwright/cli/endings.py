@@ -12,7 +12,7 @@ from linkwright.cli.language import UnknownLanguageError
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase, print_diagnostics
 from linkwright.files.whole_files import NO_SPACE
 from linkwright.process.interruption import INTERRUPTED
-from linkwright.process.standard_streams import take_any_text
+from linkwright.process.standard_streams import accept_any_text
 
 FINE, FINDINGS, USAGE, BUG = 0, 1, 2, 3
 
@@ -37,7 +37,7 @@ def status_of(command: Callable[[], int]) -> int:
     """
     try:
         open_closed_streams()
-        take_any_text()
+        accept_any_text()
         try:
             status = command()
         except SystemExit as stop:  # argparse

@@ -81,8 +81,8 @@ def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
         description = examine(path, arguments=parse_assignments(arguments.words), packages=finder, xacro=True)
     else:
         finder, description, before = pair.new.finder, pair.new.read(), pair.old.read()
-        old = OldDescription(pair, library.remember(before, text_of_old(before), pair.old.finder))
-    text = library.remember(description)
+        old = OldDescription(pair, library.store(before, text_of_old(before), pair.old.finder))
+    text = library.store(description)
     print_diagnostics(description.diagnostics, sys.stderr)
     if description.robot is None or not description.robot.root:
         return 1  # without a root link, nothing can be placed

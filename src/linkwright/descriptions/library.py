@@ -23,7 +23,7 @@ _KEPT_TEXTS = 32
 class DescriptionLibrary:
     """A cache of descriptions by their expanded texts, so that each is read once.
 
-    The launcher remembers the description that a text was expanded from; the nodes and the viewer, which get the bare
+    The launcher stores the description that a text was expanded from; the nodes and the viewer, which get the bare
     text from a parameter or topic, then know where everything was written.
     """
 
@@ -31,7 +31,7 @@ class DescriptionLibrary:
         self._descriptions: OrderedDict[str, Description] = OrderedDict()
         self._finders: dict[str, PackageFinder] = {}
 
-    def remember(self, description: Description, text: str | None = None, packages: PackageFinder | None = None) -> str:
+    def store(self, description: Description, text: str | None = None, packages: PackageFinder | None = None) -> str:
         """Store a description, to be found by its text.
 
         Args:
@@ -78,7 +78,7 @@ class DescriptionLibrary:
         known = self._descriptions.get(text)
         if known is None:
             known = _read(text)
-            self.remember(known, text)
+            self.store(known, text)
         else:
             self._descriptions.move_to_end(text)
         return known.reading

@@ -33,7 +33,7 @@ class ScratchFolder(TemporaryDirectory[str]):
     """
 
     def __init__(self, purpose: str, place: Path | None = None) -> None:
-        forget_abandoned(place or Path(gettempdir()))
+        remove_abandoned(place or Path(gettempdir()))
         super().__init__(prefix=f"{_PREFIX}{purpose}_", dir=place)
         lock = _locked(Path(self.name))
         self._unlock = None if lock is None else weakref.finalize(self, os.close, lock)
@@ -45,7 +45,7 @@ class ScratchFolder(TemporaryDirectory[str]):
             self._unlock()
 
 
-def forget_abandoned(place: Path) -> None:
+def remove_abandoned(place: Path) -> None:
     """Remove the scratch folders of processes that have ended; folders that cannot be removed stay."""
     if sys.platform == "win32":  # there are no locks on folders
         return
@@ -54,10 +54,10 @@ def forget_abandoned(place: Path) -> None:
             ours = [entry for entry in entries if entry.name.startswith(_PREFIX)]
         for entry in ours:
             with suppress(OSError):
-                _forget_if_abandoned(entry)
+                _remove_if_abandoned(entry)
 
 
-def _forget_if_abandoned(entry: os.DirEntry[str]) -> None:
+def _remove_if_abandoned(entry: os.DirEntry[str]) -> None:
     if not entry.is_dir(follow_symlinks=False) or entry.stat(follow_symlinks=False).st_uid != os.getuid():
         return
     lock = _locked(Path(entry.path))

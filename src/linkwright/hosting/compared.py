@@ -128,11 +128,11 @@ class _OldDescriptions(Descriptions):
         super().__init__(finder)
         self._library = library
 
-    def remember(self, call: XacroCall, description: Description, text: str | None = None) -> str:
+    def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
         """Store a description; returns the text that identifies it."""
         from linkwright.descriptions.pairs import text_of_old
 
-        return super().remember(call, description, text_of_old(description) if text is None else text)
+        return super().store(call, description, text_of_old(description) if text is None else text)
 
 
 def _call_of(model: Model) -> XacroCall:

@@ -169,7 +169,7 @@ class SimulatedView(ModelView):
             self._files.begin(self._call)
             self._files.take_text(self._call, text, (self._call.path,) if description is None else description.files)
         if description is not None:
-            self._files.remember(self._call, description)
+            self._files.store(self._call, description)
             self._plan(
                 "robot_state_publisher", "robot_state_publisher", {"robot_description": text, "use_sim_time": True}
             )

@@ -48,7 +48,7 @@ class SimulatedDescriptions(Descriptions):
             return self.take_text(call, save(description.sdf.models[0]), description.files), description.diagnostics
         if description.robot is None:
             return None, description.diagnostics
-        self.remember(call, description)
+        self.store(call, description)
         return self.take_text(call, self._complete(description), description.files), description.diagnostics
 
     def take_text(self, call: XacroCall, text: str, files: tuple[Path, ...]) -> str:

@@ -95,7 +95,7 @@ class Descriptions:
         Raises:
             DescriptionError: the errors of the file, or of one that it includes.
         """
-        return self.remember(call, self.read(call))
+        return self.store(call, self.read(call))
 
     def begin_with(self, world: ReadWorld, read: Callable[[str], ReadWorld]) -> WorldCall:
         """Take a world that was read already; its findings are known and are not reported again.
@@ -142,9 +142,9 @@ class Descriptions:
         """Note the time before the files of a model are read."""
         self._read_ns[call] = time.time_ns()
 
-    def remember(self, call: XacroCall, description: Description, text: str | None = None) -> str:
+    def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
         """Store a description; returns its text, or `text` if another text identifies it elsewhere."""
-        text = self.library.remember(description, text, self.finder)
+        text = self.library.store(description, text, self.finder)
         self._files[call] = description.files
         self._calls[text] = call
         self._warnings[call] = description.remarks
@@ -161,7 +161,7 @@ class Descriptions:
         if isinstance(call, WorldCall):
             self._set_world(call, description)
             return str(call.path), self._new(description.diagnostics)
-        text = self.remember(call, description)
+        text = self.store(call, description)
         return (None if description.robot is None else text), description.diagnostics
 
     def call_of(self, text: str) -> XacroCall | None:

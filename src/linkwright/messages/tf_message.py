@@ -192,7 +192,7 @@ class TFMessage(Message):
             layout = layout_for(
                 tuple([value.header.frame_id for value in values]), tuple([value.child_frame_id for value in values])
             )
-            layout.remember()
+            layout.register()
             return message
         message = cls.__new__(cls)
         message._received = received

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase, print_diagnostics
 from linkwright.process.event_loop import run_coroutine
 from linkwright.process.interruption import raise_interrupts
-from linkwright.process.standard_streams import take_any_text
+from linkwright.process.standard_streams import accept_any_text
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph
@@ -41,7 +41,7 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
     from linkwright.graph.command_line.log_setup import set_up
     from linkwright.graph.command_line.ros_arguments import parse
 
-    take_any_text()
+    accept_any_text()
     try:
         factory = _factory(package, executable)
         ros = parse(arguments)

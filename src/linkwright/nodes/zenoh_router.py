@@ -30,7 +30,7 @@ class ZenohRouter(SingleNode):
             raise LinkwrightError(
                 Diagnostic("NODE003", phrase("a router of Zenoh needs Zenoh"), hint=install_hint("zenoh"))
             )
-        from linkwright.wire.zenoh.opening import Telling
+        from linkwright.wire.zenoh.opening import ObstacleReporter
         from linkwright.wire.zenoh.reaching import asked_for
         from linkwright.wire.zenoh.session import close_session, configuration, listening_at, open_with
         from linkwright.wire.zenoh.settings import read_router_settings
@@ -44,9 +44,9 @@ class ZenohRouter(SingleNode):
             raise
         logger = self._node.get_logger()
         logger.info(f"Zenoh router at {', '.join(listening_at(config))}")
-        self._telling = Telling(config, self._warn, lambda: bool(self._session.info.routers_zid()))
+        self._reporter = ObstacleReporter(config, self._warn, lambda: bool(self._session.info.routers_zid()))
         if asked_for(config):
-            self._telling.start()
+            self._reporter.start()
 
     def _warn(self, reasons: str) -> None:
         self._node.get_logger().warning(f"Not connected yet; retrying: {reasons}")
@@ -55,6 +55,6 @@ class ZenohRouter(SingleNode):
         """End it."""
         from linkwright.wire.zenoh.session import close_session
 
-        self._telling.end()
+        self._reporter.end()
         close_session(self._session)
         super().close()

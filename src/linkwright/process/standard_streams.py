@@ -52,7 +52,7 @@ def _write_completely() -> None:
         sys.stdout = io.TextIOWrapper(_WholeWrites(out.buffer), out.encoding, out.errors, write_through=True)
 
 
-def take_any_text() -> None:
+def accept_any_text() -> None:
     """Let standard streams write every text, and all of it.
 
     Files and pipes use UTF-8, like files of descriptions, and like Python itself from 3.15 on (PEP 686). A

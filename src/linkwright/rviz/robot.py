@@ -170,7 +170,7 @@ class DescriptionSource:
         except LinkwrightError as error:
             self._on_refusal(error.diagnostics)
             return
-        self._on_text(self._context.library.remember(description))
+        self._on_text(self._context.library.store(description))
 
 
 def _node_text(publisher: EndpointInfo) -> str:

@@ -71,7 +71,7 @@ def show(
     shown = description.robot
     if shown is None or not shown.root:
         raise LinkwrightError(*description.diagnostics) if description.diagnostics else no_robot()
-    text = library.remember(description)
+    text = library.store(description)
     with ThreadPoolExecutor(1) as thread:  # a notebook's own thread runs an event loop already
         snapshot = thread.submit(snapshot_of_model, text, shown, library, finder).result()
     page = html_of(snapshot).decode("utf-8")

@@ -16,7 +16,7 @@ from linkwright.diagnostics import Phrase, install_hint, phrase, render
 from linkwright.wire import dds, zenoh
 from linkwright.wire.background import log_alone
 from linkwright.wire.switch import is_switched_off
-from linkwright.wire.unfollowed import CYCLONE, MIDDLEWARE, ZENOH, refuse_enforced_security, untold_settings
+from linkwright.wire.unfollowed import CYCLONE, MIDDLEWARE, ZENOH, new_unfollowed_settings, refuse_enforced_security
 from linkwright.wire.zenoh.joining import is_installed as zenoh_is_installed
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | 
         if not is_switched_off(environment):
             log_alone(graph.get_logger("wire"), reason)
         return None
-    for finding in untold_settings(environment):
+    for finding in new_unfollowed_settings(environment):
         graph.get_logger("wire").warning(render(finding))
     chosen = zenoh.join if middleware(environment) == ZENOH else dds.join
     return chosen(graph, **options)

@@ -110,13 +110,9 @@ def unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Di
     return found
 
 
-def untold_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
+def new_unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
     """Return those of the `unfollowed_settings` that were not returned before: each is reported once in a process."""
-    found = [
-        unfollowed_setting
-        for unfollowed_setting in unfollowed_settings(environment)
-        if unfollowed_setting.code not in _reported
-    ]
+    found = [setting for setting in unfollowed_settings(environment) if setting.code not in _reported]
     _reported.update(diagnostic.code for diagnostic in found)
     return found
 

@@ -41,7 +41,7 @@ class Commander:
         self._gid = info.publisher_gid
 
     def watch(self, subscription: Subscription[Any]) -> None:
-        """Watch for lost publishers of a subscription, whose callback is one of `accepting` or calls `note_publisher`."""
+        """Watch for lost publishers of a subscription; its callback is of `accepting` or calls `note_publisher`."""
         subscription.watch_lost(self._lost)
 
     def _accept(self, callback: Callable[[Any], object], message: Any, info: MessageInfo) -> None:

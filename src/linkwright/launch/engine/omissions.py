@@ -34,7 +34,7 @@ class Omissions:
         self._wanted = wanted
         self._command = command
         self.any = False
-        self._untold: list[Note] = []
+        self._unreported: list[Note] = []
 
     def skip(self, error: LinkwrightError) -> bool:
         """Skip the part that an error stopped, if missing software allows it, and return whether it was skipped."""
@@ -42,20 +42,22 @@ class Omissions:
         if not (consequence or is_unavailable(error) or (self._wanted and _is_missing(error))):
             return False
         self.any = True
-        self._untold += [Note(diagnostic.message, diagnostic.span) for diagnostic in error.diagnostics]
+        self._unreported += [Note(diagnostic.message, diagnostic.span) for diagnostic in error.diagnostics]
         return True
 
     def report(self) -> None:
         """Print the parts skipped since the last call."""
-        if not self._untold:
+        if not self._unreported:
             return
         message = counted(
             "one part of the launch is skipped, the rest runs",
             "{count} parts of the launch are skipped, the rest runs",
-            len(self._untold),
+            len(self._unreported),
         )
-        self._log.diagnostics([Diagnostic("LAUNCH146", message, severity=Severity.WARNING, notes=tuple(self._untold))])
-        self._untold.clear()
+        self._log.diagnostics(
+            [Diagnostic("LAUNCH146", message, severity=Severity.WARNING, notes=tuple(self._unreported))]
+        )
+        self._unreported.clear()
 
     def offered(self, error: LinkwrightError) -> tuple[Diagnostic, ...]:
         """Return the findings of an error that ends the launch, with the command that would skip the missing parts."""

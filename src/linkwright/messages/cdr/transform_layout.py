@@ -87,7 +87,7 @@ class TransformLayout:
         words.view(np.float64)[self._poses] = poses
         return _HEADER + words.tobytes()[: self.length - len(_HEADER)]
 
-    def remember(self) -> None:
+    def register(self) -> None:
         """Register this layout for messages that are received."""
         same_length = _by_length.setdefault(self.length, [])
         if self not in same_length:

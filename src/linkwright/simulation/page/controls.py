@@ -213,7 +213,7 @@ class SimulationFeature(PageFeature):
         if not is_world(path.name):
             description = examine(path, packages=finder, xacro=True)
             name = "" if description.robot is None else description.robot.name
-            return name, self.context.library.remember(description)
+            return name, self.context.library.store(description)
         sdf = examine_world(path, packages=finder).sdf
         return (sdf.models[0].name, save(sdf.models[0])) if sdf is not None and sdf.models else None
 

@@ -44,7 +44,7 @@ class XacroDocument(minidom.Document):
         if descriptions is None or self.call is None or expansion is None or not isinstance(text, str):
             return text
         if dom.is_same(self, expansion.document):
-            descriptions.remember(self.call, Description.of_expansion(str(self.call.path), expansion), text)
+            descriptions.store(self.call, Description.of_expansion(str(self.call.path), expansion), text)
         return text
 
 

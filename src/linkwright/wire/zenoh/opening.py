@@ -50,12 +50,12 @@ class Patience:
             return open_with(config)
         config.insert_json5("connect/timeout_ms", "0")
         self.waits = True
-        obstacle_log = Telling(config, self._log_wait)
+        reporter = ObstacleReporter(config, self._log_wait)
         try:
-            obstacle_log.start()
+            reporter.start()
             return self._open_until(config, time.monotonic() + seconds)
         finally:
-            obstacle_log.end()
+            reporter.end()
             self.waits = False
 
     def _open_until(self, config: zenoh.Config, until: float) -> zenoh.Session:
@@ -71,7 +71,7 @@ class Patience:
         self._logger.warning(f"Waiting for a Zenoh router: {reasons}")
 
 
-class Telling:
+class ObstacleReporter:
     """Reports from a thread the obstacles to the addresses that a session connects to.
 
     Args:
