@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.geometry.mesh_files import placed_meshes, told_triangles
+from linkwright.geometry.mesh_files import declared_triangles, placed_meshes
 from tests.geometry.test_mesh_faults import COLLADA
 
 FACET = b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
@@ -25,11 +25,11 @@ FACET = b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1
 def test_triangles_are_counted_without_parsing(tmp_path: Path, name: str, data: bytes, count: int | None) -> None:
     file = tmp_path / name
     file.write_bytes(data)
-    assert told_triangles(file) == count
+    assert declared_triangles(file) == count
 
 
 def test_a_file_that_is_not_there_says_nothing(tmp_path: Path) -> None:
-    assert told_triangles(tmp_path / "a.stl") is None
+    assert declared_triangles(tmp_path / "a.stl") is None
 
 
 @pytest.mark.extra("mesh")

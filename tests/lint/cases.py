@@ -55,7 +55,7 @@ class Case:
         wanted = [each for each in found if each.code.startswith(self.selectors)]
         return "".join(f"{line}\n" for each in wanted for line in _lines(each, folder, main))
 
-    def mend(self, folder: Path) -> str:
+    def fixed_text(self, folder: Path) -> str:
         """The checked file, written by `run`, after all its fixes."""
         main = folder / next(iter(self.files))
         settings = self._settings(main)

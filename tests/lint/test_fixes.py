@@ -105,7 +105,7 @@ def test_an_element_made_by_a_program_has_no_fix():
     assert add_attribute(made, "y", "2") is None
 
 
-def mend(path: Path, *, unsafe: bool = False, write: bool = True, select: tuple[str, ...] = ("LW2",)):
+def fix(path: Path, *, unsafe: bool = False, write: bool = True, select: tuple[str, ...] = ("LW2",)):
     def check(text: str | None):
         overlay = None if text is None else Overlay({path: text})
         return examine(path, settings=Settings(select=select), overlay=overlay).diagnostics
@@ -116,16 +116,16 @@ def mend(path: Path, *, unsafe: bool = False, write: bool = True, select: tuple[
 def test_everything_else_stays_as_it_is(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text(ROBOT)
-    mended = mend(path)
+    result = fix(path)
     assert path.read_text() == ROBOT.replace("1 1 0", "0.707107 0.707107 0")
-    assert mended.counts == {"LW221": 1}
+    assert result.counts == {"LW221": 1}
 
 
 def test_a_diff_changes_nothing(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = Path("robot.urdf")
     path.write_text(ROBOT)
-    assert mend(path, write=False).diff().splitlines() == [
+    assert fix(path, write=False).diff().splitlines() == [
         "--- robot.urdf",
         "+++ robot.urdf",
         "@@ -6,7 +6,7 @@",
@@ -145,7 +145,7 @@ def test_windows_line_ends_a_byte_order_mark_and_permissions_stay(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_bytes(b"\xef\xbb\xbf" + ROBOT.replace("\n", "\r\n").encode())
     path.chmod(0o640)
-    mend(path)
+    fix(path)
     expected = ROBOT.replace("1 1 0", "0.707107 0.707107 0").replace("\n", "\r\n")
     assert path.read_bytes() == b"\xef\xbb\xbf" + expected.encode()
     assert path.stat().st_mode & 0o777 == 0o640
@@ -180,8 +180,8 @@ def test_an_included_file_is_mended_once_for_all_its_calls(tmp_path):
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n  <xacro:include filename="wheel.xacro"/>\n'
         '  <link name="a"/>\n  <xacro:wheel side="l"/>\n  <xacro:wheel side="r"/>\n</robot>\n'
     )
-    mended = mend(path)
-    assert mended.counts == {"LW221": 1}
+    result = fix(path)
+    assert result.counts == {"LW221": 1}
     text = (tmp_path / "wheel.xacro").read_text()
     assert 'xyz="0 1 0"' in text
     assert 'xyz="0 ${2} 0"' in text
@@ -195,7 +195,7 @@ def test_files_of_other_packages_are_left_alone(tmp_path):
     path.write_text(
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="../other.xacro"/></robot>'
     )
-    assert mend(path).counts == {}
+    assert fix(path).counts == {}
     assert other.read_text() == ROBOT
 
 
@@ -236,9 +236,9 @@ def test_unsafe_fixes_are_applied_only_when_asked_for(tmp_path):
         .replace("</joint>", '<limit lower="2" upper="1" effort="1" velocity="1"/></joint>')
     )
     path.write_text(text)
-    mend(path)
+    fix(path)
     assert path.read_text() == text
-    mend(path, unsafe=True)
+    fix(path, unsafe=True)
     assert 'lower="1" upper="2"' in path.read_text()
 
 

@@ -25,4 +25,4 @@ def test_case(case: Case, tmp_path, monkeypatch):
     monkeypatch.chdir(folder)
     assert case.run(folder) == case.said
     if case.fixed is not None:
-        assert case.mend(folder) == case.fixed
+        assert case.fixed_text(folder) == case.fixed

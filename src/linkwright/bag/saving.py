@@ -14,7 +14,7 @@ from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import deserialize, get_message
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_TOLD_EVERY = 1000
+_PROGRESS_STEP = 1000
 """Messages between two reports of progress."""
 
 
@@ -32,7 +32,7 @@ class KeptTopic:
 
 
 def save_messages(
-    path: Path, topics: Mapping[str, KeptTopic], messages: Sequence[Recorded], tell: Callable[[float], object]
+    path: Path, topics: Mapping[str, KeptTopic], messages: Sequence[Recorded], on_progress: Callable[[float], object]
 ) -> None:
     """Write messages into a new recording.
 
@@ -40,7 +40,7 @@ def save_messages(
         path: the folder to make.
         topics: all that messages are of.
         messages: in the order of their times, packed or not.
-        tell: called now and then with the written fraction, 0 to 1.
+        on_progress: called now and then with the written fraction, 0 to 1.
 
     Raises:
         LinkwrightError: BAG105, BAG107, BAG108; see `BagWriter`.
@@ -50,8 +50,8 @@ def save_messages(
             if name not in writer.topics:
                 writer.add_topic(name, topics[name].type_name, topics[name].offered)
             writer.write(name, stamp_ns, whole(data))
-            if number % _TOLD_EVERY == 0:
-                tell(number / len(messages))
+            if number % _PROGRESS_STEP == 0:
+                on_progress(number / len(messages))
 
 
 def last_reset_ns(messages: Sequence[Recorded]) -> int | None:

@@ -13,7 +13,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _TRANSFORMS = "tf2_msgs/msg/TFMessage"
 _CLOCK = "rosgraph_msgs/msg/Clock"
-_TOLD = struct.Struct("<iI")
+_TIME = struct.Struct("<iI")
 _SAME_PLACE = 1e-9
 """m, and the same for the numbers of a quaternion: a simulated robot at rest moves by 1e-12 in each step."""
 
@@ -67,13 +67,13 @@ def content_of(type_name: str, data: bytes) -> Content | None:
 def clock_between(earlier: bytes, later: bytes, share: float) -> bytes:
     """A message of a clock between two others, whose times passed evenly: after a share of the way, 0 to 1."""
     (first, last) = (content.clock_ns or 0 for content in map(_content_of_clock, (earlier, later)) if content)
-    return earlier[:_CAPSULE] + _TOLD.pack(*divmod(first + round(share * (last - first)), NANOSECONDS_PER_SECOND))
+    return earlier[:_CAPSULE] + _TIME.pack(*divmod(first + round(share * (last - first)), NANOSECONDS_PER_SECOND))
 
 
 def _content_of_clock(data: bytes) -> Content | None:
-    if len(data) < _CAPSULE + _TOLD.size or data[1] != _LITTLE:
+    if len(data) < _CAPSULE + _TIME.size or data[1] != _LITTLE:
         return None
-    seconds, nanoseconds = _TOLD.unpack_from(data, _CAPSULE)
+    seconds, nanoseconds = _TIME.unpack_from(data, _CAPSULE)
     return Content("", b"", clock_ns=seconds * NANOSECONDS_PER_SECOND + nanoseconds)
 
 

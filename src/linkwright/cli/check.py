@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
-from linkwright.cli.endings import say
+from linkwright.cli.endings import print_message
 from linkwright.diagnostics import (
     Diagnostic,
     LinkwrightError,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import argparse
 
     from linkwright.descriptions.argument_sets import ArgumentSet, ArgumentSets
-    from linkwright.lint.apply import Mended
+    from linkwright.lint.apply import FixResult
     from linkwright.lint.contexts import Contexts
     from linkwright.lint.engine import Checked
     from linkwright.lint.settings import Settings
@@ -114,15 +114,15 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
         return _usage(phrase("no such file: '{config}'", config=arguments.config))
     if arguments.diff:
         return _print_diff(paths, words, unsafe=arguments.unsafe_fixes)
-    mended: list[Mended] = []
+    fixed: list[FixResult] = []
     if arguments.fix or arguments.unsafe_fixes:
-        mended = _fix(paths, words, unsafe=arguments.unsafe_fixes, write=True)
+        fixed = _fix(paths, words, unsafe=arguments.unsafe_fixes, write=True)
     found, checked = _check(paths, words)
     _print(found, arguments.format, everything=arguments.all)
     if arguments.format == "text":
         if checked is not None:
             sys.stdout.write(_contents(checked))
-        _summarise(found, mended)
+        _summarise(found, fixed)
     if arguments.statistics:
         _print_statistics(found)
     failed = has_errors(found) or (
@@ -284,7 +284,7 @@ def _examine(
     return check.with_callers(lambda: words.sets(file, targets.packages)), trouble
 
 
-def _fix(paths: Sequence[Path], words: _Words, *, unsafe: bool, write: bool) -> list[Mended]:
+def _fix(paths: Sequence[Path], words: _Words, *, unsafe: bool, write: bool) -> list[FixResult]:
     from linkwright.lint.apply import fix_file
     from linkwright.lint.engine import examine_package
     from linkwright.lint.targets import find_targets
@@ -306,9 +306,9 @@ def _fix(paths: Sequence[Path], words: _Words, *, unsafe: bool, write: bool) -> 
 
 
 def _print_diff(paths: Sequence[Path], words: _Words, *, unsafe: bool) -> int:
-    mended = _fix(paths, words, unsafe=unsafe, write=False)
+    fixed = _fix(paths, words, unsafe=unsafe, write=False)
     seen: set[str] = set()
-    for fixes in mended:
+    for fixes in fixed:
         fixes.texts = {file: text for file, text in fixes.texts.items() if file not in seen}
         seen.update(fixes.texts)
         sys.stdout.write(fixes.diff())
@@ -317,22 +317,22 @@ def _print_diff(paths: Sequence[Path], words: _Words, *, unsafe: bool) -> int:
 
 def _print(found: Sequence[Diagnostic], form: str, *, everything: bool) -> None:
     if form == "text":
-        with suppress(OSError):  # as with `say`
+        with suppress(OSError):  # as with `print_message`
             print_diagnostics(found if everything else alike_together(found), sys.stderr)
     else:
         sys.stdout.write(format_diagnostics(found, form))
 
 
-def _summarise(found: Sequence[Diagnostic], mended: Sequence[Mended]) -> None:
-    if mended:
-        count = sum(sum(each.counts.values()) for each in mended)
-        files = len({file for each in mended for file in each.texts})
+def _summarise(found: Sequence[Diagnostic], fixed: Sequence[FixResult]) -> None:
+    if fixed:
+        count = sum(sum(each.counts.values()) for each in fixed)
+        files = len({file for each in fixed for file in each.texts})
         line = phrase(
             "fixed {findings} in {files}",
             findings=counted("{count} finding", "{count} findings", count),
             files=counted("{count} file", "{count} files", files),
         )
-        say(localized(line))
+        print_message(localized(line))
     errors = sum(diagnostic.severity is Severity.ERROR for diagnostic in found)
     warnings = sum(diagnostic.severity is Severity.WARNING for diagnostic in found)
     line = phrase(
@@ -340,7 +340,7 @@ def _summarise(found: Sequence[Diagnostic], mended: Sequence[Mended]) -> None:
         errors=counted("{count} error", "{count} errors", errors),
         warnings=counted("{count} warning", "{count} warnings", warnings),
     )
-    say(localized(line))
+    print_message(localized(line))
 
 
 def _print_statistics(found: Iterable[Diagnostic]) -> None:

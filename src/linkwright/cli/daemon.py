@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-_SAYS = {
+_ANSWERS = {
     "start": "The daemon is not needed: each command finds the nodes itself",
     "status": "The daemon is not running",
     "stop": "The daemon is not running",
@@ -13,10 +13,10 @@ _SAYS = {
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("verb", metavar="{start,status,stop}", choices=_SAYS, help="no effect")
+    parser.add_argument("verb", metavar="{start,status,stop}", choices=_ANSWERS, help="no effect")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Report that there is no daemon."""
-    print(_SAYS[arguments.verb])
+    print(_ANSWERS[arguments.verb])
     return 0

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import FINE, say
+from linkwright.cli.endings import FINE, print_message
 from linkwright.cli.numbers import positive_int, unsigned_int
 from linkwright.diagnostics import counted, display_path, phrase
 from linkwright.diagnostics.translation import localized
@@ -144,7 +144,7 @@ def run(arguments: argparse.Namespace) -> int:
         workers=arguments.workers or usable_processors(),
         force=arguments.force,
         append=arguments.append,
-        progress=progress.tell,
+        progress=progress.update,
         begin=progress.begin,
     )
     progress.end()
@@ -152,8 +152,12 @@ def run(arguments: argparse.Namespace) -> int:
     images = counted("{count} image", "{count} images", made.folder.count)
     print(localized(phrase("{images} in {folder}", images=images, folder=display_path(path))))
     if made.interrupted:
-        say(localized(phrase("{done} of {count} images were made; the dataset is complete, `--append` adds more",
-                             done=made.added, count=arguments.images)))  # fmt: skip
+        message = phrase(
+            "{done} of {count} images were made; the dataset is complete, `--append` adds more",
+            done=made.added,
+            count=arguments.images,
+        )
+        print_message(localized(message))
         return INTERRUPTED
     return FINE
 
@@ -168,13 +172,15 @@ class _Progress:
 
     def begin(self, studio: Studio) -> None:
         """Print the classes and the rendering method."""
-        say(localized(phrase("Classes: {names}", names=", ".join(studio.classes))))
-        say(localized(phrase("Rendering images with {way}", way=studio.way)))
+        print_message(localized(phrase("Classes: {names}", names=", ".join(studio.classes))))
+        print_message(localized(phrase("Rendering images with {way}", way=studio.way)))
         if studio.unused:
-            say(localized(phrase("These worlds have no object of the classes {names}", names=", ".join(studio.unused))))
+            print_message(
+                localized(phrase("These worlds have no object of the classes {names}", names=", ".join(studio.unused)))
+            )
         self._began = time.monotonic()
 
-    def tell(self, done: int) -> None:
+    def update(self, done: int) -> None:
         """Show the number of finished images."""
         if self._shown:
             rate = done / max(time.monotonic() - self._began, 1e-9)

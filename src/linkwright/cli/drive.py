@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import say
+from linkwright.cli.endings import print_message
 from linkwright.cli.model_arguments import add_model
 from linkwright.cli.simulation_options import add_simulation_options, recording
 from linkwright.cli.view import add_viewer_options
@@ -101,7 +101,7 @@ def run(arguments: argparse.Namespace) -> int:
     print_diagnostics(
         [diagnostic for diagnostic in found.diagnostics if diagnostic.severity is not Severity.INFO], sys.stderr
     )
-    say(localized(_summary(robot, found)))
+    print_message(localized(_summary(robot, found)))
     world = replace(
         SimulatedWorld.of(arguments.world, description, found, inferred),
         arguments=tuple(values.items()),

@@ -44,7 +44,7 @@ def status_of(command: Callable[[], int]) -> int:
             status = stop.code if isinstance(stop.code, int) else USAGE
         print(end="", flush=True)  # flush here, where a closed output can be handled
     except UnknownLanguageError as error:
-        say(f"linkwright: {error}")
+        print_message(f"linkwright: {error}")
         return USAGE
     except LinkwrightError as error:
         _print(error.diagnostics)
@@ -126,7 +126,7 @@ def _print(diagnostics: Iterable[Diagnostic]) -> None:
         pass
 
 
-def say(text: str) -> None:
+def print_message(text: str) -> None:
     """Print a line to standard error; a failure to write does not change the exit status."""
     from contextlib import suppress  # slow to import, and rarely needed
 
@@ -138,7 +138,7 @@ def _report_bug(error: Exception) -> None:
     import tempfile
     import traceback
 
-    say(f"linkwright: this is a bug of ours: {type(error).__name__}: {error}")
+    print_message(f"linkwright: this is a bug of ours: {type(error).__name__}: {error}")
     try:
         with tempfile.NamedTemporaryFile(
             "w", prefix="linkwright-", suffix=".log", delete=False, encoding="utf-8"
@@ -146,6 +146,6 @@ def _report_bug(error: Exception) -> None:
             log.write(f"linkwright {__version__}, Python {sys.version}, words {sys.argv[1:]}\n")
             traceback.print_exception(type(error), error, error.__traceback__, file=log)
     except OSError:
-        say("".join(traceback.format_exception(error)))
+        print_message("".join(traceback.format_exception(error)))
     else:
-        say(f"Please report it with the file {log.name}")
+        print_message(f"Please report it with the file {log.name}")

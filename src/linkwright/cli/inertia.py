@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import say
+from linkwright.cli.endings import print_message
 from linkwright.cli.model_arguments import add_model
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, phrase, print_diagnostics
 from linkwright.diagnostics.translation import localized
@@ -97,7 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
         detailed = wanted if arguments.link and written is None else () if written is None else written.refused
         sys.stdout.write(as_text(robot, estimates, written, detailed))
         if not (arguments.link or arguments.write):
-            say(
+            print_message(
                 localized(
                     phrase("`--link NAME` prints the <inertial> of a link's shapes, `--write` writes them to the file")
                 )

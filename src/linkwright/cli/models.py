@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import FINE, say
+from linkwright.cli.endings import FINE, print_message
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.progress import ProgressLine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase, term
@@ -81,8 +81,8 @@ def run_get(arguments: argparse.Namespace) -> int:
         if not _wrong_with(entry, place):
             print(place)
             return FINE
-        say(localized(phrase("'{path}' is incomplete or modified, and is downloaded again", path=place)))
-    say(
+        print_message(localized(phrase("'{path}' is incomplete or modified, and is downloaded again", path=place)))
+    print_message(
         localized(
             phrase(
                 "{name}: about {megabytes} MB from {source}, licence {licence}",

@@ -9,7 +9,7 @@ import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import FINDINGS, FINE, say
+from linkwright.cli.endings import FINDINGS, FINE, print_message
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.numbers import positive_int
 from linkwright.cli.progress import ProgressLine
@@ -86,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(localized(phrase("Created file {file}", file=display_path(written))))
     if missing:
         left = counted("{count} run is left", "{count} runs are left", missing)
-        say(localized(phrase("{left}; `--resume` continues the sweep", left=left)))
+        print_message(localized(phrase("{left}; `--resume` continues the sweep", left=left)))
         return INTERRUPTED
     return FINDINGS if table.failed else FINE
 
@@ -151,4 +151,4 @@ def _print_summary(table: Table, seconds: float, made: int) -> None:
         rate=f"{made / max(seconds, 1e-9):.1f}",
         failed=len(table.failed),
     )
-    say(localized(summary))
+    print_message(localized(summary))

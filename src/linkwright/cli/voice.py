@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import FINE, say
+from linkwright.cli.endings import FINE, print_message
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.output import cannot_write
 from linkwright.diagnostics import (
@@ -152,7 +152,7 @@ def run_enrol(arguments: argparse.Namespace) -> int:
     takes = counted("{count} recording", "{count} recordings", count)
     print(localized(phrase("'{word}': {takes}", word=arguments.word, takes=takes)))
     if count < TAKES:
-        say(localized(phrase("{takes} recordings make the recognition more reliable", takes=TAKES)))
+        print_message(localized(phrase("{takes} recordings make the recognition more reliable", takes=TAKES)))
     return FINE
 
 
@@ -169,7 +169,7 @@ def run_words(arguments: argparse.Namespace) -> int:
         takes = counted("{count} recording", "{count} recordings", len(words.takes(name)))
         print(localized(phrase("'{word}': {takes}", word=name, takes=takes)))
     if not words.names:
-        say(localized(phrase("no word is enrolled in '{path}'", path=display_path(path))))
+        print_message(localized(phrase("no word is enrolled in '{path}'", path=display_path(path))))
     return FINE
 
 

@@ -96,9 +96,9 @@ def examine(
         if not partly:
             raise
         if not xacro and not arguments and name.endswith(_URDF):
-            told = {diagnostic.code for diagnostic in forbidden}
+            reported = {diagnostic.code for diagnostic in forbidden}
             unexpanded = tuple(
-                _as_warning(diagnostic) for diagnostic in error.diagnostics if diagnostic.code not in told
+                _as_warning(diagnostic) for diagnostic in error.diagnostics if diagnostic.code not in reported
             )
             plain = _as_it_stands(name, document, (*unexpanded, *forbidden), overlay, is_reported=bool(unexpanded))
             if plain.robot is not None and not has_errors(plain.diagnostics) and not _has_open_names(plain.robot):

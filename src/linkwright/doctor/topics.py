@@ -237,24 +237,24 @@ def _unpublished(seen: Observation) -> Iterator[Diagnostic]:
 def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
     """Yield findings on velocity commands that no node receives."""
     heard = {endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)}
-    told = {like for _, _, _, like in _misnamed(seen)}
-    taking = {
+    misnamed = {like for _, _, _, like in _misnamed(seen)}
+    accepting = {
         endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION) if endpoint.type_name in _VELOCITIES
     }
     unheard: dict[str, list[EndpointInfo]] = {}
     for endpoint in seen.of_kind(EndpointKind.PUBLISHER):
         name = endpoint.name
-        if endpoint.type_name in _VELOCITIES and name.rpartition("/")[2] == _COMMAND and name not in heard | told:
+        if endpoint.type_name in _VELOCITIES and name.rpartition("/")[2] == _COMMAND and name not in heard | misnamed:
             unheard.setdefault(name, []).append(endpoint)
     for topic, publishers in sorted(unheard.items()):
         hint = (
             phrase(
                 "nodes accept velocities on {topics}; remap one side: --ros-args -r {topic}:={other}",
-                topics=listed(sorted(taking)),
+                topics=listed(sorted(accepting)),
                 topic=topic,
-                other=min(taking),
+                other=min(accepting),
             )
-            if taking
+            if accepting
             else phrase("is the robot, its simulation or its controller running, and in the same ROS_DOMAIN_ID?")
         )
         yield Diagnostic(

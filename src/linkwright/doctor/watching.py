@@ -359,8 +359,8 @@ class _Watcher:
         package = "rcl_interfaces/srv"
         listed = await self._ask_all(f"{package}/ListParameters", "list_parameters", viewers, prefixes=[_FIXED_FRAME])
         # A node that has no such parameter would complain when asked for it.
-        telling = {node for node, answer in listed.items() if _FIXED_FRAME in answer.result.names}
-        answers = await self._ask_all(f"{package}/GetParameters", "get_parameters", telling, names=[_FIXED_FRAME])
+        with_frame = {node for node, answer in listed.items() if _FIXED_FRAME in answer.result.names}
+        answers = await self._ask_all(f"{package}/GetParameters", "get_parameters", with_frame, names=[_FIXED_FRAME])
         return [FixedFrame(answer.values[0].string_value, f"'{node}'") for node, answer in sorted(answers.items())]
 
     async def _ask_all(self, kind: str, service: str, among: set[str] | None = None, **fields: Any) -> dict[str, Any]:

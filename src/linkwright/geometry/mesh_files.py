@@ -89,10 +89,10 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
     except ModuleNotFoundError:
         raise
     except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
-        mended = _well_formed(data) if kind == "dae" else None
-        if mended is not None:
-            return placed_meshes(mended, kind, is_plain=is_plain, **options)
-        raise BadMeshError(fault_in(data, kind) or said_by_parser(error)) from None
+        repaired = _well_formed(data) if kind == "dae" else None
+        if repaired is not None:
+            return placed_meshes(repaired, kind, is_plain=is_plain, **options)
+        raise BadMeshError(fault_in(data, kind) or parser_fault(error)) from None
     if not found:
         raise BadMeshError(fault_in(data, kind) or phrase("it has no triangles"))
     for placed in found:
@@ -107,7 +107,7 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
     return found
 
 
-def told_triangles(path: Path) -> int | None:
+def declared_triangles(path: Path) -> int | None:
     """The number of triangles that a file declares, without parsing it, which takes a minute for a large one.
 
     At least as many are read from it. None for what only parsing tells (COLLADA, glTF), and for what cannot be read.
@@ -207,7 +207,7 @@ def _without_broken_materials(data: bytes) -> bytes:
     return written.getvalue()
 
 
-def said_by_parser(error: Exception) -> Phrase:
+def parser_fault(error: Exception) -> Phrase:
     """Return the first line of a parser's error, if nothing better is known."""
     if isinstance(error, FileNotFoundError):
         return phrase("the file '{name}' that it references does not exist", name=str(error.filename or error))

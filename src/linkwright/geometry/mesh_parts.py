@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import missing_extra
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.mesh_files import BadMeshError, PlacedMesh, placed_meshes, said_by_parser
+from linkwright.geometry.mesh_files import BadMeshError, PlacedMesh, parser_fault, placed_meshes
 from linkwright.loading.lean_dataclasses import dataclass, replace
 from linkwright.loading.lean_typing import Any
 
@@ -93,7 +93,7 @@ def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
     except BadMeshError:
         raise
     except Exception as error:  # noqa: BLE001 - a foreign image or material may raise anything
-        raise BadMeshError(said_by_parser(error)) from None
+        raise BadMeshError(parser_fault(error)) from None
 
 
 def _parts(data: bytes, kind: str, resolver: Any) -> list[MeshPart]:

@@ -215,9 +215,9 @@ class ModelView:
         self._show_form()
 
     def _publish_repaired(self, _: str) -> None:
-        self._publish_anew(self._call)
+        self._publish_again(self._call)
 
-    def _publish_anew(self, call: XacroCall) -> None:
+    def _publish_again(self, call: XacroCall) -> None:
         """Publish a model that was broken, or the same with other arguments."""
         broken, self._call, self._form = self._call, call, None
         self.reload.unbind(broken, self._publish_repaired)
@@ -244,7 +244,7 @@ class ModelView:
             feature.ask(self._form or NOTHING_ASKED, self._set_arguments)
 
     def _set_arguments(self, values: dict[str, str]) -> None:
-        self._publish_anew(XacroCall(self._call.path, tuple(values.items())))
+        self._publish_again(XacroCall(self._call.path, tuple(values.items())))
 
     def _look_at_root(self) -> None:
         """Make the root the fixed frame of a model that was unknown when the viewer started."""

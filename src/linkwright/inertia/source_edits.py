@@ -138,7 +138,7 @@ def _changed_attributes(text: str, element: Element, attributes: Attributes) -> 
         found = attribute_value_range(text, element.offset, name)
         if found is None:
             added += "" if (name, value) == ("rpy", "0 0 0") else f' {name}="{value}"'
-        elif not _says_the_same(text[slice(*found)], value):
+        elif not _is_equal_value(text[slice(*found)], value):
             yield Replacement(*found, value)
     if added:
         after = element.offset + 1 + len(element.tag)
@@ -149,7 +149,7 @@ def _changed_attributes(text: str, element: Element, attributes: Attributes) -> 
         yield Replacement(name_range[0], value_range[1] + 1, "")
 
 
-def _says_the_same(written: str, value: str) -> bool:
+def _is_equal_value(written: str, value: str) -> bool:
     """Return whether numbers in the file are equal to those to be written, to the digits that are written."""
     try:
         there = [float(word) for word in written.split()]

@@ -140,11 +140,11 @@ def print_description(target: LaunchTarget) -> str:
     return _read(target, format_launch_description)
 
 
-def _read(target: LaunchTarget, tell: Callable[[LaunchDescription], str]) -> str:
+def _read(target: LaunchTarget, describe: Callable[[LaunchDescription], str]) -> str:
     """Read a launch file without running it, and return a text about its description."""
     finder = target.finder()
     with own_environment(finder):
-        return tell(load_launch_file(target.resolve(finder)))
+        return describe(load_launch_file(target.resolve(finder)))
 
 
 def run_description(

@@ -24,7 +24,7 @@ Check = Callable[[str | None], Iterable[Diagnostic]]
 
 
 @dataclass(slots=True)
-class Mended:
+class FixResult:
     """The outcome of fixing a file.
 
     Attributes:
@@ -40,7 +40,7 @@ class Mended:
         return "".join(_diff(file, text) for file, text in self.texts.items())
 
 
-def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = True) -> Mended:
+def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = True) -> FixResult:
     """Fix what can be fixed in a description.
 
     Only files of its package are changed or, without a package, those in and below its folder. A pass applies all fixes
@@ -57,23 +57,21 @@ def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = Tr
         LinkwrightError: LINT201, a file cannot be written.
     """
     home = _home(path)
-    mended = Mended()
+    result = FixResult()
     for _ in range(_MOST_PASSES):
-        found = check(mended.texts.get(str(path)) if not write else None)
-        done = {file for file in mended.texts if not write and file != str(path)}
+        found = check(result.texts.get(str(path)) if not write else None)
+        done = {file for file in result.texts if not write and file != str(path)}
         fixes = [
-            (mendable.code, mendable.fix)
-            for mendable in _mendable(found, unsafe)
-            if _may_change(mendable.fix, home, done)
+            (fixable.code, fixable.fix) for fixable in _fixable(found, unsafe) if _may_change(fixable.fix, home, done)
         ]
-        changed = _apply(fixes, mended, {} if write else mended.texts)
+        changed = _apply(fixes, result, {} if write else result.texts)
         if not changed:
             break
-        mended.texts.update(changed)
+        result.texts.update(changed)
         if write:
             for file, text in changed.items():
                 write_text(Path(file), text)
-    return mended
+    return result
 
 
 def write_text(path: Path, text: str) -> None:
@@ -98,7 +96,7 @@ class _Mendable:
     fix: Fix
 
 
-def _mendable(found: Iterable[Diagnostic], unsafe: bool) -> Iterator[_Mendable]:
+def _fixable(found: Iterable[Diagnostic], unsafe: bool) -> Iterator[_Mendable]:
     for diagnostic in found:
         if isinstance(diagnostic, Finding) and diagnostic.fix and (diagnostic.fix.safe or unsafe):
             yield _Mendable(diagnostic.code, diagnostic.fix)
@@ -116,7 +114,7 @@ def _may_change(fix: Fix, home: Path, done: set[str]) -> bool:
     )
 
 
-def _apply(fixes: Iterable[tuple[str, Fix]], mended: Mended, texts: Mapping[str, str]) -> dict[str, str]:
+def _apply(fixes: Iterable[tuple[str, Fix]], result: FixResult, texts: Mapping[str, str]) -> dict[str, str]:
     """The new texts of the files that fixes change; of fixes that overlap, the first is applied."""
     taken: dict[str, list[Edit]] = {}
     counts: dict[str, int] = {}
@@ -136,7 +134,7 @@ def _apply(fixes: Iterable[tuple[str, Fix]], mended: Mended, texts: Mapping[str,
             changed[file] = new
     if changed:
         for code, count in counts.items():
-            mended.counts[code] = mended.counts.get(code, 0) + count
+            result.counts[code] = result.counts.get(code, 0) + count
     return changed
 
 

@@ -152,7 +152,7 @@ def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppression
     known = {} if has_rules_of_others() else subject.once(_findings_of_scopes)
     key = frozenset(scopes)
     if key not in known:
-        known[key] = _find_anew(subject, scopes, suppressions)
+        known[key] = _run_rules(subject, scopes, suppressions)
     return known[key]
 
 
@@ -161,7 +161,7 @@ def _findings_of_scopes(_: Subject) -> dict[frozenset[Scope], list[Diagnostic]]:
     return {}
 
 
-def _find_anew(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
+def _run_rules(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
     found: list[Diagnostic] = []
     for rule in rules_of(scopes):
         if not (subject.settings.runs(rule) or suppressions.audits(rule.code)):

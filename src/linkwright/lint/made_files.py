@@ -18,7 +18,7 @@ _REPOSITORY = ".git"
 _HIGHEST = 8
 """So many folders above a file are looked at for a ``.gitignore`` where none of them is a repository's."""
 _MAPS = frozenset({"map", "maps"})
-_TELLING = (".py", ".sh", ".bash", ".md", ".rst", ".txt", ".cpp", ".cc", ".hpp", ".h", ".in")
+_READABLE = (".py", ".sh", ".bash", ".md", ".rst", ".txt", ".cpp", ".cc", ".hpp", ".h", ".in")
 _BUILD_FILES = frozenset({"setup.py", "CMakeLists.txt"})
 _LONGEST = 200_000
 _COMMENT = lazy_pattern(r"#.*")
@@ -139,7 +139,7 @@ def _is_mentioned(package: PackageContext, name: str) -> bool:
     if any(file.rpartition("/")[2] == name for file in package.files):
         return False  # the one that is there may be meant
     for file in package.files:
-        if file.endswith(_TELLING) and file not in package.launch_files and file not in _BUILD_FILES:
+        if file.endswith(_READABLE) and file not in package.launch_files and file not in _BUILD_FILES:
             source = package.text(file)
             if source is not None and name in source.text[:_LONGEST]:
                 return True

@@ -74,8 +74,8 @@ def _attributes() -> frozenset[str]:
 
 _WORDS_FOR_MASS = frozenset({"weight", "density"})
 _OF_OTHER_FORMATS = frozenset(tag for tags in CHILDREN.values() for tag in tags)
-_TELLING_ELEMENTS = frozenset({*HOMES, *_OTHER_ELEMENTS, *_OF_OTHER_FORMATS, *_WORDS_FOR_MASS})
-_TELLING_ATTRIBUTES = (
+_EXPECTED_ELEMENTS = frozenset({*HOMES, *_OTHER_ELEMENTS, *_OF_OTHER_FORMATS, *_WORDS_FOR_MASS})
+_EXPECTED_ATTRIBUTES = (
     frozenset({*_attributes(), *HOMES, *_OTHER_ELEMENTS, *_OTHER_ATTRIBUTES, *_WORDS_FOR_MASS}) - _KINDS
 )
 
@@ -85,12 +85,12 @@ def is_expected_element(tag: str) -> bool:
 
     Any other name is a private extension, such as one that a vendor's software reads.
     """
-    return tag in _TELLING_ELEMENTS or not HOMES.keys().isdisjoint(words_of(tag))
+    return tag in _EXPECTED_ELEMENTS or not HOMES.keys().isdisjoint(words_of(tag))
 
 
 def is_expected_attribute(name: str) -> bool:
     """Return whether an author expects something of an attribute here: some element of URDF is or has one like it."""
-    return name.casefold() in _TELLING_ATTRIBUTES
+    return name.casefold() in _EXPECTED_ATTRIBUTES
 
 
 def hints_of_reader(subject: Subject) -> dict[Span | None, str]:

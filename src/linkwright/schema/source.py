@@ -110,14 +110,14 @@ def _function(lines: list[str], *more: str) -> str:
 
 
 def _attribute(name: str, attribute: AttributeRule, version: Version) -> Iterator[str]:
-    told = f"{name} = read_value(element, rule, {name}_rule, version, owner, report)"
+    statement = f"{name} = read_value(element, rule, {name}_rule, version, owner, report)"
     if attribute.is_required(version) and attribute.since <= version:
         yield "try:"
         yield f"    {name} = {name}_read(given[{attribute.name!r}])"
         yield "except (KeyError, ValueError):"
-        yield f"    {told}"
+        yield f"    {statement}"
     else:
-        yield f"{name} = {told[len(name) + 3 :]} if {attribute.name!r} in given else {name}_absent"
+        yield f"{name} = {statement[len(name) + 3 :]} if {attribute.name!r} in given else {name}_absent"
 
 
 def _child(name: str, child: ElementRule) -> Iterator[str]:

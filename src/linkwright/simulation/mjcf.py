@@ -15,7 +15,7 @@ from linkwright.simulation.rendering.ray_renderer import mean_colour
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 
-_UNSAID = [0.5, 0.5, 0.5, 1.0]
+_DEFAULT_RGBA = [0.5, 0.5, 0.5, 1.0]
 """The colour that means "use the material's colour" in MuJoCo."""
 
 
@@ -50,7 +50,7 @@ def _take_images_out(spec: Any, model: Any) -> None:
             material.rgba = material.rgba * means[material.name]
             material.textures = [""] * len(material.textures)
     for geom in spec.geoms:
-        if geom.material in means and list(geom.rgba) != _UNSAID:
+        if geom.material in means and list(geom.rgba) != _DEFAULT_RGBA:
             geom.rgba = geom.rgba * means[geom.material]
     for texture in list(spec.textures):
         spec.delete(texture)

@@ -79,20 +79,20 @@ class UrdfReport(Findings):
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
         """Report a malformed attribute; a colour of too few numbers is black, one of other words is unreadable."""
         name, value = attribute.name, element.attributes[attribute.name]
-        told = {"name": name, "tag": rule.tag, "owner": owner_name(owner), "value": value}
+        fields = {"name": name, "tag": rule.tag, "owner": owner_name(owner), "value": value}
         if attribute.type is JOINT_TYPE:
             message = phrase("'{written}' is not a joint type, in {owner}", written=value, owner=owner_name(owner))
             self.error("URDF140", message, element, name, hint=_joint_type_hint(value))
             return UNREADABLE
         if attribute.type is NUMBER:
-            message = phrase("'{name}' in <{tag}> of {owner} is not a number: '{value}'", **told)
+            message = phrase("'{name}' in <{tag}> of {owner} is not a number: '{value}'", **fields)
             self.error("URDF121", message, element, name, hint=_number_hint(rule, attribute, value))
             return UNREADABLE
         count = COUNTS[attribute.type]
         try:
             found = numbers(value)
         except ValueError:
-            message = phrase("'{name}' in <{tag}> of {owner} is not {count} numbers: '{value}'", **told, count=count)
+            message = phrase("'{name}' in <{tag}> of {owner} is not {count} numbers: '{value}'", **fields, count=count)
             self.error("URDF121", message, element, name, hint=vector_hint(value, count))
             return None if attribute.type is RGBA else UNREADABLE
         if attribute.type is RGBA:
@@ -101,7 +101,7 @@ class UrdfReport(Findings):
             "'{name}' in <{tag}> of {owner} has 1 number where {wanted} are expected: '{value}'",
             "'{name}' in <{tag}> of {owner} has {count} numbers where {wanted} are expected: '{value}'",
             len(found),
-            **told,
+            **fields,
             wanted=count,
         )
         self.error("URDF122", message, element, name, hint=_count_hint(rule, attribute, found))
@@ -230,10 +230,10 @@ def _missing_attribute_hint(element: Element, rule: ElementRule, attribute: Attr
         return phrase('write <{tag} {name}="{text}"/>', tag=rule.tag, name=attribute.name, text=text)
     if rule.tag == "sphere" and "diameter" in unknown:
         return phrase("give the radius, half the diameter")
-    told = {"name": attribute.name, "meaning": term(attribute.meaning)}
+    fields = {"name": attribute.name, "meaning": term(attribute.meaning)}
     if attribute.unit:
-        return phrase('add {name}="...": {meaning} ({unit})', **told, unit=term(attribute.unit))
-    return phrase('add {name}="...": {meaning}', **told)
+        return phrase('add {name}="...": {meaning} ({unit})', **fields, unit=term(attribute.unit))
+    return phrase('add {name}="...": {meaning}', **fields)
 
 
 def _usual_attributes(rule: ElementRule) -> str:

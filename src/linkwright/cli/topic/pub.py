@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from linkwright.graph import Publisher
 
 _KEEP_ALIVE = 0.1
-_TELL_WAITING = 1.0
+_WAITING_NOTICE_PERIOD = 1.0
 _MATCHED_BOTH_WAYS = 0.15
 """Seconds after which a discovered subscription has discovered the publisher too; earlier messages may be lost."""
 _Filled = tuple[Any, list[Callable[[Any], None]]]
@@ -110,7 +110,7 @@ async def _wait_for(session: Session, publisher: Publisher[Any], wanted: int, lo
         if longest is not None and waited >= longest:
             return False
         print(f"Waiting for at least {wanted} matching subscription(s)...")
-        step = _TELL_WAITING if longest is None else min(_TELL_WAITING, longest - waited)
+        step = _WAITING_NOTICE_PERIOD if longest is None else min(_WAITING_NOTICE_PERIOD, longest - waited)
         await session.until(lambda: publisher.get_subscription_count() >= wanted, step)
         waited += step
     return True

@@ -105,7 +105,7 @@ def run(arguments: argparse.Namespace) -> int:
         held_out=tuple(arguments.held_out),
         command=shlex.join(["linkwright", *(word for word in sys.argv[1:] if word != "--resume")]),
     )
-    taught = teach(options, lambda epoch: _tell(epoch, options.epochs))
+    taught = teach(options, lambda epoch: _report(epoch, options.epochs))
     for examination in taught.examinations:
         print(f"{examination.title}: mAP50 {examination.figures.map50:.3f}, mAP50-95 {examination.figures.map:.3f}")
         print("\n".join(table(examination.figures)))
@@ -114,11 +114,17 @@ def run(arguments: argparse.Namespace) -> int:
     return INTERRUPTED if taught.interrupted else FINE
 
 
-def _tell(epoch: Epoch, last: int) -> None:
+def _report(epoch: Epoch, last: int) -> None:
     boxes, scores = (f"{loss:.3f}" for loss in epoch.losses)
-    told = phrase("epoch {number} of {last}: loss of boxes {boxes}, of scores {scores}", number=epoch.number, last=last,
-                  boxes=boxes, scores=scores)  # fmt: skip
-    line = localized(told)
+    line = localized(
+        phrase(
+            "epoch {number} of {last}: loss of boxes {boxes}, of scores {scores}",
+            number=epoch.number,
+            last=last,
+            boxes=boxes,
+            scores=scores,
+        )
+    )
     if epoch.judged is not None:
         line += f"; mAP50 {epoch.judged.map50:.3f}, mAP50-95 {epoch.judged.map:.3f}"
     print(line, file=sys.stderr, flush=True)

@@ -114,34 +114,34 @@ def trajectory_of(message: Any, parameters: Parameters, held: Sequence[float]) -
     return Trajectory(points, nanoseconds(message.header.stamp), interpolated=interpolated)
 
 
-def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, tell: Callable[[str], object]) -> Tolerances:
+def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, log: Callable[[str], object]) -> Tolerances:
     """The tolerances of a goal: those of the controller, replaced where the goal names joints.
 
     Args:
         goal: control_msgs/action/FollowJointTrajectory_Goal.
         joints: those of the controller.
         default: its tolerances; they count where the goal has a mistake.
-        tell: receives the messages about errors.
+        log: receives the messages about errors.
     """
     tolerances = default
     for field, given in (("path_tolerance", goal.path_tolerance), ("goal_tolerance", goal.goal_tolerance)):
         for each in given:
             if each.name not in joints:
-                tell(f"joint '{each.name}' specified in goal.{field} does not exist. Using default tolerances.")
+                log(f"joint '{each.name}' specified in goal.{field} does not exist. Using default tolerances.")
                 return default
             index = joints.index(each.name)
             known = (tolerances.path if field == "path_tolerance" else tolerances.goal)[index]
             try:
                 changed = known.overridden(each.position, each.velocity, each.acceleration)
             except ValueError:
-                tell(f"joint '{each.name}' specified in goal.{field} has a negative tolerance that is not -1.")
-                tell("Using default tolerances.")
+                log(f"joint '{each.name}' specified in goal.{field} has a negative tolerance that is not -1.")
+                log("Using default tolerances.")
                 return default
             change = tolerances.with_path if field == "path_tolerance" else tolerances.with_goal
             tolerances = change(index, changed)
     try:
         time = resolved(tolerances.goal_time_s, nanoseconds(goal.goal_time_tolerance) / NANOSECONDS_PER_SECOND)
     except ValueError:
-        tell("goal.goal_time_tolerance is negative and not -1. Using default tolerances.")
+        log("goal.goal_time_tolerance is negative and not -1. Using default tolerances.")
         return default
     return Tolerances(tolerances.path, tolerances.goal, time)

@@ -74,7 +74,7 @@ class Ros2ControlNode(SingleNode):
         rate = self._rate()
         logger.info(f"update rate is {rate} Hz")
         self._manages_overruns = self._is_on("overruns.manage")
-        self._tells_of_overruns = self._manages_overruns and self._is_on("overruns.print_warnings")
+        self._warns_of_overruns = self._manages_overruns and self._is_on("overruns.print_warnings")
         logger.info(f"Overruns handling is : {'enabled' if self._manages_overruns else 'disabled'}")
         self._manager = ControllerManager(
             self._node,
@@ -161,7 +161,7 @@ class Ros2ControlNode(SingleNode):
     def _missed(self, count: int) -> None:
         """Handle missed updates: skip them, or make them up. Updates that took too long are logged."""
         rate, took_ns = self._manager.update_rate, self._took_ns
-        if self._tells_of_overruns and took_ns > self._period_ns:
+        if self._warns_of_overruns and took_ns > self._period_ns:
             self._node.get_logger().warning(
                 f"Overrun detected! The controller manager missed its desired rate of {rate:.0f} Hz. The loop took "
                 f"{took_ns / 1e6:f} ms (missed cycles : {count}).",

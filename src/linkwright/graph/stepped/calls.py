@@ -48,7 +48,7 @@ class Calls:
         if not self.is_closed:
             self._failed(error)
 
-    def close(self, function: Callable[[], object], tell: Failure) -> None:
+    def close(self, function: Callable[[], object], on_error: Failure) -> None:
         """Call a last function, and no other one afterwards; its exception is only logged."""
         if self.is_closed:
             return
@@ -56,7 +56,7 @@ class Calls:
         try:
             function()
         except Exception as error:  # noqa: BLE001 - as above
-            tell(error)
+            on_error(error)
 
 
 def logged_calls(logger: Logger, name: str) -> Calls:

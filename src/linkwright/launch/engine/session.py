@@ -248,7 +248,7 @@ class LaunchSession:
             return
         self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
         if self.loop is not None:
-            self.loop.call_later(_SILENT_SECONDS, self._tell_what_is_awaited)
+            self.loop.call_later(_SILENT_SECONDS, self._log_awaited)
 
     def seconds_to_end(self) -> float:
         """Return how many seconds the processes may take to end."""
@@ -258,7 +258,7 @@ class LaunchSession:
         """End the processes at once; safe to call from a signal handler."""
         self.processes.kill_all()
 
-    def _tell_what_is_awaited(self) -> None:
+    def _log_awaited(self) -> None:
         names = self.processes.names
         if names:
             self.log.info_line("launch", f"waiting for {', '.join(names)} to end; Ctrl-C again does not wait")

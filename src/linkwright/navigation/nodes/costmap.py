@@ -319,7 +319,7 @@ class CostmapNode(ManagedNode):
                 layered.padding = self._given.footprint_padding
                 layered.footprint = self._read_footprint()
             except LinkwrightError as error:
-                self.tell(error)
+                self.log_error(error)
         if follow(self._shared, changed):
             layered.touch()
         if "update_frequency" in names and self.is_cycling:

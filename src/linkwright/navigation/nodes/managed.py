@@ -99,7 +99,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         try:
             self.configure()
         except LinkwrightError as error:
-            self.tell(error)
+            self.log_error(error)
             self._let_go()
             return TransitionCallbackReturn.FAILURE
         if not self._has_logged:
@@ -114,7 +114,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         try:
             self.activate()
         except LinkwrightError as error:
-            self.tell(error)
+            self.log_error(error)
             super().on_deactivate(state)
             return TransitionCallbackReturn.FAILURE
         if self._beats > 0.0:
@@ -169,7 +169,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
             self._bond.end()
             self._bond = None
 
-    def tell(self, error: LinkwrightError) -> None:
+    def log_error(self, error: LinkwrightError) -> None:
         """Log a finding, with its place and hint."""
         self.get_logger().error("\n".join(render(diagnostic) for diagnostic in error.diagnostics))
 

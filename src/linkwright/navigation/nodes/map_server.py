@@ -76,7 +76,7 @@ class MapServerNode(ManagedNode):
         try:
             self._load(request.map_url)
         except LinkwrightError as error:
-            self.tell(error)
+            self.log_error(error)
             response.result = _result(error, response)
             return response
         self._publisher.publish(self._map)

@@ -397,7 +397,7 @@ class RvizConfig:
         proposed, self._proposed = self._proposed, None
         if proposed is None or not isfinite(diagonal + ground) or diagonal <= 0:
             return []
-        return proposed.mended(diagonal, ground)
+        return proposed.corrections(diagonal, ground)
 
     def copy(self) -> RvizConfig:
         """Return a copy that has no file."""
@@ -519,7 +519,7 @@ class _Proposed:
         found = _sizes(displays, size or _ANY_SIZE, ground=1.0)
         self._texts = {path: display.section.text(*path) for display, path, _ in found}
 
-    def mended(self, diagonal: float, ground: float) -> list[tuple[DisplayConfig, PropertyPath, float]]:
+    def corrections(self, diagonal: float, ground: float) -> list[tuple[DisplayConfig, PropertyPath, float]]:
         """Return the values that should be different, and were not changed since."""
         spacing = diagonal if self.size is None else self.size.spacing
         found = _sizes(self._displays, ModelSize(diagonal, spacing), ground)

@@ -100,18 +100,18 @@ class Entities:
         linear, angular = (rotate(frame[3:], numbers(each)) for each in (state.twist.linear, state.twist.angular))
         self._simulation.set_model_velocity(name, linear, angular)
 
-    def answer_get(self, service: str, request: Any, response: Any, tell: Callable[[Phrase], object]) -> Any:
-        """Answer ``gazebo_msgs/srv/GetEntityState``; `tell`, such as a logger, receives the reason of a failure."""
+    def answer_get(self, service: str, request: Any, response: Any, log: Callable[[Phrase], object]) -> Any:
+        """Answer ``gazebo_msgs/srv/GetEntityState``; `log`, such as a logger, receives the reason of a failure."""
         response.header = Header(Time.from_nanoseconds(self._simulation.time), request.reference_frame or WORLD)
 
         def get() -> None:
             response.state = self.state(request.name, request.reference_frame)
 
-        return _answered_without_text(response, get, service, tell)
+        return _answered_without_text(response, get, service, log)
 
-    def answer_set(self, service: str, request: Any, response: Any, tell: Callable[[Phrase], object]) -> Any:
-        """Answer ``gazebo_msgs/srv/SetEntityState``; `tell`, such as a logger, receives the reason of a failure."""
-        return _answered_without_text(response, partial(self.put, request.state), service, tell)
+    def answer_set(self, service: str, request: Any, response: Any, log: Callable[[Phrase], object]) -> Any:
+        """Answer ``gazebo_msgs/srv/SetEntityState``; `log`, such as a logger, receives the reason of a failure."""
+        return _answered_without_text(response, partial(self.put, request.state), service, log)
 
     def _one(self, name: str, known: Collection[str]) -> str:
         if name in known:
@@ -137,15 +137,15 @@ def answered(response: Any, work: Callable[[], str]) -> Any:
 
 
 def _answered_without_text(
-    response: Any, work: Callable[[], object], service: str, tell: Callable[[Phrase], object]
+    response: Any, work: Callable[[], object], service: str, log: Callable[[Phrase], object]
 ) -> Any:
-    """Return a response with `success` alone; `tell`, such as a logger, receives the reason of a failure."""
+    """Return a response with `success` alone; `log`, such as a logger, receives the reason of a failure."""
     try:
         work()
         response.success = True
     except LinkwrightError as error:
         response.success = False
-        tell(refused(service, error))
+        log(refused(service, error))
     return response
 
 

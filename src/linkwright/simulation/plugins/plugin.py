@@ -235,11 +235,11 @@ class SimulatedPlugin(Generic[P]):
             return LinkwrightError(Diagnostic("SIM160", message))
         return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
 
-    def close(self, tell: Callable[[Exception], object]) -> None:
+    def close(self, on_error: Callable[[Exception], object]) -> None:
         """Remove it: `stop`, and everything that it made; an error of `stop` is reported."""
         for task in self._tasks:
             task.cancelled = True
-        self.node.calls.close(self.stop, tell)
+        self.node.calls.close(self.stop, on_error)
         self.node.close()
 
     def _found(self, name: str, known: Collection[str], code: str) -> str:

@@ -47,7 +47,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             self.node.service(f"gazebo_msgs/srv/{name}", f"{verb}_{kind}_properties", callback)
 
     def _model(self, request: Any, response: Any) -> Any:
-        def tell() -> str:
+        def read() -> str:
             scene_model = self.simulation.scene.models[self._entities.model(request.model_name)]
             model, begin = scene_model.model, f"{scene_model.name}{SEPARATOR}"
             response.canonical_link_name = begin + (
@@ -60,10 +60,10 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             response.is_static = model.static
             return "GetModelProperties: got properties"
 
-        return answered(response, tell)
+        return answered(response, read)
 
     def _link(self, request: Any, response: Any) -> Any:
-        def tell() -> str:
+        def read() -> str:
             simulation = self.simulation
             number = simulation.body(self._entities.link(request.link_name))
             body = simulation.model.body(number)
@@ -74,10 +74,10 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             response.ixx, response.iyy, response.izz = body.inertia.tolist()
             return "GetLinkProperties: got properties"
 
-        return answered(response, tell)
+        return answered(response, read)
 
     def _joint(self, request: Any, response: Any) -> Any:
-        def tell() -> str:
+        def read() -> str:
             simulation = self.simulation
             placed = simulation.scene.joints[self._entities.joint(request.joint_name)]
             response.type = _TYPES.get(placed.joint.type, 0)
@@ -87,7 +87,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
                 response.damping = [float(simulation.model.joint(placed.name).damping[0])]
             return "GetJointProperties: got properties"
 
-        return answered(response, tell)
+        return answered(response, read)
 
     def _set_link(self, request: Any, response: Any) -> Any:
         def put() -> str:

@@ -27,14 +27,14 @@ class SharedRenderer:
         self._reported = False
 
     def render(
-        self, optics: Optics, pose: Transform, wanted: Wanted, tell: Callable[[Phrase], object]
+        self, optics: Optics, pose: Transform, wanted: Wanted, report: Callable[[Phrase], object]
     ) -> RenderedImage:
-        """Render the camera's current view; before the first image, call `tell` with the kind of renderer."""
+        """Render the camera's current view; before the first image, call `report` with the kind of renderer."""
         if self._renderer is None or self._thread != threading.get_ident():
             self._renderer, self._thread = make_renderer(self._simulation), threading.get_ident()
         if not self._reported:
             self._reported = True
-            tell(self._renderer.way)
+            report(self._renderer.way)
         return self._renderer.render(optics, pose, wanted)
 
     def release(self) -> None:

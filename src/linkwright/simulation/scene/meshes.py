@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.decomposition import convex_pieces, thickened
-from linkwright.geometry.mesh_files import BadMeshError, beside, told_triangles
+from linkwright.geometry.mesh_files import BadMeshError, beside, declared_triangles
 from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts, read_png
 from linkwright.geometry.meshes import read_mesh, unreadable
 from linkwright.geometry.polygon import triangulated
@@ -116,7 +116,7 @@ class MeshLibrary:
         if not isinstance(shape, Mesh) or path is None:
             return []
         try:
-            _bounded(path, told_triangles(path) or 0)
+            _bounded(path, declared_triangles(path) or 0)
             if shape.submesh is not None:
                 parts = [part.triangles for part in self._parts(shape, path)]
                 vertices, faces = _joined(parts)
@@ -231,7 +231,7 @@ class MeshLibrary:
         return found
 
     def _parts(self, shape: Mesh, path: Path) -> list[MeshPart]:
-        _bounded(path, told_triangles(path) or 0)
+        _bounded(path, declared_triangles(path) or 0)
         try:
             parts = read_parts(path, resolver=beside(str(path)))
         except BadMeshError as error:

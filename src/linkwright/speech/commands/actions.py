@@ -128,10 +128,10 @@ class Stop:
     """Stop, and end everything that commands have started.
 
     Attributes:
-        tells: what is published besides, for others that drive the robot; also when it begins to move otherwise.
+        publishes: what is published besides, for others that drive the robot; also when it begins to move otherwise.
     """
 
-    tells: tuple[Publish, ...] = ()
+    publishes: tuple[Publish, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

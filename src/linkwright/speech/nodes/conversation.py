@@ -37,9 +37,9 @@ class Conversation:
         driver: moves the robot.
         requests: calls services and actions of other nodes.
         patience: the timeout of a question, s.
-        tell_command: called with each command that is executed: its intent, and ``slot=value`` for each filled slot, in
-            m, rad, s and m/s.
-        say: called with each answer of the robot.
+        report_command: called with each command that is executed: its intent, and ``slot=value`` for each filled slot,
+            in m, rad, s and m/s.
+        respond: called with each answer of the robot.
     """
 
     def __init__(
@@ -50,19 +50,19 @@ class Conversation:
         driver: Driver,
         requests: Requests,
         patience: float,
-        tell_command: Callable[[str], None],
-        say: Callable[[str], None],
+        report_command: Callable[[str], None],
+        respond: Callable[[str], None],
     ) -> None:
         self._commands, self._language = commands, language
         self._driver, self._requests = driver, requests
-        self._tell_command, self._say = tell_command, say
+        self._report_command, self._respond = report_command, respond
         self._asked: tuple[Understood, str] | None = None
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         self._patience = node.create_timer(patience, self._unanswered, clock=clock, autostart=False)
         for command in commands.commands:
             requests.prepare(command.action)
-            for tell in command.action.tells if isinstance(command.action, Stop) else ():
-                requests.prepare(tell)
+            for publication in command.action.publishes if isinstance(command.action, Stop) else ():
+                requests.prepare(publication)
 
     @property
     def is_busy(self) -> bool:
@@ -87,7 +87,7 @@ class Conversation:
         self._answer_in(found.language)
         if found.command.question:
             self._asked = found, text
-            self._say(str(filled(chosen(found.command.question, self._language), found.values)))
+            self._respond(str(filled(chosen(found.command.question, self._language), found.values)))
             self._patience.reset()
         else:
             self._carry_out(found, text)
@@ -108,8 +108,8 @@ class Conversation:
             found = self._commands.understand(text)
             if found is not None:
                 self._answer_in(found.language)
-            self._tell_command(stop.intent)
-            self._say(chosen(stop.response, self._language) or text)
+            self._report_command(stop.intent)
+            self._respond(chosen(stop.response, self._language) or text)
 
     def rest(self, why: Phrase) -> None:
         """Stop driving because the speaker is lost."""
@@ -118,7 +118,7 @@ class Conversation:
 
     def answer(self, text: Phrase) -> None:
         """Answer in the language that was spoken last."""
-        self._say(localized(text, "zh" if self._language.startswith("zh") else "en"))
+        self._respond(localized(text, "zh" if self._language.startswith("zh") else "en"))
 
     def drive_ended(self, ending: Ending) -> None:
         """Handle the end of a drive: done, or out of time."""
@@ -144,14 +144,14 @@ class Conversation:
             self.stop(text)
             return
         values = found.values
-        self._tell_command(
+        self._report_command(
             " ".join([found.command.intent, *(f"{name}={shown(value)}" for name, value in values.items())])
         )
         problem = self._done(found)
         if problem is not None:
             self.answer(problem)
         else:
-            self._say(str(filled(chosen(found.command.response, self._language) or text, values)))
+            self._respond(str(filled(chosen(found.command.response, self._language) or text, values)))
 
     def _done(self, found: Understood) -> Phrase | None:
         """Carry out an action; None, or the reason why it cannot be done."""
@@ -190,8 +190,8 @@ class Conversation:
 
     def _notify_others(self) -> None:
         for stop in self._commands.stops:
-            for tell in stop.action.tells if isinstance(stop.action, Stop) else ():
-                self._requests.publish(tell, {})
+            for publication in stop.action.publishes if isinstance(stop.action, Stop) else ():
+                self._requests.publish(publication, {})
 
     def _forget(self) -> None:
         self._asked = None

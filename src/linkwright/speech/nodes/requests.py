@@ -105,11 +105,11 @@ class Requests:
     Args:
         node: the node that sends requests.
         ended: called when a goal is over; see `Goals`.
-        say: called with the ``message`` of a service's response.
+        respond: called with the ``message`` of a service's response.
     """
 
-    def __init__(self, node: Node, ended: Callable[[bool, str], None], say: Callable[[str], None]) -> None:
-        self._node, self._ended, self._say = node, ended, say
+    def __init__(self, node: Node, ended: Callable[[bool, str], None], respond: Callable[[str], None]) -> None:
+        self._node, self._ended, self._respond = node, ended, respond
         self._goals: dict[str, Goals] = {}
         self._publishers: dict[str, Publisher[Any]] = {}
         self._launched: subprocess.Popen[bytes] | None = None
@@ -222,7 +222,7 @@ class Requests:
         self._node.destroy_client(client)
         text = getattr(future.result(), "message", "")
         if text and isinstance(text, str):
-            self._say(text)
+            self._respond(text)
 
 
 def _word(value: Any) -> str:

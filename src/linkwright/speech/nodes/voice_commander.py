@@ -39,7 +39,7 @@ _DEPTH = 10
 _LOOK_SECONDS = 0.5
 _STRING = "std_msgs/msg/String"
 _BOOL = "std_msgs/msg/Bool"
-_SAID = ("text", "partial_text", "command", "response")
+_TEXT_TOPICS = ("text", "partial_text", "command", "response")
 _MOST_LOST = 0.15
 """Seconds of sound that may be missing in what is done. Of synthetic enrolled words with such holes and smaller ones
 none was taken for another one (0 of 480); of those from which 0.25 s were cut 5 of 60 were.
@@ -105,7 +105,7 @@ class VoiceCommander(SingleNode):
 
         commands = read_command_file(Path(file) if file else DEFAULT_FILE)
         publishers: dict[str, Publisher[Any]] = {
-            name: node.create_publisher(_STRING, f"voice/{name}", _DEPTH) for name in _SAID
+            name: node.create_publisher(_STRING, f"voice/{name}", _DEPTH) for name in _TEXT_TOPICS
         }
         self._publish_text = {
             name: lambda text, to=publisher: to.publish(to.msg_type(data=text))

@@ -27,7 +27,7 @@ from linkwright.speech.page.floor import Floor, SoundBudget
 from linkwright.speech.page.words import WordBook
 from linkwright.speech.sound.samples import RATE
 
-_SAID: dict[ConversationPart, str] = {
+_TOPICS: dict[ConversationPart, str] = {
     "partial": "/voice/partial_text",
     "text": "/voice/text",
     "command": "/voice/command",
@@ -68,7 +68,7 @@ class VoiceFeature(PageFeature):
 
     def opening(self) -> list[ServerMessage]:
         """Return whether there is a node to talk to; others may answer too, such as one that seeks objects."""
-        return [VoiceNode(self._node.count_publishers(_SAID["command"]) > 0)]
+        return [VoiceNode(self._node.count_publishers(_TOPICS["command"]) > 0)]
 
     def receive(self, page: Page, message: Any) -> None:
         """Publish sound or a text, set the talking page, or start or stop sending to a page."""
@@ -170,7 +170,7 @@ class VoiceFeature(PageFeature):
         if self._watchers and not self._subscriptions:
             self._subscriptions = [
                 self._node.create_subscription("std_msgs/msg/String", topic, partial(self._send_text, part), _DEPTH)
-                for part, topic in _SAID.items()
+                for part, topic in _TOPICS.items()
             ]
             self._subscriptions.append(
                 self._node.create_subscription("std_msgs/msg/Bool", _PROPOSE, self._handle_proposal, _DEPTH)

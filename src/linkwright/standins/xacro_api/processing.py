@@ -254,10 +254,10 @@ def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None
 
 def _print_remarks(diagnostics: Sequence[Diagnostic]) -> None:
     quiet = STATE.verbosity <= 0
-    reported = [found for found in diagnostics if not quiet or found.severity is Severity.ERROR or _is_said(found)]
+    reported = [found for found in diagnostics if not quiet or found.severity is Severity.ERROR or _is_printed(found)]
     print_diagnostics(reported, sys.stderr)
 
 
-def _is_said(diagnostic: Diagnostic) -> bool:
+def _is_printed(diagnostic: Diagnostic) -> bool:
     """Return whether the description itself printed it, with ``xacro.message`` or similar."""
     return diagnostic.code.startswith("XAC7")

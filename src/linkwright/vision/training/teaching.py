@@ -39,12 +39,12 @@ class Taught:
     interrupted: bool
 
 
-def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
+def teach(options: Options, on_epoch: Callable[[Epoch], None]) -> Taught:
     """Train a network, export it, evaluate the file, and write its card beside it.
 
     Args:
         options: the options.
-        tell: called after each epoch.
+        on_epoch: called after each epoch.
 
     Raises:
         LinkwrightError: VISION301 PyTorch is not installed, VISION302 to VISION305 see `open_dataset` and
@@ -73,7 +73,7 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
         course.begin_with(options.weights)
     interrupted = False
     try:
-        course.run(tell)
+        course.run(on_epoch)
     except KeyboardInterrupt:
         if course.epoch == 0:
             raise

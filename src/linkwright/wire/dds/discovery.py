@@ -161,7 +161,7 @@ class Discovery:
             self._remote.remove_endpoint(guid)
             return
         facts = parse_user_data(self._dds.user_data(qos))
-        profile = profile_of(qos, tells_history=not is_fast(guid))
+        profile = profile_of(qos, announces_history=not is_fast(guid))
         endpoint = RemoteEndpoint(guid, info.instance_handle, owner, is_writer, topic, type_name, profile, facts)
         self._remote.add_endpoint(endpoint)
         if is_writer and topic == DISCOVERY_TOPIC:

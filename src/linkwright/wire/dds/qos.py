@@ -86,12 +86,12 @@ def participant_qos(user_data: bytes, entity_name: str) -> Iterator[int]:
         dds.dds_delete_qos(qos)
 
 
-def profile_of(qos: int, *, tells_history: bool = True) -> QoSProfile:
+def profile_of(qos: int, *, announces_history: bool = True) -> QoSProfile:
     """The ROS profile of a remote endpoint's policies.
 
     Args:
         qos: the policies.
-        tells_history: whether the endpoint announces its history; Cyclone has only a default for one that does not.
+        announces_history: whether the endpoint announces its history; Cyclone has only a default for one that does not.
     """
     dds = load()
     kind, depth, duration = c.c_int(), c.c_int32(), c.c_int64()
@@ -101,7 +101,7 @@ def profile_of(qos: int, *, tells_history: bool = True) -> QoSProfile:
         return Duration(nanoseconds=duration.value) if found and 0 < duration.value < INFINITY else INFINITE
 
     history, length = HistoryPolicy.UNKNOWN, 0
-    if tells_history and dds.dds_qget_history(qos, c.byref(kind), c.byref(depth)):
+    if announces_history and dds.dds_qget_history(qos, c.byref(kind), c.byref(depth)):
         history = HistoryPolicy.KEEP_ALL if kind.value == _KEEP_ALL else HistoryPolicy.KEEP_LAST
         length = 0 if history is HistoryPolicy.KEEP_ALL else max(depth.value, 1)
     reliability = ReliabilityPolicy.UNKNOWN

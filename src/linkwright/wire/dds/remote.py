@@ -140,8 +140,8 @@ class RemoteEndpoint:
         if type_name is None:
             return None
         # rmw_fastrtps announces the hash of the request or the response, the others that of the service.
-        tells_hash = name.role is Role.TOPIC or not self.is_fast
-        type_hash = self.facts.get("typehash", "") if tells_hash else ""
+        announces_hash = name.role is Role.TOPIC or not self.is_fast
+        type_hash = self.facts.get("typehash", "") if announces_hash else ""
         return EndpointInfo(kind, node, name.name, type_name, self.qos, self.guid, type_hash, host=host)
 
 

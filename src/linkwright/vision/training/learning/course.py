@@ -94,11 +94,11 @@ class Course:
         self._step = 0
         self._optimizer = Optimizer(self.network, options.rate)
 
-    def run(self, tell: Callable[[Epoch], None]) -> None:
+    def run(self, on_epoch: Callable[[Epoch], None]) -> None:
         """Train until the last epoch, with a checkpoint after each.
 
         Args:
-            tell: called after each epoch.
+            on_epoch: called after each epoch.
 
         Raises:
             KeyboardInterrupt: it was interrupted; `best` has the best weights so far.
@@ -113,7 +113,7 @@ class Course:
                 self.best, self.best_map, self.best_epoch = deepcopy(self.smooth.state_dict()), judged.map, self.epoch
             self.seconds += time.monotonic() - began
             self.save(self.options.output / "last.pt")
-            tell(Epoch(self.epoch, losses, judged, best))
+            on_epoch(Epoch(self.epoch, losses, judged, best))
 
     @property
     def place(self) -> str:
