@@ -85,9 +85,9 @@ class Forked:
         self.send_signal(signal.SIGKILL)
 
     def _read_number(self) -> int:
-        told = os.read(self._report, NUMBER.size)
-        assert told, f"the fork server has ended: {self._server.close()}"
-        number: int = NUMBER.unpack(told)[0]
+        result = os.read(self._report, NUMBER.size)
+        assert result, f"the fork server has ended: {self._server.close()}"
+        number: int = NUMBER.unpack(result)[0]
         return number
 
 

@@ -48,9 +48,9 @@ def test_what_fails_once_passes_three_times_over_and_is_named(project, capfd):
     write(project, UNSTEADY.replace("FAILING", "(1,)"))
     assert run() == 0
     assert (project / "runs").read_text() == "xxxx"
-    said = capfd.readouterr().out
-    assert "1 failed, 1 passed" in said
-    assert said.rstrip().endswith("UNSTEADY: failed once, then passed 3 times over:\n  test_it.py::test_b")
+    output = capfd.readouterr().out
+    assert "1 failed, 1 passed" in output
+    assert output.rstrip().endswith("UNSTEADY: failed once, then passed 3 times over:\n  test_it.py::test_b")
 
 
 @pytest.mark.parametrize("failing", ["(1, 2)", "(1, 4)", "range(9)"])

@@ -27,7 +27,7 @@ def wait_until(
     """
     limit = time.monotonic() + seconds
     while not condition():
-        assert time.monotonic() < limit, _said(seconds, what)
+        assert time.monotonic() < limit, _failure(seconds, what)
         time.sleep(pause)
 
 
@@ -35,7 +35,7 @@ async def eventually(condition: Callable[[], object], seconds: float = SECONDS, 
     """Let the other tasks go on until a condition holds."""
     limit = time.monotonic() + seconds
     while not condition():
-        assert time.monotonic() < limit, _said(seconds, what)
+        assert time.monotonic() < limit, _failure(seconds, what)
         await asyncio.sleep(_PAUSE)
 
 
@@ -49,5 +49,5 @@ def is_waiting(thread: threading.Thread) -> bool:
     return code.co_filename == threading.__file__ or (code.co_name, Path(code.co_filename).name) == _EXECUTOR_WAITS
 
 
-def _said(seconds: float, what: object) -> str:
+def _failure(seconds: float, what: object) -> str:
     return f"not so within {seconds} s: {what() if callable(what) else what}"

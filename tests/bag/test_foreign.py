@@ -62,12 +62,12 @@ def write(path: Path, declared: bytes, kind: str, profile: str = "") -> Path:
         for stamp in stamps
         for channel in (1, 2, 3)
     ]
-    said = declared + b"".join(parts)
+    data = declared + b"".join(parts)
     head = MAGIC + record(0x01, text(profile) + text("another program"))
     span = struct.pack("<QQ", stamps[0], stamps[-1])
-    chunk = record(0x06, span + struct.pack("<QI", len(said), 0) + text("") + struct.pack("<Q", len(said)) + said)
+    chunk = record(0x06, span + struct.pack("<QI", len(data), 0) + text("") + struct.pack("<Q", len(data)) + data)
     summary, summary_at = b"", 0
-    body = said if kind == "loose" else chunk
+    body = data if kind == "loose" else chunk
     if kind == "indexed":
         places, offsets = b"", b""
         for number in (1, 2, 3):
@@ -77,7 +77,7 @@ def write(path: Path, declared: bytes, kind: str, profile: str = "") -> Path:
         body += places
         counts = b"".join(struct.pack("<HQ", number, 5) for number in (1, 2, 3))
         index = span + struct.pack("<QQ", len(head), len(chunk)) + text(offsets) + struct.pack("<Q", len(places))
-        index += text("") + struct.pack("<QQ", len(said), len(said))
+        index += text("") + struct.pack("<QQ", len(data), len(data))
         statistics = struct.pack("<QHIIII", 15, 3, 3, 0, 0, 1) + span + text(counts)
         summary = declared + record(0x08, index) + record(0x0B, statistics)
     end = record(0x0F, bytes(4))
@@ -108,10 +108,10 @@ def test_topics_of_ros_2_are_read_and_the_others_are_named(tmp_path: Path, kind:
 def test_a_file_without_a_topic_of_ros_2_is_one_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write(tmp_path / "x.mcap", OTHERS, "indexed")
     assert main(["bag", "info", str(path)]) == 1
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert "error[BAG102]" in said.err
-    assert "is not a recording of ROS 2: /pose (protobuf), /thing (json)" in said.err
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert "error[BAG102]" in output.err
+    assert "is not a recording of ROS 2: /pose (protobuf), /thing (json)" in output.err
 
 
 def test_a_recording_of_ros_1_says_how_it_becomes_one_of_ros_2(tmp_path: Path) -> None:

@@ -155,7 +155,7 @@ def states(clock: Clock, history: History, positions: list[float], *, start: flo
         history.add("/joint_states", data, content=content_of(JointState.TYPE_NAME, data))
 
 
-def told(messages: list[tuple[str, int, bytes]]) -> list[tuple[float, float]]:
+def positions(messages: list[tuple[str, int, bytes]]) -> list[tuple[float, float]]:
     """Position and stamp, in seconds, of joint states."""
     read = [deserialize(whole(data), JointState) for _, _, data in messages]
     return [(each.position[0], each.header.stamp.sec + each.header.stamp.nanosec / 1e9) for each in read]
@@ -171,7 +171,7 @@ def test_a_robot_that_stands_still_takes_two_messages_in_ten_seconds() -> None:
     assert history.size == size + 2 * (size // 12)
     # The state of any time in between is the same, with a stamp that is no older than that time.
     for second in (0.5, 7.0, 29.99, 65.0):
-        ((position, stamp),) = told(history.state_at(["/joint_states"], int(second * SECOND)))
+        ((position, stamp),) = positions(history.state_at(["/joint_states"], int(second * SECOND)))
         assert position == 1.5
         assert stamp >= second
 
@@ -182,9 +182,9 @@ def test_what_moves_again_is_kept_as_it_came() -> None:
     still, moves = [0.0] * 300, [number / 100 for number in range(1, 301)]
     states(clock, history, [*still, *moves, *still])
     assert history.count == 2 + 300 + 2
-    assert told(history.state_at(["/joint_states"], int(2.5 * SECOND)))[0][0] == 0.0
-    assert told(history.state_at(["/joint_states"], int(4.5 * SECOND)))[0] == pytest.approx((1.51, 4.5))
-    assert told(history.state_at(["/joint_states"], int(8.5 * SECOND)))[0][0] == 0.0
+    assert positions(history.state_at(["/joint_states"], int(2.5 * SECOND)))[0][0] == 0.0
+    assert positions(history.state_at(["/joint_states"], int(4.5 * SECOND)))[0] == pytest.approx((1.51, 4.5))
+    assert positions(history.state_at(["/joint_states"], int(8.5 * SECOND)))[0][0] == 0.0
     back_and_forth = History(10**8, clock)
     states(clock, back_and_forth, [0.0, 1.0] * 100, start=20.0)
     assert back_and_forth.count == 200
@@ -198,7 +198,7 @@ def test_a_part_of_a_robot_that_stands_still_is_as_long_as_it_was_asked_for() ->
     for start, end, last in ((1.0, 2.5, 0.0), (2.0, 4.5, 1.51), (4.5, 8.9, 0.0)):
         part = history.part(int(start * SECOND), int(end * SECOND))
         assert (part[0][1], part[-1][1]) == (int(start * SECOND), int(end * SECOND))
-        assert told(part)[-1][0] == pytest.approx(last)
+        assert positions(part)[-1][0] == pytest.approx(last)
 
 
 def test_transforms_of_each_publisher_stand_still_by_themselves() -> None:

@@ -69,8 +69,8 @@ async def test_topics_that_appear_later_are_recorded_until_all_are_there(
     await clock.advance(0.1)
     recorder.close()
     assert texts(tmp_path / "bag") == ["late"]
-    said = [record.text for record in log if record.node == "recorder"]
-    assert said == [
+    logged = [record.text for record in log if record.node == "recorder"]
+    assert logged == [
         "Listening for topics...",
         "Subscribed to topic '/chatter'",
         "All requested topics are subscribed. Stopping discovery...",

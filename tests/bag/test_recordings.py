@@ -173,7 +173,7 @@ def parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:
     return made
 
 
-def said(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
+def texts(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
     return [deserialize(data, String).data for _, _, data in messages]
 
 
@@ -184,10 +184,10 @@ def test_numbered_files_without_metadata_are_one_recording(tmp_path: Path, stora
         assert {topic.name: topic.count for topic in bag.topics} == {"/chatter": 9, "/other": 1}
         assert (bag.start_ns, bag.end_ns) == (START, START + 2_800_000_000)
         whole = list(bag.messages())
-        assert said(whole) == ["0.0", "early", "0.1", "0.2", "1.0", "1.1", "1.2", "2.0", "2.1", "2.2"]
+        assert texts(whole) == ["0.0", "early", "0.1", "0.2", "1.0", "1.1", "1.2", "2.0", "2.1", "2.2"]
         assert [stamp for _, stamp, _ in whole] == sorted(stamp for _, stamp, _ in whole)
-        assert said(bag.messages(["/chatter"], START + 1_700_000_000)) == ["1.2", "2.0", "2.1", "2.2"]
-        assert said(bag.state_at(["/chatter", "/other"], START + 1_900_000_000)) == ["early", "1.2"]
+        assert texts(bag.messages(["/chatter"], START + 1_700_000_000)) == ["1.2", "2.0", "2.1", "2.2"]
+        assert texts(bag.state_at(["/chatter", "/other"], START + 1_900_000_000)) == ["early", "1.2"]
         assert bag.time_before(["/chatter"], START + 1_000_000_000) == START + 800_000_000
         assert sum(bag.counts(10)["/chatter"]) == 9
         assert sorted(bag.files) == sorted(files)
@@ -407,7 +407,7 @@ def test_overrides() -> None:
 
 
 @pytest.mark.parametrize(
-    ("document", "said"),
+    ("document", "message"),
     [
         ([1], "map topics"),
         ({"/a": {"reliability": "best_efort"}}, "best_effort"),
@@ -416,16 +416,16 @@ def test_overrides() -> None:
         ({"/a": {"deadline": 5}}, "not a duration"),
     ],
 )
-def test_wrong_overrides_are_told(document: object, said: str) -> None:
+def test_wrong_overrides_are_told(document: object, message: str) -> None:
     with pytest.raises(LinkwrightError) as error:
         overrides_of(document, "qos.yaml")
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "BAG106"
-    assert said in f"{diagnostic.message} {diagnostic.hint}"
+    assert message in f"{diagnostic.message} {diagnostic.hint}"
 
 
 @pytest.mark.parametrize(
-    ("name", "beginning", "said"),
+    ("name", "beginning", "message"),
     [
         ("a.mcap", b"", "the file is empty"),
         ("a.mcap", b"no recording", "it does not begin as a file of MCAP does"),
@@ -437,9 +437,11 @@ def test_wrong_overrides_are_told(document: object, said: str) -> None:
         ("a.mcap", b"\x28\xb5\x2f\xfd1234", "it is compressed with zstd"),
     ],
 )
-def test_what_a_file_is_instead_of_a_recording_is_told(tmp_path: Path, name: str, beginning: bytes, said: str) -> None:
+def test_what_a_file_is_instead_of_a_recording_is_told(
+    tmp_path: Path, name: str, beginning: bytes, message: str
+) -> None:
     (tmp_path / name).write_bytes(beginning)
-    with pytest.raises(LinkwrightError, match=said) as error:
+    with pytest.raises(LinkwrightError, match=message) as error:
         BagReader(tmp_path / name)
     assert error.value.diagnostics[0].hint
 

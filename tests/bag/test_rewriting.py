@@ -55,13 +55,13 @@ def test_files_of_a_second_each_hold_the_recording_and_the_metadata_list_them(tm
     suffix = (".mcap" if storage == "mcap" else ".db3") + (".zstd" if compression == "file" else "")
     names = [f"drive_{number}{suffix}" for number in range(4)]
     assert sorted(path.name for path in folder.iterdir()) == [*names, "metadata.yaml"]
-    told = metadata(folder)
-    assert told["relative_file_paths"] == names
-    assert [(each["path"], each["message_count"]) for each in told["files"]] == list(
+    result = metadata(folder)
+    assert result["relative_file_paths"] == names
+    assert [(each["path"], each["message_count"]) for each in result["files"]] == list(
         zip(names, (11, 11, 11, 7), strict=True)
     )
-    assert told["message_count"] == told["topics_with_message_count"][0]["message_count"] == 40
-    assert told["duration"]["nanoseconds"] == 39 * SECOND // 10
+    assert result["message_count"] == result["topics_with_message_count"][0]["message_count"] == 40
+    assert result["duration"]["nanoseconds"] == 39 * SECOND // 10
     assert content(folder) == whole()
 
 
@@ -154,7 +154,7 @@ def test_recordings_are_merged_by_time_and_divided_by_topics(tmp_path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("document", "said"),
+    ("document", "message"),
     [
         ("{}", "needs the key 'output_bags'"),
         ("output_bags: [{all: true}]", "needs the key 'uri'"),
@@ -164,11 +164,11 @@ def test_recordings_are_merged_by_time_and_divided_by_topics(tmp_path) -> None:
         ("output_bags: [", "cannot be used as options"),
     ],
 )
-def test_options_of_another_form_are_refused_before_anything_is_made(tmp_path, document, said) -> None:
+def test_options_of_another_form_are_refused_before_anything_is_made(tmp_path, document, message) -> None:
     source = write(tmp_path / "one", count=1)
     path = tmp_path / "options.yaml"
     path.write_text(document, encoding="utf-8")
-    with pytest.raises(LinkwrightError, match=said):
+    with pytest.raises(LinkwrightError, match=message):
         rewrite([source], path)
     shutil.rmtree(source)
     assert [path.name for path in tmp_path.iterdir()] == ["options.yaml"]

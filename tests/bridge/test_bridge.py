@@ -70,12 +70,12 @@ def test_nodes_are_seen_by_their_names_with_what_they_publish_and_vanish_with_it
     qos = QoSProfile(7, reliability=ReliabilityPolicy.BEST_EFFORT)
     there.node.create_publisher(String, "/far/chatter", qos)
 
-    def told():
+    def reported():
         return here.node.get_publishers_info_by_topic("/far/chatter")
 
     # On DDS whose an endpoint is comes after the endpoint itself.
-    spin_all(lambda: [each.node_name for each in told()] == ["there"], here)
-    (seen,) = told()
+    spin_all(lambda: [each.node_name for each in reported()] == ["there"], here)
+    (seen,) = reported()
     assert seen.topic_type == "std_msgs/msg/String"
     assert seen.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
     assert seen.qos_profile.depth == 7
@@ -93,22 +93,22 @@ def test_nodes_are_seen_with_what_they_subscribe_to_and_call(networks, source, t
     subscription = there.node.create_subscription(String, "/far/chatter", print, qos)
     there.node.create_client(AddTwoInts, "/far/add")
 
-    def told():
+    def reported():
         found = here.node.get_subscriptions_info_by_topic("/far/chatter")
         return [each for each in found if each.node_name == "there"]
 
     def called():
         return dict(here.node.get_client_names_and_types_by_node("there", "/"))
 
-    spin_all(lambda: told() and "/far/add" in called(), here, there)
-    (seen,) = told()
+    spin_all(lambda: reported() and "/far/add" in called(), here, there)
+    (seen,) = reported()
     assert (seen.topic_type, seen.topic_type_hash) == ("std_msgs/msg/String", type_hash(String))
     assert seen.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
     assert seen.qos_profile.deadline == Duration(seconds=2)
     assert called()["/far/add"] == ["example_interfaces/srv/AddTwoInts"]
     assert not subscription.get_publisher_count()
     subscription.destroy()
-    spin_all(lambda: not told(), here, there)
+    spin_all(lambda: not reported(), here, there)
     there.close()
     spin_all(lambda: "there" not in here.node.get_node_names(), here)
 
@@ -290,7 +290,7 @@ def test_what_cannot_be_published_is_told_and_the_next_is_published():
 
 def test_a_bridge_looks_again_when_a_process_was_killed():
     """Long before the lease of its participant is over."""
-    told = []
+    messages = []
 
     class Transport:
         def watch(self, changed):
@@ -303,12 +303,12 @@ def test_a_bridge_looks_again_when_a_process_was_killed():
             pass
 
     transport, graph = Transport(), Graph(threads=True)
-    Side("DDS", graph, transport, "b0", needs_hashes=False).watch(lambda: told.append("look"))
+    Side("DDS", graph, transport, "b0", needs_hashes=False).watch(lambda: messages.append("look"))
     node = NodeIdentity("killed", "/")
     transport.lost(
         EndpointInfo(EndpointKind.PUBLISHER, node, "/rosout", "rcl_interfaces/msg/Log", QoSProfile(1), bytes(16))
     )
-    assert told == ["look"]
+    assert messages == ["look"]
     graph.close_now()
 
 
@@ -448,7 +448,7 @@ def test_what_cannot_be_carried_is_told_once(networks):
     strange.raw = True  # and without a hash, as those of Humble
     there.node.handle.add(strange)
     spin_all(lambda: "there" in here.node.get_node_names() and bridge.log, here, there)
-    (told,) = (record.text for record in bridge.log)
-    assert told.startswith("'/odd' is not carried from DDS")
-    assert "strange_msgs/msg/Odd" in told
+    (logged,) = (record.text for record in bridge.log)
+    assert logged.startswith("'/odd' is not carried from DDS")
+    assert "strange_msgs/msg/Odd" in logged
     assert not here.node.count_publishers("/odd")

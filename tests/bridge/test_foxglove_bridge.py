@@ -191,8 +191,8 @@ async def test_services_are_called():
         w.node.create_service(set_bool, "/light", answer)
         light = None
         while light is None:
-            told = (await client.until("advertiseServices"))["services"]
-            light = next((each for each in told if each["name"] == "/light"), None)
+            message = (await client.until("advertiseServices"))["services"]
+            light = next((each for each in message if each["name"] == "/light"), None)
         assert light["request"]["schema"] == light["requestSchema"] == "bool data\n"
         head = struct.pack("<BIII", 2, light["id"], 77, 3) + b"cdr"
         await client.socket.send_bytes(head + serialize(set_bool.Request(data=True)))
@@ -209,8 +209,8 @@ async def test_parameters_are_read_set_and_followed():
     async with world() as w, w.client() as client:
         w.node.declare_parameter("speed", 1.5)
         await client.send("getParameters", parameterNames=["/robot.speed"], id="one")
-        told = await client.until("parameterValues")
-        assert told == {
+        message = await client.until("parameterValues")
+        assert message == {
             "op": "parameterValues",
             "id": "one",
             "parameters": [{"name": "/robot.speed", "value": 1.5, "type": "float64"}],

@@ -18,13 +18,13 @@ def endpoint(kind: EndpointKind, type_name: str, hashed: str, qos: QoSProfile | 
     return EndpointInfo(kind, NodeIdentity("node", "/"), "/topic", type_name, qos or QoSProfile(10), bytes(16), hashed)
 
 
-@pytest.mark.parametrize("told", ["", OTHER_HASH], ids=["told no hash", "told its hash"])
+@pytest.mark.parametrize("message", ["", OTHER_HASH], ids=["told no hash", "told its hash"])
 @pytest.mark.parametrize("type_name", ["std_msgs/msg/String", "strange_msgs/msg/Odd"])
-def test_what_is_listened_to_before_its_publisher_comes_is_what_the_publisher_says(type_name, told):
+def test_what_is_listened_to_before_its_publisher_comes_is_what_the_publisher_says(type_name, message):
     """Else what it says first would be lost, while the bridge listens to another stream instead."""
     hashed = type_hash(type_name) if type_name.startswith("std_msgs") else OTHER_HASH
     publisher = endpoint(EndpointKind.PUBLISHER, type_name, hashed)
-    subscription = endpoint(EndpointKind.SUBSCRIPTION, type_name, told and hashed)
+    subscription = endpoint(EndpointKind.SUBSCRIPTION, type_name, message and hashed)
     assert stream_of(publisher, keyed=True) in awaited_streams(subscription, keyed=True)
 
 

@@ -59,8 +59,8 @@ def launched(folder: Path, *, headless: bool = False) -> Iterator[Firefox]:
         text = "".join(f"user_pref({json.dumps(name)}, {json.dumps(value)});\n" for name, value in _PREFERENCES.items())
         (folder / "user.js").write_text(text, encoding="utf-8")
         command = [find() or "firefox", "--no-remote", "--profile", str(folder), "--remote-debugging-port=0"]
-        said = _running([*command, *(["--headless"] if headless else [])], environment, folder / "firefox.log")
-        address = stack.enter_context(said)(r"WebDriver BiDi listening on (\S+)\n")
+        logged = _running([*command, *(["--headless"] if headless else [])], environment, folder / "firefox.log")
+        address = stack.enter_context(logged)(r"WebDriver BiDi listening on (\S+)\n")
         yield stack.enter_context(contextlib.closing(Firefox(address)))
 
 
@@ -68,15 +68,15 @@ def launched(folder: Path, *, headless: bool = False) -> Iterator[Firefox]:
 def _display(log: Path) -> Iterator[str]:
     """The name of a display of Xvfb, which chooses a free number and says it."""
     command = ["Xvfb", "-displayfd", "2", "-screen", "0", "1400x1000x24", "-nolisten", "tcp"]
-    with _running(command, dict(os.environ), log) as said:
-        yield ":" + said(r"^(\d+)\n")
+    with _running(command, dict(os.environ), log) as logged:
+        yield ":" + logged(r"^(\d+)\n")
 
 
 @contextlib.contextmanager
 def _running(command: list[str], environment: dict[str, str], log: Path) -> Iterator[Callable[[str], str]]:
     """Runs a program, and gives a function that waits until it says something."""
 
-    def said(pattern: str) -> str:
+    def logged(pattern: str) -> str:
         def found() -> re.Match[str] | None:
             return re.search(pattern, log.read_text(), re.MULTILINE)
 
@@ -87,7 +87,7 @@ def _running(command: list[str], environment: dict[str, str], log: Path) -> Iter
 
     with log.open("w") as output, subprocess.Popen(command, env=environment, stdout=output, stderr=output) as process:
         try:
-            yield said
+            yield logged
         finally:
             process.terminate()
             process.wait(timeout=SECONDS)
@@ -143,14 +143,14 @@ class Firefox:
 
     def evaluate(self, expression: str) -> Any:
         """The value of a JavaScript expression, by way of JSON."""
-        told = self.call(
+        text = self.call(
             "script.evaluate",
             expression=f"JSON.stringify({expression})",
             target={"context": self._tab},
             awaitPromise=False,
         )
-        assert told["type"] == "success", told
-        return json.loads(told["result"].get("value", "null"))
+        assert text["type"] == "success", text
+        return json.loads(text["result"].get("value", "null"))
 
     def until(self, condition: str) -> None:
         """Wait until a JavaScript condition over ``lw`` (window.linkwright) holds."""

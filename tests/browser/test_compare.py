@@ -55,7 +55,7 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
 def looks(page: Page, which: int) -> dict[str, tuple[str, float]]:
     """Colour and opacity of each link of the first or second robot."""
     robots = [each["drawn"] for each in state(page, "displays") if each["class"].endswith("RobotModel")]
-    shown = {name: told["visuals"] for name, told in robots[which]["links"].items()}
+    shown = {name: text["visuals"] for name, text in robots[which]["links"].items()}
     return {
         name: (shapes[0]["materials"][0]["color"], round(shapes[0]["materials"][0]["opacity"], 2))
         for name, shapes in shown.items()

@@ -66,7 +66,7 @@ def export(out: Path, model: Path, *values: str) -> None:
 def drawn(page) -> dict:
     """Every visual as it is drawn, by link."""
     robot = next(each for each in state(page, "displays") if each["class"].endswith("RobotModel"))["drawn"]
-    return {name: told["visuals"] for name, told in robot["links"].items()}
+    return {name: text["visuals"] for name, text in robot["links"].items()}
 
 
 def assert_alike(one: dict, other: dict) -> None:
@@ -215,12 +215,12 @@ def test_a_glb_that_is_shown_again_is_the_same_robot(live, open_page, tmp_path):
     viewer = live(ROBOT)
     again = f'<robot name="again"><link name="base">{mesh(path, "")}</link></robot>'
     viewer.publish("/robot_description", String(data=again), DESCRIPTION_QOS)
-    (told,) = drawn(open_page(viewer))["base"]
+    (drawing,) = drawn(open_page(viewer))["base"]
     bounds = [shape["bounds"] for shapes in before.values() for shape in shapes]
     for corner, choose in (("min", min), ("max", max)):
         expected = [choose(bound[corner][axis] for bound in bounds) for axis in range(3)]
-        assert told["bounds"][corner] == pytest.approx(expected, abs=1e-4)
-    assert len(told["materials"]) == 4
+        assert drawing["bounds"][corner] == pytest.approx(expected, abs=1e-4)
+    assert len(drawing["materials"]) == 4
 
 
 def test_files_from_outside_are_named_when_they_go_into_an_export(start, open_page, tmp_path):

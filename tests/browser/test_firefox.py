@@ -144,9 +144,9 @@ def test_without_webgl_the_page_says_so_and_its_panels_work(start, launch, tmp_p
     browser = launch(headless=True)
     browser.goto(program.url)
     browser.until("document.querySelector('.no-webgl')?.checkVisibility()")
-    said = browser.evaluate("document.querySelector('.no-webgl').innerText")
-    assert said.startswith("The 3D view needs WebGL 2, which this browser does not provide.\n")
-    assert "The other panels work without it." in said
+    message = browser.evaluate("document.querySelector('.no-webgl').innerText")
+    assert message.startswith("The 3D view needs WebGL 2, which this browser does not provide.\n")
+    assert "The other panels work without it." in message
     box, scene = (
         browser.evaluate(f"document.querySelector('{each}').getBoundingClientRect()")
         for each in (".no-webgl > strong", ".scene-box")

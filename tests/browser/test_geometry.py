@@ -101,26 +101,26 @@ def test_every_display_draws_its_message_where_it_is(live, open_page):
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.every((each) => each.drawn?.bounds)")
     viewer.settle(page)
-    told = drawn(page)
-    assert told["Pose"]["bounds"]["min"] == pytest.approx([1, -0.05, 0.95], abs=1e-3)
-    assert told["Pose"]["bounds"]["max"] == pytest.approx([2.3, 0.05, 1.05], abs=1e-3)
-    assert told["Guess"]["bounds"]["max"] == pytest.approx([1.3, 3.001, 2.001], abs=0.02)
-    assert (told["Cloud"]["arrows"], size(told["Cloud"])[:2]) == (0, pytest.approx([4.3, 0.12], abs=1e-3))
-    assert told["Particles"]["bounds"]["max"] == pytest.approx([1.16, 0.032, 3.5], abs=1e-3)
-    assert (told["Way"]["arrows"], told["Way"]["contents"]) == (3, 3)
-    assert (told["Plan"]["points"], told["Plan"]["axes"], told["Plan"]["wide"]) == (4, 4, True)
-    assert told["Plan"]["bounds"]["max"] == pytest.approx([3.3, 3.3, 1.3], abs=1e-3)
-    assert told["Field"] == {"contents": 1, "corners": 3, "bounds": {"min": [-3, -3, 1], "max": [-1, -1, 1]}}
-    assert told["Sonar"]["bounds"]["max"] == pytest.approx([2, 2, 3], abs=1e-2)
-    assert told["Sonar"]["bounds"]["min"][0] == pytest.approx(0, abs=1e-6)
+    drawing = drawn(page)
+    assert drawing["Pose"]["bounds"]["min"] == pytest.approx([1, -0.05, 0.95], abs=1e-3)
+    assert drawing["Pose"]["bounds"]["max"] == pytest.approx([2.3, 0.05, 1.05], abs=1e-3)
+    assert drawing["Guess"]["bounds"]["max"] == pytest.approx([1.3, 3.001, 2.001], abs=0.02)
+    assert (drawing["Cloud"]["arrows"], size(drawing["Cloud"])[:2]) == (0, pytest.approx([4.3, 0.12], abs=1e-3))
+    assert drawing["Particles"]["bounds"]["max"] == pytest.approx([1.16, 0.032, 3.5], abs=1e-3)
+    assert (drawing["Way"]["arrows"], drawing["Way"]["contents"]) == (3, 3)
+    assert (drawing["Plan"]["points"], drawing["Plan"]["axes"], drawing["Plan"]["wide"]) == (4, 4, True)
+    assert drawing["Plan"]["bounds"]["max"] == pytest.approx([3.3, 3.3, 1.3], abs=1e-3)
+    assert drawing["Field"] == {"contents": 1, "corners": 3, "bounds": {"min": [-3, -3, 1], "max": [-1, -1, 1]}}
+    assert drawing["Sonar"]["bounds"]["max"] == pytest.approx([2, 2, 3], abs=1e-2)
+    assert drawing["Sonar"]["bounds"]["min"][0] == pytest.approx(0, abs=1e-6)
     # An angular vector of 0.1 is as long as its arrow is wide and hidden.
-    assert (told["Speed"]["arrows"], told["Push"]["arrows"]) == (1, 2)
-    assert told["Speed"]["bounds"]["max"][0] == pytest.approx(2.6, abs=1e-3)
-    assert told["Push"]["bounds"]["max"][2] == pytest.approx(3.6, abs=1e-3)
-    assert (told["Torque"]["rings"], told["Torque"]["efforts"]) == (1, [10])
-    assert size(told["Torque"])[1] < 0.2 < size(told["Torque"])[0]
-    assert size(told["Click"]) == pytest.approx([0.2] * 3, abs=1e-2)
-    assert told["Axes"]["bounds"]["max"] == pytest.approx([1, 1, 2], abs=1e-3)
+    assert (drawing["Speed"]["arrows"], drawing["Push"]["arrows"]) == (1, 2)
+    assert drawing["Speed"]["bounds"]["max"][0] == pytest.approx(2.6, abs=1e-3)
+    assert drawing["Push"]["bounds"]["max"][2] == pytest.approx(3.6, abs=1e-3)
+    assert (drawing["Torque"]["rings"], drawing["Torque"]["efforts"]) == (1, [10])
+    assert size(drawing["Torque"])[1] < 0.2 < size(drawing["Torque"])[0]
+    assert size(drawing["Click"]) == pytest.approx([0.2] * 3, abs=1e-2)
+    assert drawing["Axes"]["bounds"]["max"] == pytest.approx([1, 1, 2], abs=1e-3)
     becomes(lambda: {each["level"] for each in state(page, "displays")}, {"ok"})
 
 
@@ -149,12 +149,12 @@ def test_properties_act_at_once_and_content_goes_with_its_display(live, open_pag
     until(page, "lw.displays.find((each) => each.name === 'Torque').drawn.rings === 0")
     until(page, "lw.displays.find((each) => each.name === 'Way').drawn.axes === 3")
     viewer.settle(page)
-    told = drawn(page)
-    assert told["Pose"]["bounds"]["max"][0] == pytest.approx(3.3, abs=1e-3)
-    assert told["Cloud"]["arrows"] == 5
-    assert told["Plan"]["wide"] is False
-    assert (told["Way"]["arrows"], told["Way"]["axes"]) == (0, 3)
-    assert told["Guess"]["bounds"]["max"] == pytest.approx([1.3, 2.05, 1.05], abs=1e-3)
+    drawing = drawn(page)
+    assert drawing["Pose"]["bounds"]["max"][0] == pytest.approx(3.3, abs=1e-3)
+    assert drawing["Cloud"]["arrows"] == 5
+    assert drawing["Plan"]["wide"] is False
+    assert (drawing["Way"]["arrows"], drawing["Way"]["axes"]) == (0, 3)
+    assert drawing["Guess"]["bounds"]["max"] == pytest.approx([1.3, 2.05, 1.05], abs=1e-3)
 
 
 def test_only_the_frames_that_the_filters_leave_are_drawn(live, open_page):
@@ -217,8 +217,8 @@ def test_rows_of_frames_links_and_joints_follow_what_is_drawn(live, open_page):
         row(page, key).locator(".twist").click()
 
     def value(key: str) -> str:
-        told: str = row(page, key).locator(".row-value").inner_text()
-        return told
+        result: str = row(page, key).locator(".row-value").inner_text()
+        return result
 
     becomes(lambda: value(f"{tf}/Frames/tip#Parent"), "base")
     becomes(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1")

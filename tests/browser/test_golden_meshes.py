@@ -50,16 +50,16 @@ def test_bounds_and_colours_are_those_of_rviz(live, open_page, tmp_path):
     page = shown(live, open_page, golden_links(tmp_path), GOLDEN)
     wrong = {}
     for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():
-        told = drawn(page, name)
-        (look,) = told["materials"]
-        bounds = told["bounds"]
+        drawing = drawn(page, name)
+        (look,) = drawing["materials"]
+        bounds = drawing["bounds"]
         right = (
             bounds["min"] == pytest.approx(least, abs=1e-5)
             and bounds["max"] == pytest.approx(most, abs=1e-5)
             and (look["color"], look["opacity"]) == (color, pytest.approx(opacity))
         )
         if not right:
-            wrong[name] = told
+            wrong[name] = drawing
     assert wrong == {}
 
 

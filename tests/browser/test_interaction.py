@@ -148,7 +148,7 @@ def test_a_clicked_link_tells_its_macro_call_and_values(page):
     page.locator(".selection-card [aria-expanded=false]").click()
     provenance = page.locator(".selection-card .provenance")
     provenance.wait_for()
-    told = provenance.inner_text()
-    assert "in macro 'wheel' called at" in told
-    assert "prefix" in told
-    assert "left" in told
+    text = provenance.inner_text()
+    assert "in macro 'wheel' called at" in text
+    assert "prefix" in text
+    assert "left" in text

@@ -252,8 +252,8 @@ def test_parameters_are_edited(page: Page, robot: Robot):
     assert wheels.input_value() == '["left", "right"]'
     wheels.fill('["left", "right, rear"]')
     wheels.press("Enter")
-    told = ["left", "right, rear"]
-    wait_until(lambda: robot.live.run(lambda: list(robot.base.get_parameter("wheels").value)) == told)
+    result = ["left", "right, rear"]
+    wait_until(lambda: robot.live.run(lambda: list(robot.base.get_parameter("wheels").value)) == result)
     with page.expect_download() as download:
         page.get_by_role("button", name="YAML").click()
     assert download.value.suggested_filename == "base.yaml"

@@ -124,11 +124,11 @@ def test_a_panel_that_is_opened_again_has_its_number(start, open_page, tmp_path:
     (tmp_path / "broken.urdf").write_text(BROKEN)
     page = open_page(start("view", str(tmp_path / "broken.urdf")), wait=False)
     page.get_by_role("tab", name="Diagnostics (").wait_for()
-    told = page.locator(".panel-tab", has_text="Diagnostics").inner_text()
+    text = page.locator(".panel-tab", has_text="Diagnostics").inner_text()
     close(page, "Diagnostics")
     page.get_by_role("tab", name="Diagnostics").wait_for(state="detached")
     choose(page, "Diagnostics")
-    page.get_by_role("tab", name=told.strip(), exact=True).wait_for()
+    page.get_by_role("tab", name=text.strip(), exact=True).wait_for()
 
 
 def test_the_cross_of_a_tab_lies_beside_its_name(live, open_page):

@@ -222,12 +222,12 @@ def test_an_image_has_a_panel_of_its_own(live, open_page):
 def layers(page: Any) -> list[str]:
     """The layers that the browser composes the page of, by the attributes of their elements."""
     tools = page.context.new_cdp_session(page)
-    told: list[list[dict[str, Any]]] = []
-    tools.on("LayerTree.layerTreeDidChange", lambda event: told.append(event.get("layers", [])))
+    messages: list[list[dict[str, Any]]] = []
+    tools.on("LayerTree.layerTreeDidChange", lambda event: messages.append(event.get("layers", [])))
     tools.send("DOM.enable")
     tools.send("LayerTree.enable")
-    wait_until(lambda: page.evaluate("1") and any(told))
-    nodes = [layer["backendNodeId"] for layer in next(filter(None, reversed(told))) if "backendNodeId" in layer]
+    wait_until(lambda: page.evaluate("1") and any(messages))
+    nodes = [layer["backendNodeId"] for layer in next(filter(None, reversed(messages))) if "backendNodeId" in layer]
     found = [tools.send("DOM.describeNode", {"backendNodeId": node})["node"] for node in nodes]
     tools.detach()
     return [" ".join([node["nodeName"], *node.get("attributes", [])]) for node in found]

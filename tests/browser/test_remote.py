@@ -78,20 +78,20 @@ def test_a_slow_line_thins_what_is_heavy_and_says_so(live, open_page):
     until(page, "lw.displays.length === 2")
 
     heavy = cloud(50_000), noise(1280, 720)
-    told: dict[str, Any] = {}
+    facts: dict[str, Any] = {}
 
     def is_thinned() -> bool:
         """Asked while both keep coming: of what comes no more all is sent in the end."""
         for topic, message in zip(("/cloud", "/image"), heavy, strict=True):
             viewer.publish(topic, message)
         notice = "document.querySelector('.line-notice:not([hidden])')?.innerText ?? ''"
-        told.update(
+        facts.update(
             page.evaluate(f"() => ({{ text: {notice}, drawn: linkwright.displays.map((each) => each.drawn) }})")
         )
-        points, shown = told["drawn"]
+        points, shown = facts["drawn"]
         return (
             all(
-                each in told["text"]
+                each in facts["text"]
                 for each in ("The connection is slow", "Cloud 1 in", "of 1280 × 720, quality", "WebP")
             )
             and points["step"] > 1
@@ -99,7 +99,7 @@ def test_a_slow_line_thins_what_is_heavy_and_says_so(live, open_page):
             and shown["width"] == 1280
         )
 
-    wait_until(is_thinned, SECONDS, lambda: told)
+    wait_until(is_thinned, SECONDS, lambda: facts)
     # All of it comes when nothing else does.
     until(page, "lw.displays[0].drawn.points === 50000 && document.querySelector('.line-notice').hidden")
     viewer.run(lambda: line.__aexit__(None, None, None))

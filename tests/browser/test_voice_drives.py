@@ -71,15 +71,15 @@ def browser(playwright: Playwright, microphone: Microphone) -> Iterator[Browser]
 
 def speak(page: Page, button: Locator, microphone: Microphone, word: str, *, seed: int, **how: float) -> None:
     """Hold a button and say a word."""
-    said = say(WORDS[word], silence=SILENCE, seed=seed, **how)
+    samples = say(WORDS[word], silence=SILENCE, seed=seed, **how)
     page.evaluate(_UNPLUGGED)
     until(page, "lw.panels.voice.isOpen === false")
-    microphone.put(said)
+    microphone.put(samples)
     button.focus()
     page.keyboard.down("Space")
     until(page, "lw.panels.voice.isOpen")
     # The sound is the browser's own: it takes its time whatever the test does.
-    page.wait_for_timeout(1000 * (len(said) / 16_000 - SILENCE + AFTER))
+    page.wait_for_timeout(1000 * (len(samples) / 16_000 - SILENCE + AFTER))
     page.keyboard.up("Space")
 
 

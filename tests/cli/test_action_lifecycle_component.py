@@ -105,16 +105,16 @@ def test_a_goal_that_is_rejected(in_graph, capsys):
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["/fibonacci", "example_interfaces/action/Fibonaci"], "did you mean"),
         (["/fibonacci", "example_interfaces/action/Fibonacci", "{ordr: 1}"], "did you mean 'order'?"),
         (["/no", "example_interfaces/action/Fibonacci", "{}", "--timeout", "0.1"], "no server of action '/no'"),
     ],
 )
-def test_mistakes_of_send_goal(in_graph, capsys, words, said):
+def test_mistakes_of_send_goal(in_graph, capsys, words, message):
     in_graph(fibonacci)
-    assert said in run(capsys, "action", "send_goal", *words, status=1)[1]
+    assert message in run(capsys, "action", "send_goal", *words, status=1)[1]
 
 
 # lifecycle
@@ -263,18 +263,18 @@ def test_a_component_on_its_own_runs_until_its_container_ends(in_graph, capsys, 
 
 
 @pytest.mark.parametrize(
-    ("deaf_to", "told"),
+    ("deaf_to", "message"),
     [
         (set(), [signal.SIGINT]),
         ({signal.SIGINT}, [signal.SIGINT, signal.SIGTERM]),
         ({signal.SIGINT, signal.SIGTERM}, [signal.SIGINT, signal.SIGTERM, signal.SIGKILL]),
     ],
 )
-def test_a_component_that_cannot_be_loaded_ends_its_container(in_graph, capsys, monkeypatch, deaf_to, told):
+def test_a_component_that_cannot_be_loaded_ends_its_container(in_graph, capsys, monkeypatch, deaf_to, message):
     in_graph(container)
     started = standalone(monkeypatch, deaf_to, None)
     run(capsys, *STANDALONE, "demo_nodes_cpp::Nobody", status=1)
-    assert started[0].told == told
+    assert started[0].told == message
 
 
 def test_mistakes_of_components(in_graph, capsys):

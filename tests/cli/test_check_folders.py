@@ -159,11 +159,11 @@ def _joints(count):
 def test_many_findings_that_are_alike_are_one_for_people(here, capsys):
     write(here, {"r.urdf": _joints(70)})
     main(["check", "r.urdf", *ONLY])
-    said = capsys.readouterr().err
-    assert said.count("warning[LW221]") == 1
-    assert "note: the axis of joint 'j2' is not of length 1 but 2: '0 0 2' (r.urdf:75:" in said
-    assert "note: and 67 more like it (--all shows them)" in said
-    assert said.endswith("0 errors, 70 warnings\n")
+    output = capsys.readouterr().err
+    assert output.count("warning[LW221]") == 1
+    assert "note: the axis of joint 'j2' is not of length 1 but 2: '0 0 2' (r.urdf:75:" in output
+    assert "note: and 67 more like it (--all shows them)" in output
+    assert output.endswith("0 errors, 70 warnings\n")
     main(["check", "r.urdf", *ONLY, "--all"])
     assert capsys.readouterr().err.count("warning[LW221]") == 70
     main(["check", "r.urdf", *ONLY, "--format", "json"])
@@ -274,17 +274,17 @@ def test_mistakes_in_the_configuration_are_told_once(here, capsys):
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["n:=1"], "name a file or folder to check"),
         (["b.urdf", "--select", "limit-invertd"], "there is no rule 'limit-invertd'; did you mean 'limit-inverted'?"),
         (["b.urdf", "--config", "none.toml"], "no such file: 'none.toml'"),
     ],
 )
-def test_wrong_usage(here, capsys, words, said):
+def test_wrong_usage(here, capsys, words, message):
     write(here, {"b.urdf": GOOD})
     assert main(["check", *words]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_a_missing_file_is_told(here, capsys):
@@ -333,9 +333,11 @@ def test_what_tests_need_has_errors_only_in_a_folder(here, capsys):
         (here / "p" / folder).mkdir(parents=True)
         (here / "p" / folder / "r.urdf").write_text(robot.format(child))
     main(["check", "--format", "concise", "p"])
-    told = {tuple(line.split(" ")[:2]) for line in capsys.readouterr().out.splitlines()}
-    assert {place.partition("/")[2].partition("/")[0] for place, kind in told if kind.startswith("error")} == {"tests2"}
-    assert {place.partition("/")[2].partition("/")[0] for place, kind in told if "LW102" in kind} == {"attest"}
+    output = {tuple(line.split(" ")[:2]) for line in capsys.readouterr().out.splitlines()}
+    assert {place.partition("/")[2].partition("/")[0] for place, kind in output if kind.startswith("error")} == {
+        "tests2"
+    }
+    assert {place.partition("/")[2].partition("/")[0] for place, kind in output if "LW102" in kind} == {"attest"}
     main(["check", "--format", "concise", "p/test"])
     assert "LW102" in capsys.readouterr().out
 
@@ -375,8 +377,8 @@ def test_a_part_that_a_robot_of_its_package_includes_no_more_is_no_broken_robot(
         },
     )
     main(["check", ".", "--format", "concise"])
-    told = capsys.readouterr().out
-    assert ("URDF150" in told, "URDF160" in told) == (is_told, is_told)
+    output = capsys.readouterr().out
+    assert ("URDF150" in output, "URDF160" in output) == (is_told, is_told)
 
 
 @pytest.mark.parametrize(("folder", "is_told"), [("launch", True), ("launch/past", False), ("launch/old", False)])
@@ -407,8 +409,8 @@ def test_a_package_that_an_include_misses_is_not_missed_once_more_by_meshes(here
     include = '<xacro:include filename="$(find far_description)/arm.xacro"/>'
     write(here, {"r.urdf.xacro": f'<robot name="r" {XACRO}>{include}{links}</robot>'})
     main(["check", ".", "--format", "concise"])
-    told = [line for line in capsys.readouterr().out.splitlines() if "PKG101" in line or "LW423" in line]
-    assert [("far_description" in line, "PKG101" in line) for line in told] == [(True, True), (False, False)]
+    output = [line for line in capsys.readouterr().out.splitlines() if "PKG101" in line or "LW423" in line]
+    assert [("far_description" in line, "PKG101" in line) for line in output] == [(True, True), (False, False)]
 
 
 def test_what_a_xacro_file_says_is_not_said_again_of_the_urdf_made_of_it(here, capsys):
@@ -489,8 +491,8 @@ def test_a_urdf_without_links_of_its_own_is_a_part_of_a_robot(here, capsys, insi
     main(["check", "--format", "concise", "p"])
     assert ("URDF106" in capsys.readouterr().out) is is_told
     main(["check", "--format", "concise", "p/part.urdf"])
-    said = capsys.readouterr().out
-    assert "URDF106" in said or "LINT302" in said
+    output = capsys.readouterr().out
+    assert "URDF106" in output or "LINT302" in output
 
 
 @pytest.mark.parametrize(

@@ -106,31 +106,31 @@ def test_states_by_their_names_before_humble(manager, capsys):
 def test_states_are_set(manager, capsys):
     manager("unconfigured")
     assert run(capsys, "set_controller_state", "positions", "inactive") == "Successfully configured positions\n"
-    said = run(capsys, "set_controller_state", "positions", "active", status=1)
-    assert said.endswith("cannot activate positions from its current state unconfigured\n")
+    output = run(capsys, "set_controller_state", "positions", "active", status=1)
+    assert output.endswith("cannot activate positions from its current state unconfigured\n")
     manager("inactive")
     assert run(capsys, "set_controller_state", "positions", "active") == "Successfully activated positions\n"
     assert run(capsys, "cleanup_controller", "positions") == "Successfully cleaned up positions\n"
     manager("active")
     assert run(capsys, "set_controller_state", "positions", "inactive") == "Successfully deactivated positions\n"
-    said = run(capsys, "set_controller_state", "nobody", "inactive", status=1)
-    assert said.endswith("controller nobody does not seem to be loaded\n")
+    output = run(capsys, "set_controller_state", "nobody", "inactive", status=1)
+    assert output.endswith("controller nobody does not seem to be loaded\n")
 
 
 def test_controllers_are_switched(manager, capsys):
     manager("active")
     words = ("switch_controllers", "--deactivate", "positions", "--strict")
     assert run(capsys, *words) == "Successfully switched controllers\n"
-    said = run(capsys, "switch_controllers", "--activate", "nobody", "--strict", status=1)
-    assert said.endswith("Error switching controllers, check controller_manager logs\n")
+    output = run(capsys, "switch_controllers", "--activate", "nobody", "--strict", status=1)
+    assert output.endswith("Error switching controllers, check controller_manager logs\n")
 
 
 def test_hardware_is_led(manager, capsys):
     manager("active")
-    said = run(capsys, "set_hardware_component_state", "arm", "inactive")
-    assert said.startswith("Successfully set arm to state lifecycle_msgs.msg.State(id=2, label='inactive')")
-    said = run(capsys, "set_hardware_component_state", "leg", "inactive", status=1)
-    assert said.endswith("component leg does not seem to be loaded\n")
+    output = run(capsys, "set_hardware_component_state", "arm", "inactive")
+    assert output.startswith("Successfully set arm to state lifecycle_msgs.msg.State(id=2, label='inactive')")
+    output = run(capsys, "set_hardware_component_state", "leg", "inactive", status=1)
+    assert output.endswith("component leg does not seem to be loaded\n")
 
 
 def test_chains_are_drawn(manager, capsys, tmp_path, monkeypatch):
@@ -156,7 +156,7 @@ def test_another_manager_is_asked(manager, capsys, monkeypatch):
     monkeypatch.setattr(calls, "APPEARS_WITHIN", 0.3)
     monkeypatch.setattr(control, "MANAGER_WITHIN", 0.2)
     manager()
-    said = run(capsys, "list_controllers", "-c", "/robot/controller_manager", status=1)
+    output = run(capsys, "list_controllers", "-c", "/robot/controller_manager", status=1)
     service = "/robot/controller_manager/list_controllers"
     waiting, found = f"waiting for service '{service}' to become available...", f"there is no service '{service}'"
-    assert 0 <= said.find(waiting) < said.find(found)
+    assert 0 <= output.find(waiting) < output.find(found)

@@ -127,9 +127,9 @@ def test_includes_and_meshes_of_a_commit_are_those_of_the_commit(committed, caps
     edit(committed / "urdf/body.xacro", 'mass value="${mass}"', 'mass value="${2 * mass}"')
     edit(committed / "meshes/body.stl", "solid", "solid body")
     assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD", "--format", "json"]) == 1
-    told = json.loads(capsys.readouterr().out)
-    assert (told["old"], told["new"]) == ("HEAD:urdf/arm.urdf.xacro", "urdf/arm.urdf.xacro")
-    mass, mesh = told["differences"]
+    output = json.loads(capsys.readouterr().out)
+    assert (output["old"], output["new"]) == ("HEAD:urdf/arm.urdf.xacro", "urdf/arm.urdf.xacro")
+    mass, mesh = output["differences"]
     assert (mass["subject"], mass["name"], mass["property"]) == ("link", "base", "inertial mass")
     assert (mass["old"], mass["new"], mass["unit"]) == ("1", "2", "kg")
     assert mass["old_place"] == {
@@ -172,9 +172,9 @@ def test_a_file_that_was_renamed_is_found_by_its_old_name(committed, capsys, sta
         (committed / "urdf/arm.urdf.xacro").rename(committed / "urdf/hand.urdf.xacro")
     edit(committed / "urdf/body.xacro", 'mass value="${mass}"', 'mass value="${2 * mass}"')
     assert main(["diff", "urdf/hand.urdf.xacro", "--against", "HEAD", "--format", "json"]) == 1
-    told = json.loads(capsys.readouterr().out)
-    assert (told["old"], told["new"]) == ("HEAD:urdf/arm.urdf.xacro", "urdf/hand.urdf.xacro")
-    assert [each["property"] for each in told["differences"]] == ["inertial mass"]
+    output = json.loads(capsys.readouterr().out)
+    assert (output["old"], output["new"]) == ("HEAD:urdf/arm.urdf.xacro", "urdf/hand.urdf.xacro")
+    assert [each["property"] for each in output["differences"]] == ["inertial mass"]
     assert staged or (committed / ".git/index").read_bytes() == before
 
 

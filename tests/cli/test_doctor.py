@@ -45,17 +45,17 @@ def test_a_robot_that_is_well(in_graph, capsys):
 
 def test_nobody_publishes_joint_states(in_graph, capsys):
     in_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
-    said = doctor(capsys, status=1)
-    assert "[DOC401]: no node publishes joint states, so there is no transform of frame 'wheel'" in said
-    assert "start joint_state_publisher" in said
+    output = doctor(capsys, status=1)
+    assert "[DOC401]: no node publishes joint states, so there is no transform of frame 'wheel'" in output
+    assert "start joint_state_publisher" in output
 
 
 def test_in_chinese(in_graph, capsys):
     in_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
-    said = doctor(capsys, "--lang", "zh", status=1)
-    assert "正在观察运行中的计算图，1 秒……\n" in said
-    assert "没有节点发布关节状态，所以坐标系“wheel”没有变换" in said
-    assert "1 个问题；1 个节点、" in said
+    output = doctor(capsys, "--lang", "zh", status=1)
+    assert "正在观察运行中的计算图，1 秒……\n" in output
+    assert "没有节点发布关节状态，所以坐标系“wheel”没有变换" in output
+    assert "1 个问题；1 个节点、" in output
 
 
 def test_a_joint_is_misspelt(in_graph, capsys):
@@ -71,9 +71,9 @@ def test_a_joint_is_misspelt(in_graph, capsys):
         node.create_timer(0.05, publish)
 
     in_graph(make)
-    said = doctor(capsys, status=1)
-    assert "joint 'spin' is not in the joint states, so there is no transform of frame 'wheel'" in said
-    assert "did you mean 'spinn'?" in said
+    output = doctor(capsys, status=1)
+    assert "joint 'spin' is not in the joint states, so there is no transform of frame 'wheel'" in output
+    assert "did you mean 'spinn'?" in output
 
 
 def transform(parent: str, child: str, stamp: Time | None = None) -> TransformStamped:
@@ -97,8 +97,8 @@ def second_publisher(graph: Graph) -> None:
 
 def test_two_publishers_of_one_transform(in_graph, capsys):
     in_graph(second_publisher)
-    said = doctor(capsys, status=1)
-    assert "2 nodes publish the transform of frame 'wheel': '/odometry', '/robot_state_publisher'" in said
+    output = doctor(capsys, status=1)
+    assert "2 nodes publish the transform of frame 'wheel': '/odometry', '/robot_state_publisher'" in output
 
 
 def test_two_trees_and_a_fixed_frame_that_is_not_there(in_graph, capsys, tmp_path: Path):
@@ -110,10 +110,10 @@ def test_two_trees_and_a_fixed_frame_that_is_not_there(in_graph, capsys, tmp_pat
     in_graph(make)
     rviz = tmp_path / "robot.rviz"
     rviz.write_text("Visualization Manager:\n  Global Options:\n    Fixed Frame: map\n", encoding="utf-8")
-    said = doctor(capsys, "--rviz", str(rviz), status=1)
-    assert "the frames form 2 separate trees" in said
-    assert "the fixed frame 'map' of '" in said
-    assert "robot.rviz' does not exist, so nothing is shown" in said
+    output = doctor(capsys, "--rviz", str(rviz), status=1)
+    assert "the frames form 2 separate trees" in output
+    assert "the fixed frame 'map' of '" in output
+    assert "robot.rviz' does not exist, so nothing is shown" in output
 
 
 def test_the_viewers_fixed_frame(in_graph, capsys):
@@ -150,11 +150,11 @@ def test_twist_quality_of_service_and_lonely_clients(in_graph, capsys):
         base.create_client("std_srvs/srv/Empty", "reset")
 
     in_graph(make)
-    said = doctor(capsys, status=1)
-    assert "topic '/cmd_vel' carries Twist for some nodes and TwistStamped for others" in said
-    apart = "reliability: '/lidar' offers BEST_EFFORT, '/base' requests RELIABLE" in said
+    output = doctor(capsys, status=1)
+    assert "topic '/cmd_vel' carries Twist for some nodes and TwistStamped for others" in output
+    apart = "reliability: '/lidar' offers BEST_EFFORT, '/base' requests RELIABLE" in output
     assert apart is dds.available()  # over Zenoh that keeps nobody apart
-    assert "no node provides '/reset', which '/base' calls" in said
+    assert "no node provides '/reset', which '/base' calls" in output
 
 
 def test_simulated_time_for_some(in_graph, capsys):
@@ -163,9 +163,9 @@ def test_simulated_time_for_some(in_graph, capsys):
         graph.create_node("two")
 
     in_graph(make)
-    said = doctor(capsys, status=1)
-    assert "use_sim_time is true for '/one', but no node publishes /clock" in said
-    assert "use_sim_time is true for '/one', but false for '/two'" in said
+    output = doctor(capsys, status=1)
+    assert "use_sim_time is true for '/one', but no node publishes /clock" in output
+    assert "use_sim_time is true for '/one', but false for '/two'" in output
 
 
 def test_nobody_is_there(in_graph, capsys):
@@ -186,12 +186,12 @@ def test_forms_for_programs(in_graph, capsys, form):
 
 def test_the_report(in_graph, capsys):
     in_graph(robot)
-    said = doctor(capsys, "--report", status=0)
+    output = doctor(capsys, "--report", status=0)
     for title in ("PLATFORM INFORMATION", "RMW MIDDLEWARE", "PACKAGE VERSIONS", "NETWORK CONFIGURATION"):
-        assert f"\n   {title}\n" in said
-    assert re.search(r"^topic \[type\] +: /joint_states \[sensor_msgs/msg/JointState\]$", said, re.MULTILINE)
-    assert re.search(r"^compatibility status +: OK$", said, re.MULTILINE)
-    assert re.search(r"^publisher count +: 1$", said, re.MULTILINE)
+        assert f"\n   {title}\n" in output
+    assert re.search(r"^topic \[type\] +: /joint_states \[sensor_msgs/msg/JointState\]$", output, re.MULTILINE)
+    assert re.search(r"^compatibility status +: OK$", output, re.MULTILINE)
+    assert re.search(r"^publisher count +: 1$", output, re.MULTILINE)
 
 
 def test_the_report_only_when_something_is_wrong(in_graph, capsys):
@@ -204,8 +204,8 @@ def test_a_parameter_file_for_nodes_that_do_not_run(in_graph, capsys, tmp_path):
     path = tmp_path / "params.yaml"
     sections = ("/**", "robot_state_publisher", "joint_state_publsher", "/left/*")
     path.write_text("".join(f"{section}: {{ros__parameters: {{a: 1}}}}\n" for section in sections))
-    said = doctor(capsys, "--params-file", str(path), status=1)
-    assert said.count("DOC702") == 2
-    assert "section '/joint_state_publsher' of" in said
-    assert "did you mean '/joint_state_publisher'" in said
-    assert "section '/left/*' of" in said
+    output = doctor(capsys, "--params-file", str(path), status=1)
+    assert output.count("DOC702") == 2
+    assert "section '/joint_state_publsher' of" in output
+    assert "did you mean '/joint_state_publisher'" in output
+    assert "section '/left/*' of" in output

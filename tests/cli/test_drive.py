@@ -37,11 +37,11 @@ def test_a_kind_of_drive_that_the_robot_has_not_is_refused(file, capsys):
     assert "DRIVE211" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("text", "said"), [("<html/>", "URDF"), ("<sdf/>", "neither a world nor a model")])
-def test_a_file_that_is_no_robot_is_refused(file, capsys, text, said):
+@pytest.mark.parametrize(("text", "message"), [("<html/>", "URDF"), ("<sdf/>", "neither a world nor a model")])
+def test_a_file_that_is_no_robot_is_refused(file, capsys, text, message):
     file.write_text(text)
     assert main(["drive", "mbot.urdf"]) == 1
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("words", [["--seconds", "0"], ["--rate", "fast"], ["--drive", "legs"]])

@@ -92,9 +92,9 @@ def test_files_outside_the_packages_that_went_in_are_told(model, capsys, monkeyp
 """)
     monkeypatch.chdir(home)
     assert main(["export", "box.glb", "box.xacro"]) == 0
-    said = capsys.readouterr().err
-    assert "the export contains 3 files from outside the packages" in said
-    named = [word for word in said.split() if "secret" in word or "own" in word or "shared" in word]
+    output = capsys.readouterr().err
+    assert "the export contains 3 files from outside the packages" in output
+    named = [word for word in output.split() if "secret" in word or "own" in word or "shared" in word]
     assert [name.rpartition("/")[2] for name in named] == ["secret.xacro", "secret.yaml", "secret.obj"]
 
 
@@ -117,16 +117,16 @@ def test_two_descriptions_are_one_page_without_paths_of_the_machine(model, monke
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["r.glb", "box.xacro", "box.xacro"], "'r.glb' should end with .html"),
         (["r.html", "box.xacro", "box.xacro", "box.xacro"], "give one file, two to compare"),
         (["r.html", "box.xacro", "box.xacro", "--against", "HEAD"], "give one file, two to compare"),
     ],
 )
-def test_what_cannot_be_compared_is_wrong_usage(model, words, said, capsys):
+def test_what_cannot_be_compared_is_wrong_usage(model, words, message, capsys):
     assert main(["export", *words]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not list(model.glob("r.*"))
 
 

@@ -114,21 +114,21 @@ def test_a_recording_on_a_full_disk_ends_once_and_keeps_what_it_has(
     path = tmp_path / "bag.mcap"
     writer = BagWriter(path, storage, single_file=single_file)
     writer.add_topic("/chatter", "std_msgs/msg/String")
-    said = serialize(String(data="x" * 1000))
+    data = serialize(String(data="x" * 1000))
     for stamp in range(10):
-        writer.write("/chatter", stamp, said)
+        writer.write("/chatter", stamp, data)
     writer.flush()
 
     def fill() -> None:
         for stamp in range(10, 100_000):
-            writer.write("/chatter", stamp, said)
+            writer.write("/chatter", stamp, data)
             writer.flush()
 
     with full_disk(120_000), pytest.raises(LinkwrightError) as caught:
         fill()
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["BAG108"]
     assert "ends here: " in str(caught.value)
-    writer.write("/chatter", 1, said)  # nothing more is written, and nothing said again
+    writer.write("/chatter", 1, data)  # nothing more is written, and nothing said again
     writer.flush()
     writer.close()
     with BagReader(path) as bag:

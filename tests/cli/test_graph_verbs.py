@@ -276,15 +276,15 @@ def test_service_call_gives_up(capsys):
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["/add_two_ints", "example_interfaces/srv/AddTwoInt"], "did you mean"),
         (["/add_two_ints", "example_interfaces/srv/AddTwoInts", "{c: 1}"], "has no field 'c'"),
         (["/add_two_ints", "example_interfaces/srv/AddTwoInts", "{a: x}"], "field 'a' is of type int64"),
     ],
 )
-def test_mistakes_of_service_call(capsys, words, said):
-    assert said in run(capsys, "service", "call", *words, status=1)[1]
+def test_mistakes_of_service_call(capsys, words, message):
+    assert message in run(capsys, "service", "call", *words, status=1)[1]
 
 
 def watched(graph: Graph) -> None:

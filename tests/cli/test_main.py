@@ -139,4 +139,4 @@ def test_all_that_the_help_of_a_command_says_is_translated(verb):
     finally:
         set_language(None)
         parser_for(verb)  # argparse's own words are English again
-    assert [said for said, shown in zip(english, chinese, strict=True) if said == shown] == []
+    assert [text for text, shown in zip(english, chinese, strict=True) if text == shown] == []

@@ -45,9 +45,9 @@ def test_what_is_sent_to_a_group_is_received(address):
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as receiving:
         assert receiving.stdout.readline() == "Waiting for UDP multicast datagram...\n"
         assert main(["multicast", "send", *address, "--ttl", "1"]) == 0
-        said, _ = receiving.communicate(timeout=SECONDS)
-    assert said.startswith("Received from ")
-    assert said.endswith(": 'Hello World!'\n")
+        output, _ = receiving.communicate(timeout=SECONDS)
+    assert output.startswith("Received from ")
+    assert output.endswith(": 'Hello World!'\n")
     assert receiving.returncode == 0
 
 

@@ -23,34 +23,34 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-def said(capsys: pytest.CaptureFixture[str], *words: str, status: int = 0) -> str:
+def output_of(capsys: pytest.CaptureFixture[str], *words: str, status: int = 0) -> str:
     assert main(["pkg", *words]) == status
     captured = capsys.readouterr()
     return captured.err if status else captured.out
 
 
 def test_the_list_has_packages_of_the_workspace_and_ours(capsys: pytest.CaptureFixture[str]) -> None:
-    names = said(capsys, "list").splitlines()
+    names = output_of(capsys, "list").splitlines()
     assert names == sorted(names)
     assert {"arm", "robot_state_publisher"} <= set(names)
 
 
 def test_where_a_package_is(capsys: pytest.CaptureFixture[str], package: Path) -> None:
-    assert said(capsys, "prefix", "--share", "arm") == f"{package}\n"
-    assert said(capsys, "prefix", "arm").strip()
-    assert "arm" in said(capsys, "prefix", "armm", status=1)
+    assert output_of(capsys, "prefix", "--share", "arm") == f"{package}\n"
+    assert output_of(capsys, "prefix", "arm").strip()
+    assert "arm" in output_of(capsys, "prefix", "armm", status=1)
 
 
 def test_executables_of_one_package_and_of_all(capsys: pytest.CaptureFixture[str]) -> None:
-    assert "demo_nodes_cpp talker" in said(capsys, "executables", "demo_nodes_cpp").splitlines()
-    assert "demo_nodes_cpp talker" in said(capsys, "executables").splitlines()
-    assert "demo_nodes_cpp talker" not in said(capsys, "executables", "--full-path", "demo_nodes_cpp").splitlines()
+    assert "demo_nodes_cpp talker" in output_of(capsys, "executables", "demo_nodes_cpp").splitlines()
+    assert "demo_nodes_cpp talker" in output_of(capsys, "executables").splitlines()
+    assert "demo_nodes_cpp talker" not in output_of(capsys, "executables", "--full-path", "demo_nodes_cpp").splitlines()
 
 
 def test_the_manifest_and_parts_of_it(capsys: pytest.CaptureFixture[str]) -> None:
-    assert said(capsys, "xml", "arm") == MANIFEST
-    assert said(capsys, "xml", "arm", "-t", "depend") == "xacro\nurdf\n"
-    error = said(capsys, "xml", "arm", "-t", "licence", status=1)
+    assert output_of(capsys, "xml", "arm") == MANIFEST
+    assert output_of(capsys, "xml", "arm", "-t", "depend") == "xacro\nurdf\n"
+    error = output_of(capsys, "xml", "arm", "-t", "licence", status=1)
     assert "package.xml of 'arm' has no element <licence>" in error
     assert "did you mean 'license'?" in error
-    assert "available: depend" in said(capsys, "xml", "arm", "-t", "zzzzzz", status=1)
+    assert "available: depend" in output_of(capsys, "xml", "arm", "-t", "zzzzzz", status=1)

@@ -63,18 +63,18 @@ def test_its_name_is_that_of_the_file(asked, tmp_path):
 def test_what_the_simulation_refuses_is_one_error(asked, tmp_path, capsys):
     assert main(["spawn", robot(tmp_path)]) == 0
     assert main(["spawn", robot(tmp_path)]) == 1
-    said = capsys.readouterr().err
-    assert said.count("error[CLI333]") == 1
-    assert "rejects 'r': it is there" in said
+    output = capsys.readouterr().err
+    assert output.count("error[CLI333]") == 1
+    assert "rejects 'r': it is there" in output
 
 
 def test_without_a_simulation_it_is_said_how_to_start_one(in_graph, tmp_path, capsys, monkeypatch):
     in_graph(lambda graph: None)
     monkeypatch.setattr(calls, "APPEARS_WITHIN", 0.0)
     assert main(["spawn", robot(tmp_path)]) == 1
-    said = capsys.readouterr().err
-    assert said.count("error[") == 1
-    assert "linkwright sim empty" in said
+    output = capsys.readouterr().err
+    assert output.count("error[") == 1
+    assert "linkwright sim empty" in output
 
 
 def test_a_file_that_is_no_model_is_one_error(asked, tmp_path, capsys):

@@ -43,11 +43,11 @@ def test_each_command_of_ros2_explains_itself_under_that_name(name: str, capsys:
 
 
 @pytest.mark.parametrize(
-    ("word", "said"), [("lunch", "launch"), ("security", "real ROS 2"), ("xyzzy", "`ros2 --help`")]
+    ("word", "message"), [("lunch", "launch"), ("security", "real ROS 2"), ("xyzzy", "`ros2 --help`")]
 )
-def test_what_ros2_does_not_have(word: str, said: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_ros2_does_not_have(word: str, message: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main("ros2", [word]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_an_option_for_buffering_is_accepted(capsys: pytest.CaptureFixture[str]) -> None:
@@ -68,10 +68,10 @@ def test_check_urdf_prints_the_tree(model: Path, capsys: pytest.CaptureFixture[s
 def test_check_urdf_refuses_what_urdfdom_refuses(model: Path, capsys: pytest.CaptureFixture[str]) -> None:
     model.write_text(MODEL.replace('child link="wheel"', 'child link="whel"'))
     assert main("check_urdf", [str(model)]) == 255
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert "ERROR: Model Parsing the xml failed" in said.err
-    assert "whel" in said.err
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert "ERROR: Model Parsing the xml failed" in output.err
+    assert "whel" in output.err
 
 
 def test_check_urdf_of_a_file_that_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

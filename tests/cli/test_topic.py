@@ -238,7 +238,7 @@ def test_echo_of_a_topic_that_is_not_there(in_graph, capsys):
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["/joint_states", "--field", "header.stmp"], "did you mean 'stamp'?"),
         (["/joint_states", "--field", "header..stamp"], "Invalid field 'header..stamp'"),
@@ -249,10 +249,10 @@ def test_echo_of_a_topic_that_is_not_there(in_graph, capsys):
         (["/joint_states", "--filter", "m."], "the filter is not a Python expression"),
     ],
 )
-def test_mistakes_of_echo(in_graph, capsys, words, said):
+def test_mistakes_of_echo(in_graph, capsys, words, message):
     in_graph(state)
     assert main(["topic", "echo", "--timeout", "5", *words]) == 1
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_echo_names_quality_of_service_that_does_not_match(in_graph, capsys):
@@ -341,7 +341,7 @@ def test_pub_from_a_file(in_graph, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("kind", "values", "said"),
+    ("kind", "values", "message"),
     [
         ("std_msgs/msg/String", "data: [", "the values are not YAML"),
         ("std_msgs/msg/String", "data:hello", "YAML requires a space after the colon: 'data: hello'"),
@@ -352,10 +352,10 @@ def test_pub_from_a_file(in_graph, tmp_path):
         ("std_msgs/msg/UInt8", "{data: 300}", "field 'data' is of type uint8"),
     ],
 )
-def test_mistakes_in_values_are_shown_where_they_are(in_graph, capsys, kind, values, said):
+def test_mistakes_in_values_are_shown_where_they_are(in_graph, capsys, kind, values, message):
     in_graph(lambda graph: None)
     assert main(["topic", "pub", "-1", "/t", kind, values]) == 1
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_a_wrong_field_is_pointed_at(in_graph, capsys):

@@ -98,8 +98,8 @@ class TestAgainstATalker:
         assert linkwright("param", "get", "/talker", "speed") == "Double value is: 2.5\n"
 
     def test_service(self):
-        said = linkwright("service", "call", "/power", "std_srvs/srv/SetBool", "{data: true}")
-        assert "std_srvs.srv.SetBool_Response(success=False, message='')" in said
+        output = linkwright("service", "call", "/power", "std_srvs/srv/SetBool", "{data: true}")
+        assert "std_srvs.srv.SetBool_Response(success=False, message='')" in output
 
     def test_ctrl_c_ends_echo_at_once_with_130(self):
         process = begin("topic", "echo", "/chatter")
@@ -146,8 +146,8 @@ class TestAgainstATalker:
 
 def test_pub_reaches_an_echo_that_was_there_before():
     echo = begin("topic", "echo", "/orders", "std_msgs/msg/String", "--once", "--timeout", "15")
-    said = linkwright("topic", "pub", "--once", "/orders", "std_msgs/msg/String", "data: go")
-    assert "publishing #1: std_msgs.msg.String(data='go')" in said
+    output = linkwright("topic", "pub", "--once", "/orders", "std_msgs/msg/String", "data: go")
+    assert "publishing #1: std_msgs.msg.String(data='go')" in output
     out, _ = echo.communicate(timeout=60)
     assert out == "data: go\n---\n"
 

@@ -26,7 +26,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["drive", "a:=b"], "'drive' is a recording, which is shown by itself: leave a:=b out"),
         (["drive", "r.urdf"], "leave r.urdf out"),
@@ -37,9 +37,11 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     ],
 )
 @pytest.mark.usefixtures("folder")
-def test_what_cannot_be_shown_together_is_said(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_cannot_be_shown_together_is_said(
+    words: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["view", *words]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_several_files_are_shown_as_one_recording(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -53,9 +55,9 @@ def test_several_files_are_shown_as_one_recording(folder: Path, monkeypatch: pyt
 def test_a_recording_of_ros_1_is_told_as_one(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "old.bag").write_bytes(b"#ROSBAG V2.0\n\0\1")
     assert main(["view", "old.bag"]) == 1
-    said = capsys.readouterr().err
-    assert "'old.bag' cannot be read as a recording: it is of ROS 1" in said
-    assert "rosbags-convert" in said
+    output = capsys.readouterr().err
+    assert "'old.bag' cannot be read as a recording: it is of ROS 1" in output
+    assert "rosbags-convert" in output
 
 
 @pytest.mark.parametrize("words", [["missing.urdf"], ["r.urdf", "missing.urdf"], ["r.urdf", "--port", "{taken}"]])
@@ -66,9 +68,9 @@ def test_an_error_that_keeps_a_view_from_starting_comes_alone(
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
         assert main(["view", "--no-open", *(word.format(taken=port) for word in words)]) == 1
-    said = capsys.readouterr()
-    assert said.out == ""
-    error, hint = said.err.splitlines()
+    output = capsys.readouterr()
+    assert output.out == ""
+    error, hint = output.err.splitlines()
     assert error.startswith("error[")
     assert hint.startswith("   = hint: ")
 

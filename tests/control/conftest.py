@@ -14,7 +14,7 @@ def stand(graph, log) -> Stand:  # noqa: F811
 
 
 @pytest.fixture
-def said(log):  # noqa: F811
+def logged(log):  # noqa: F811
     """What was logged at a level."""
 
     def texts(level: str) -> list[str]:

@@ -115,9 +115,9 @@ def test_sarif_results_name_a_message_string_of_their_rule_and_fill_it():
     (run,) = json.loads(format_diagnostics(found, "sarif"))["runs"]
     rules = run["tool"]["driver"]["rules"]
     for each, diagnostic in zip(run["results"], found, strict=True):
-        said = each["message"]
-        template = rules[each["ruleIndex"]]["messageStrings"][said["id"]]["text"]
-        assert template.format(*said.get("arguments", [])) == diagnostic.message
+        result = each["message"]
+        template = rules[each["ruleIndex"]]["messageStrings"][result["id"]]["text"]
+        assert template.format(*result.get("arguments", [])) == diagnostic.message
     assert [len(rule["messageStrings"]) for rule in rules] == [2, 1]
 
 

@@ -255,11 +255,11 @@ def test_every_command_takes_a_language(words: list[str], capsys: pytest.Capture
 
 
 @pytest.mark.parametrize(
-    ("words", "said"), [(["--lang", "fr"], "there is no language 'fr'"), (["--lang"], "needs a language")]
+    ("words", "message"), [(["--lang", "fr"], "there is no language 'fr'"), (["--lang"], "needs a language")]
 )
-def test_a_wrong_language_is_wrong_usage(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_wrong_language_is_wrong_usage(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "a.urdf", *words]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_words_after_two_dashes_are_left_alone(capsys: pytest.CaptureFixture[str]) -> None:
@@ -274,9 +274,9 @@ def test_the_overview_names_the_option(capsys: pytest.CaptureFixture[str]) -> No
 
 def test_help_is_in_the_readers_language(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["topic", "--lang", "zh", "--help"]) == 0
-    said = capsys.readouterr().out
-    assert "列出、打印、发布和测量话题" in said
-    assert "显示这段帮助后结束" in said
+    output = capsys.readouterr().out
+    assert "列出、打印、发布和测量话题" in output
+    assert "显示这段帮助后结束" in output
     assert main(["check", "--lang", "zh"]) == 2
     assert "缺少必需的参数：FILE|FOLDER|NAME:=VALUE" in capsys.readouterr().err
     assert main(["check"]) == 2

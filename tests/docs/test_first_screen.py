@@ -95,27 +95,27 @@ def test_the_first_screen_of_the_readme_can_be_typed(checkout: Path, newcomer: d
         start_new_session=True,
     ) as shell:
         assert shell.stdout is not None
-        said = []
+        messages = []
         try:
             for line in shell.stdout:
-                said.append(line)
+                messages.append(line)
                 if found := re.search(r"Viewer: (http://\S+)", line):
                     break
             else:
-                pytest.fail("".join(said))
+                pytest.fail("".join(messages))
             with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(found[1]) as answer:
                 assert answer.status == 200
             wait_until((checkout.parent / "opened").is_file, what="a browser that was told to open the page")
         finally:
             os.killpg(shell.pid, signal.SIGINT)
             rest = shell.stdout.read()
-    assert shell.returncode in (0, 130, -signal.SIGINT), "".join(said) + rest
+    assert shell.returncode in (0, 130, -signal.SIGINT), "".join(messages) + rest
 
     # What the base lacks is told with the command that fits, and that works.
     export = "linkwright export robot.glb robots/my_robot_description/urdf/mbot_with_kinect.urdf"
-    told = run(["bash", "-c", f"source .venv/bin/activate; {export}"], cwd=checkout, env=newcomer)
-    hint = re.search(r"hint: run (.*)", told.stderr)
-    assert hint is not None, told.stderr
+    output = run(["bash", "-c", f"source .venv/bin/activate; {export}"], cwd=checkout, env=newcomer)
+    hint = re.search(r"hint: run (.*)", output.stderr)
+    assert hint is not None, output.stderr
     assert "[mesh]" in hint[1]
     done = run(["bash", "-e", "-c", f"source .venv/bin/activate; {hint[1]}; {export}"], cwd=checkout, env=newcomer)
     assert done.returncode == 0, done.stderr

@@ -28,7 +28,7 @@ OTHERS = {
 
 
 @cache
-def told() -> list[tuple[Path, str]]:
+def install_commands() -> list[tuple[Path, str]]:
     """Each command of pip, pipx and uv that users read or see printed: where, and what it installs."""
     found = [path for name in WRITTEN for path in sorted([REPOSITORY / name, *(REPOSITORY / name).rglob("*")])]
     return [
@@ -40,16 +40,16 @@ def told() -> list[tuple[Path, str]]:
 
 
 def test_pages_tell_how_to_install() -> None:
-    assert {"README.md", "README.zh-CN.md"} <= {path.name for path, _ in told()}
+    assert {"README.md", "README.zh-CN.md"} <= {path.name for path, _ in install_commands()}
 
 
 def test_messages_leave_the_command_to_what_knows_how_linkwright_was_installed() -> None:
-    assert [each for each in told() if each[0].parts[0] in ("frontend", "robots", "src")] == []
+    assert [each for each in install_commands() if each[0].parts[0] in ("frontend", "robots", "src")] == []
 
 
 def test_each_command_is_that_of_a_checkout(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
-    for path, what in told():
+    for path, what in install_commands():
         if what not in OTHERS:
             extras = [extra for listed in re.findall(r"\[([\w,]+)\]", what) for extra in listed.split(",")]
             assert set(extras) <= {*EXTRAS, "all"}, (path, what)

@@ -29,15 +29,15 @@ def written(page: Path, folder: Path) -> None:
 @pytest.mark.parametrize("language", PAGES)
 def test_the_three_launch_files_say_the_same(language: str, tmp_path: Path, capsys) -> None:
     written(PAGES[language], tmp_path)
-    said = []
+    messages = []
     for ending in ("py", "xml", "yaml"):
         words = ["launch", str(tmp_path / "launch" / f"robot.launch.{ending}")]
         assert main([*words, "--show-args"]) == 0
         assert main([*words, "--print"]) == 0
-        said.append(capsys.readouterr().out)
-    assert said[0] == said[1] == said[2]
-    assert "'period'" in said[0]
-    assert "ExecInPkg(pkg='my_nodes', exec='robot')" in said[0]
+        messages.append(capsys.readouterr().out)
+    assert messages[0] == messages[1] == messages[2]
+    assert "'period'" in messages[0]
+    assert "ExecInPkg(pkg='my_nodes', exec='robot')" in messages[0]
 
 
 def test_the_composed_launch_file_loads(tmp_path: Path, capsys) -> None:

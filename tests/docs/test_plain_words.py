@@ -58,8 +58,8 @@ def test_refused_words_are_found_with_their_line(tmp_path, capsys, monkeypatch, 
     monkeypatch.setattr(TOOL, "ROOT", tmp_path)
     (tmp_path / name).write_text(text, encoding="utf-8")
     assert TOOL.main([str(tmp_path)]) == 1
-    said = capsys.readouterr().out.splitlines()
-    assert [re.match(rf"{name}:{line}: '(.*)'; write: .", row)[1] for row in said] == [word.strip() for word in words]
+    output = capsys.readouterr().out.splitlines()
+    assert [re.match(rf"{name}:{line}: '(.*)'; write: .", row)[1] for row in output] == [word.strip() for word in words]
 
 
 def test_plain_sentences_pass(tmp_path, capsys, monkeypatch):

@@ -22,9 +22,9 @@ def test_both_languages_have_the_same_commands_and_programs():
 
 def test_the_launch_file_has_the_arguments_that_the_page_uses(capsys):
     assert main(["launch", "my_robot_navigation", "navigation.launch.py", "--show-args"]) == 0
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     for argument in ("slam", "map", "nav2_params_file"):
-        assert f"'{argument}'" in said
+        assert f"'{argument}'" in output
 
 
 @pytest.mark.slow

@@ -26,9 +26,9 @@ def test_both_languages_have_the_same_commands_and_programs():
 
 def test_the_launch_files_have_the_arguments_that_the_page_uses(capsys: pytest.CaptureFixture[str]):
     assert main(["launch", "my_robot_vision", "detect.launch.py", "--show-args"]) == 0
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     for argument in ("depth", "voice", "language", "model", "threshold"):
-        assert f"'{argument}'" in said
+        assert f"'{argument}'" in output
     assert main(["launch", "my_robot_vision", "follow_object.launch.py", "--show-args"]) == 0
     assert "'thing'" in capsys.readouterr().out
 

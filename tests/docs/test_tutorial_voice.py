@@ -38,8 +38,8 @@ def test_what_the_page_says_is_understood(language: str) -> None:
     page = LANGUAGES[language].read_text(encoding="utf-8")
     ours = read_command_file(VOICE_PACKAGE / "config" / "commands.yaml")
     table = [cell for row in re.findall(r"^\| (`.+?) \| (.+?) \|$", page, re.MULTILINE) for cell in row]
-    told = [text for cell in table[:8] for text in re.findall(r"`([^`]+)`", cell) or cell.split("、")]
-    told += [
+    shown = [text for cell in table[:8] for text in re.findall(r"`([^`]+)`", cell) or cell.split("、")]
+    shown += [
         "forward half a metre",
         "前进半米",
         "后退半米",
@@ -50,7 +50,7 @@ def test_what_the_page_says_is_understood(language: str) -> None:
         "stop",
         "停",
     ]
-    told += [
+    shown += [
         "turn right forty five degrees",
         "右转四十五度",
         "turn left",
@@ -60,17 +60,17 @@ def test_what_the_page_says_is_understood(language: str) -> None:
         "forward",
         "前进",
     ]
-    assert len(told) > 22
-    assert [text for text in told if ours.understand(text) is None] == []
+    assert len(shown) > 22
+    assert [text for text in shown if ours.understand(text) is None] == []
 
 
 def test_the_launch_file_has_the_arguments_that_the_page_uses(capsys: pytest.CaptureFixture[str]) -> None:
     used = {word.partition(":=")[0] for line in commands(LANGUAGES["en"]) for word in line.split() if ":=" in word}
     assert used >= {"commands_file", "engine", "language", "navigation", "open_listening", "wav"}
     assert main(["launch", "my_robot_voice", "voice.launch.py", "--show-args"]) == 0
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     for argument in used:
-        assert f"'{argument}':\n" in said
+        assert f"'{argument}':\n" in output
 
 
 async def test_the_readers_own_commands_move_mbot(tmp_path: Path) -> None:
@@ -85,8 +85,8 @@ async def test_the_readers_own_commands_move_mbot(tmp_path: Path) -> None:
         responses = playground.record("/voice/response")
         turned = playground.record("/odom")
 
-        async def tell(said: str, seconds: float) -> str:
-            text.publish(STRING(data=said))
+        async def tell(message: str, seconds: float) -> str:
+            text.publish(STRING(data=message))
             await playground.advance(seconds)
             return str(responses.last.data)
 
@@ -107,7 +107,7 @@ def test_the_file_on_the_page_about_voice_is_right() -> None:
     (block,) = [block for block in blocks(DOCS / "voice.md") if block.title == "my_commands.yaml"]
     found = parse_commands(SourceText(block.title, block.text))
     assert found.understand("please go forward seven metres") is None
-    for said in (
+    for text in (
         "go forward seven metres",
         "转圈",
         "go and recharge",
@@ -115,7 +115,7 @@ def test_the_file_on_the_page_about_voice_is_right() -> None:
         "count to twelve",
         "follow the wall",
     ):
-        assert found.understand(said) is not None, said
+        assert found.understand(text) is not None, text
     assert "前进七米" in found.phrases("zh")
 
 

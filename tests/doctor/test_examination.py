@@ -456,10 +456,10 @@ def test_two_clocks():
     assert codes(seen) == ["DOC604"]
 
 
-@pytest.mark.parametrize(("behind_s", "said"), [(3600, "3600.0 s behind"), (-60, "60.0 s ahead of")])
-def test_stamps_far_from_now(behind_s, said):
+@pytest.mark.parametrize(("behind_s", "message"), [(3600, "3600.0 s behind"), (-60, "60.0 s ahead of")])
+def test_stamps_far_from_now(behind_s, message):
     stamp = StampSeen("/scan", "/lidar", behind_s * 10**9)
-    assert f"are {said} the clock here" in only(replace(WELL, stamps=(stamp,)), "DOC605").message
+    assert f"are {message} the clock here" in only(replace(WELL, stamps=(stamp,)), "DOC605").message
 
 
 def test_stamps_that_were_never_set():

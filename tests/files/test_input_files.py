@@ -139,9 +139,9 @@ def test_each_command_refuses_a_pipe_that_nobody_writes_to(
 ) -> None:
     monkeypatch.chdir(pipe.parent)
     assert main([*words, pipe.name]) == 1
-    said = capsys.readouterr().err
-    assert f"'{pipe.name}'" in said or f"'{pipe}'" in said
-    assert "it is a pipe without a writer" in said or "it is neither a file nor a folder" in said
+    output = capsys.readouterr().err
+    assert f"'{pipe.name}'" in output or f"'{pipe}'" in output
+    assert "it is a pipe without a writer" in output or "it is neither a file nor a folder" in output
 
 
 @pytest.mark.parametrize("words", [["check"], ["xacro"], ["xacro", "--args"], ["inertia"], ["export", "out.html"]])

@@ -30,7 +30,7 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "status", "said"),
+    ("words", "status", "message"),
     [
         (["good.urdf", "good.urdf", "good.urdf"], 2, "give one file, two to compare, or one and --against COMMIT"),
         (["good.urdf", "good.urdf", "--against", "HEAD"], 2, "give one file, two to compare"),
@@ -40,9 +40,9 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["good.urdf", "--against", "HEAD"], 1, "error[CLI342]: 'good.urdf' is not in a git repository"),
     ],
 )
-def test_what_cannot_be_compared_is_said(words, status, said, capsys):
+def test_what_cannot_be_compared_is_said(words, status, message, capsys):
     assert main(["view", *words, "--no-open", "--port", "9"]) == status
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 async def test_an_old_file_that_is_broken_is_waited_for_as_a_new_one_is(tmp_path):

@@ -104,6 +104,6 @@ async def test_a_full_disk_ends_the_recording_and_the_simulation_goes_on(
 @pytest.mark.parametrize("words", [("sim", "empty"), ("drive", str(MBOT))], ids=["sim", "drive"])
 def test_a_folder_that_is_there_is_not_written_to(tmp_path: Path, capsys, words: tuple[str, ...]) -> None:
     assert main([*words, "--headless", "--record", str(tmp_path)]) == 1
-    said = capsys.readouterr().err
-    assert said.count("error[") == 1
-    assert "it exists already" in said
+    output = capsys.readouterr().err
+    assert output.count("error[") == 1
+    assert "it exists already" in output

@@ -90,8 +90,8 @@ async def test_a_page_whose_viewer_cannot_be_made_is_given_out_no_longer(
 
 async def test_the_address_is_told_before_the_viewer_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
-    out, told = io.StringIO(), []
-    monkeypatch.setattr("linkwright.hosting.node_host.load_viewer", lambda: told.append(out.getvalue()))
+    out, received = io.StringIO(), []
+    monkeypatch.setattr("linkwright.hosting.node_host.load_viewer", lambda: received.append(out.getvalue()))
     options = HostOptions(port=0, open_browser=False, network=False)
     finder = PackageFinder(start=tmp_path, environment={})
     view = ModelView(XacroCall(tmp_path / "m.urdf"), finder, options, LaunchLog(out, err := io.StringIO()))
@@ -99,8 +99,8 @@ async def test_the_address_is_told_before_the_viewer_is_made(tmp_path: Path, mon
     await eventually(lambda: "joint_state_publisher_gui-2]: started" in err.getvalue())
     view.interrupt("the test is over")
     assert await running
-    assert told == [out.getvalue()]
-    assert told[0].count("Viewer: http://127.0.0.1:") == 1
+    assert received == [out.getvalue()]
+    assert received[0].count("Viewer: http://127.0.0.1:") == 1
 
 
 async def test_a_view_that_ends_while_its_viewer_is_loaded_starts_nothing(

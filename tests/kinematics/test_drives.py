@@ -28,8 +28,8 @@ def test_each_wheel_of_a_differential_drive_rolls_as_fast_as_it_moves():
 @given(SPEEDS, SPEEDS, SPEEDS)
 def test_mecanum_wheels_measure_what_they_were_told(forward, sideways, turning):
     drive = MecanumDrive(0.5, 0.1)
-    told = drive.wheel_speeds(forward, sideways, turning)
-    assert drive.motion(*told) == pytest.approx((forward, sideways, turning), abs=1e-12)
+    result = drive.wheel_speeds(forward, sideways, turning)
+    assert drive.motion(*result) == pytest.approx((forward, sideways, turning), abs=1e-12)
 
 
 @given(SPEEDS, SPEEDS, SPEEDS)

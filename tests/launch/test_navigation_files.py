@@ -242,8 +242,8 @@ async def test_no_manager_waits_for_what_a_launch_file_of_a_user_starts_and_is_n
 
 
 def test_no_composed_manager_waits_for_it_either() -> None:
-    said: list[str] = []
-    log = SimpleNamespace(warning_line=lambda _name, text: said.append(text))
+    messages: list[str] = []
+    log = SimpleNamespace(warning_line=lambda _name, text: messages.append(text))
     context = SimpleNamespace(session=SimpleNamespace(left_out={"docking_server"}, log=log))
     request = get_service("composition_interfaces/srv/LoadNode").Request(package_name="nav2_lifecycle_manager")
     parameter = get_message("rcl_interfaces/msg/Parameter")(name="node_names")
@@ -251,4 +251,4 @@ def test_no_composed_manager_waits_for_it_either() -> None:
     request.parameters = [parameter]
     drop_left_out(context, request)
     assert list(request.parameters[0].value.string_array_value) == ["bt_navigator"]
-    assert len(said) == 1
+    assert len(messages) == 1

@@ -89,11 +89,11 @@ async def test_launches_that_share_names_say_so_once_and_on_the_page(
     first, second = start(tmp_path / "a.launch.py"), start(tmp_path / "a.launch.py")
     for each in (first, second):
         for node in ("/robot_state_publisher", "/rviz2"):
-            wait_until(lambda each=each, node=node: node in _said(each), what=lambda each=each: each.err)
+            wait_until(lambda each=each, node=node: node in _shared_lines(each), what=lambda each=each: each.err)
     for each in (first, second):
-        assert _said(each).count("/robot_state_publisher") == 1
-        assert f"{SHARED} {domain} " in _said(each)
-        assert f"as in ROS_DOMAIN_ID={domain + 1} linkwright launch ..." in _said(each)
+        assert _shared_lines(each).count("/robot_state_publisher") == 1
+        assert f"{SHARED} {domain} " in _shared_lines(each)
+        assert f"as in ROS_DOMAIN_ID={domain + 1} linkwright launch ..." in _shared_lines(each)
         assert "Another process has a node" not in each.err
     page = Page()
     await page.follow(second, lambda: page.codes() == ["LAUNCH148"])
@@ -102,5 +102,5 @@ async def test_launches_that_share_names_say_so_once_and_on_the_page(
     assert second.end()[0] == 130
 
 
-def _said(running: Running) -> str:
+def _shared_lines(running: Running) -> str:
     return "\n".join(line for line in running.err.splitlines() if SHARED in line)

@@ -244,7 +244,7 @@ class TestNamesUpToFoxy:
 
         from launch import LaunchContext
 
-        with warnings.catch_warnings(record=True) as told:
+        with warnings.catch_warnings(record=True) as logged:
             warnings.simplefilter("always")
             node = Node(package="p", node_executable="talker", node_name="n", node_namespace="ns")
             LifecycleNode(package="p", node_executable="e", node_name="n", namespace="")
@@ -254,11 +254,11 @@ class TestNamesUpToFoxy:
             )
         assert node.node_executable == "talker"
         assert perform_substitutions(LaunchContext(), part.node_plugin) == "p::Part"
-        texts = [str(each.message) for each in told]
+        texts = [str(each.message) for each in logged]
         assert texts[0] == "'node_executable' of Node is called 'executable' now"
         assert "'node_plugin' of ComposableNode is called 'plugin' now" in texts
         assert len(texts) == 10
-        assert {each.filename for each in told} == {__file__}
+        assert {each.filename for each in logged} == {__file__}
 
     def test_not_both(self) -> None:
         from launch_ros.actions import Node

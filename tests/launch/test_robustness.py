@@ -107,12 +107,12 @@ TAIL = (
 )
 
 
-@pytest.mark.parametrize(("given", "told"), [("'I give up'", "I give up"), ("3", "3"), ("", ""), ("0", "0")])
-async def test_sys_exit_in_a_running_launch_is_an_error(launch, write: Write, given: str, told: str) -> None:
+@pytest.mark.parametrize(("given", "message"), [("'I give up'", "I give up"), ("3", "3"), ("", ""), ("0", "0")])
+async def test_sys_exit_in_a_running_launch_is_an_error(launch, write: Write, given: str, message: str) -> None:
     path = write("a.launch.py", (ENDED + TAIL).format(given=given, first="pass"))
     done = await launch(IncludeLaunchDescription(str(path)))
     assert not done.succeeded
-    assert f"raised SystemExit{': ' * bool(told)}{told}\n" in done.err
+    assert f"raised SystemExit{': ' * bool(message)}{message}\n" in done.err
     assert "a.launch.py:6:5" in done.err
 
 

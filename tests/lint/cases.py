@@ -83,17 +83,17 @@ def _cases(page: Path) -> list[Case]:
 
 def _case(page: str, title: str, selectors: tuple[str, ...], blocks: list[Block]) -> Case:
     files: dict[str, str] = {}
-    said = fixed = None
+    result = fixed = None
     for language, label, text in blocks:
         if language == "text" and not label:
-            said = text
+            result = text
         elif label == "fixed":
             fixed = text
         else:
             files[label.removeprefix("file=") or {"xml": "robot.urdf", "toml": "linkwright.toml"}[language]] = text
-    assert said is not None, f"{page}.md: '{title}' has no text block"
+    assert result is not None, f"{page}.md: '{title}' has no text block"
     assert files, f"{page}.md: '{title}' has no file"
-    return Case(page, title, selectors, files, said, fixed)
+    return Case(page, title, selectors, files, result, fixed)
 
 
 def _lines(diagnostic: Diagnostic, root: Path, main: Path) -> list[str]:

@@ -12,7 +12,7 @@ from linkwright.lint.registry import find_rule
 from linkwright.lint.settings import Settings
 
 
-def said(tmp_path: Path, text: str, name: str = "linkwright.toml") -> list[str]:
+def findings_of(tmp_path: Path, text: str, name: str = "linkwright.toml") -> list[str]:
     file = tmp_path / name
     file.write_text(text, encoding="utf-8")
     settings, found = read_settings(file)
@@ -125,17 +125,17 @@ def test_no_configuration_is_no_mistake(tmp_path):
     ],
 )
 def test_mistakes_are_told_with_their_place(tmp_path, text, expected):
-    assert said(tmp_path, text) == [expected]
+    assert findings_of(tmp_path, text) == [expected]
 
 
 def test_what_is_not_toml_is_told_with_its_place(tmp_path):
-    (found,) = said(tmp_path, "ignore = []\nselect = LW201\n")
+    (found,) = findings_of(tmp_path, "ignore = []\nselect = LW201\n")
     assert found.startswith("2:10 LINT101 this is not TOML: ")
 
 
 def test_mistakes_in_pyproject_are_found_below_the_table(tmp_path):
     text = "[project]\nignore = 3\n\n[tool.linkwright]\nignore = 3\n"
-    assert said(tmp_path, text, "pyproject.toml")[0].startswith("5:1 LINT103")
+    assert findings_of(tmp_path, text, "pyproject.toml")[0].startswith("5:1 LINT103")
 
 
 def test_the_rest_of_a_configuration_holds_beside_a_mistake(tmp_path):
@@ -174,7 +174,7 @@ def test_arguments_are_one_set_or_several_for_files_that_match(tmp_path):
 
 
 def test_arguments_of_another_form_are_told(tmp_path):
-    (told,) = said(tmp_path, '[arguments]\n"a.xacro" = ["prefix"]\n')
-    what, hint = told.split(" | ")
+    (logged,) = findings_of(tmp_path, '[arguments]\n"a.xacro" = ["prefix"]\n')
+    what, hint = logged.split(" | ")
     assert what == "2:2 LINT103 'a.xacro' is neither a set of values nor a list of sets"
     assert hint == 'write "a.xacro" = [{ prefix = "left_" }, { prefix = "right_" }]'

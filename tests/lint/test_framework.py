@@ -121,8 +121,8 @@ def test_an_error_of_the_reader_is_told_unless_it_is_ignored(tmp_path):
         assert [each.code for each in check(path, settings=settings)] == ["URDF106"]
     assert check(path, settings=Settings(ignore=("URDF",))) == []
     assert check(path, settings=Settings(per_file_ignores=(("robot.*", ("URDF106",)),))) == []
-    (said,) = check(path, settings=Settings(severity={"URDF1": Severity.INFO}))
-    assert said.severity is Severity.INFO
+    (result,) = check(path, settings=Settings(severity={"URDF1": Severity.INFO}))
+    assert result.severity is Severity.INFO
     path.write_text('<!-- linkwright: ignore-file URDF106 -->\n<robot name="r"/>\n')
     assert check(path, settings=Settings()) == []
 

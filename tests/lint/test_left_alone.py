@@ -12,7 +12,7 @@ BOX = '<visual><geometry><box size="{0} {0} {0}"/></geometry></visual>'
 
 
 @pytest.fixture
-def told(tmp_path):
+def codes_of(tmp_path):
     """The codes of what is said of a robot's text, with more files beside it."""
 
     def check(text, *selectors, name="r.urdf", **files):
@@ -40,50 +40,50 @@ def inertial(mass, moment, origin='<origin xyz="0 0 0"/>'):
 
 
 @pytest.mark.parametrize(("inside", "codes"), [("", ["LW102"]), (inertial(1, 1), [])])
-def test_a_model_for_dynamics_needs_no_shapes(told, inside, codes):
-    assert told(robot(f'<link name="base"/>{moving("a", inside)}'), "LW102") == codes
+def test_a_model_for_dynamics_needs_no_shapes(codes_of, inside, codes):
+    assert codes_of(robot(f'<link name="base"/>{moving("a", inside)}'), "LW102") == codes
 
 
 @pytest.mark.parametrize(
     ("axis", "codes"), [("1.2e-16 0 -1", []), ("1.2e-7 0 -1.0000002", []), ("0.0001 0 -1", ["LW224"])]
 )
-def test_an_axis_that_only_doubles_tilt(told, axis, codes):
-    assert told(robot(f'<link name="base"/>{moving("a", "", axis=axis)}'), "LW224") == codes
+def test_an_axis_that_only_doubles_tilt(codes_of, axis, codes):
+    assert codes_of(robot(f'<link name="base"/>{moving("a", "", axis=axis)}'), "LW224") == codes
 
 
 @pytest.mark.parametrize(("mass", "codes"), [(0.1, []), (300, ["LW320"])])
-def test_a_small_mass_on_a_small_frame(told, mass, codes):
+def test_a_small_mass_on_a_small_frame(codes_of, mass, codes):
     shape = BOX.format(0.0063) + '<collision><geometry><box size="0.0063 0.0063 0.0063"/></geometry></collision>'
-    assert told(robot(f'<link name="base"/>{moving("tool", shape + inertial(mass, 1e-6))}'), "LW320") == codes
+    assert codes_of(robot(f'<link name="base"/>{moving("tool", shape + inertial(mass, 1e-6))}'), "LW320") == codes
 
 
 @pytest.mark.parametrize(("origin", "codes"), [("", ["LW323"]), ('<origin xyz="0 0 0"/>', ["LW322"])])
-def test_a_centre_of_mass_far_from_its_shapes_is_told_of_once(told, origin, codes):
+def test_a_centre_of_mass_far_from_its_shapes_is_told_of_once(codes_of, origin, codes):
     shape = '<visual><origin xyz="0 0 0.5"/><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
     inside = shape + inertial(1, 0.002, origin)
-    assert told(robot(f'<link name="base"/>{moving("a", inside)}'), "LW322", "LW323") == codes
+    assert codes_of(robot(f'<link name="base"/>{moving("a", inside)}'), "LW322", "LW323") == codes
 
 
 @pytest.mark.parametrize(("moment", "codes"), [("0.002", ["LW315"]), ("0.00{}", ["LW322"] * 3)])
-def test_a_centre_of_mass_is_not_told_of_beside_an_inertia_that_was_copied(told, moment, codes):
+def test_a_centre_of_mass_is_not_told_of_beside_an_inertia_that_was_copied(codes_of, moment, codes):
     shape = '<visual><origin xyz="0 0 0.{0}"/><geometry><box size="0.1 0.1 0.{0}"/></geometry></visual>'
     links = (moving(f"l{n}", shape.format(n) + inertial(1, moment.format(n))) for n in (4, 5, 6))
-    assert told(robot(f'<link name="base"/>{"".join(links)}'), "LW315", "LW322") == codes
+    assert codes_of(robot(f'<link name="base"/>{"".join(links)}'), "LW315", "LW322") == codes
 
 
 @pytest.mark.parametrize(("root", "codes"), [("world", []), ("floor", ["LW325"])])
-def test_the_inertia_of_what_is_fixed_to_the_world(told, root, codes):
+def test_the_inertia_of_what_is_fixed_to_the_world(codes_of, root, codes):
     stand = f'<link name="stand">{BOX.format(1)}{inertial(1000, 0.01)}</link>'
     joint = f'<joint name="j" type="fixed"><parent link="{root}"/><child link="stand"/></joint>'
-    assert told(robot(f'<link name="{root}"/>{stand}{joint}'), "LW325") == codes
+    assert codes_of(robot(f'<link name="{root}"/>{stand}{joint}'), "LW325") == codes
 
 
 @pytest.mark.parametrize(("ignored", "codes"), [("*.obj", ["LW424"]), ("meshes/", []), ("*.stl\n!wheel.stl", [])])
-def test_a_mesh_that_git_ignores(told, ignored, codes):
+def test_a_mesh_that_git_ignores(codes_of, ignored, codes):
     manifest = "<package format='3'><name>p</name></package>"
     mesh = '<visual><geometry><mesh filename="package://p/meshes/body.stl"/></geometry></visual>'
     files = {"package_dot_xml": manifest, "_dot_gitignore": ignored}
-    assert told(robot(f'<link name="base">{mesh}</link>'), "LW424", **files) == codes
+    assert codes_of(robot(f'<link name="base">{mesh}</link>'), "LW424", **files) == codes
 
 
 _HARDWARE = "<hardware><plugin>p/P</plugin></hardware>"
@@ -98,9 +98,9 @@ _HARDWARE = "<hardware><plugin>p/P</plugin></hardware>"
         ("", ["LW124"]),
     ],
 )
-def test_hardware_that_an_argument_chooses(told, inside, codes):
+def test_hardware_that_an_argument_chooses(codes_of, inside, codes):
     control = f'<ros2_control name="c" type="system">{inside}</ros2_control>'
-    assert told(robot(f'<link name="base"/>{control}', PREFIX), "LW124", name="r.urdf.xacro") == codes
+    assert codes_of(robot(f'<link name="base"/>{control}', PREFIX), "LW124", name="r.urdf.xacro") == codes
 
 
 _TRANSMISSION = f'<link name="base"/>{moving("a", "")}<transmission name="t"><joint name="j_a"/></transmission>'
@@ -110,12 +110,12 @@ _PACKAGE = "<package format='3'><name>arm</name><version>0.1.0</version></packag
 @pytest.mark.parametrize(
     ("control", "codes"), [("", ["LW127"]), (f'<ros2_control name="c" type="system">{_HARDWARE}</ros2_control>', [])]
 )
-def test_transmissions_beside_ros2_control(told, control, codes):
-    assert told(robot(_TRANSMISSION + control), "LW127", package_dot_xml=_PACKAGE) == codes
+def test_transmissions_beside_ros2_control(codes_of, control, codes):
+    assert codes_of(robot(_TRANSMISSION + control), "LW127", package_dot_xml=_PACKAGE) == codes
 
 
-def test_transmissions_of_a_file_in_no_package(told):
-    assert told(robot(_TRANSMISSION), "LW127") == []
+def test_transmissions_of_a_file_in_no_package(codes_of):
+    assert codes_of(robot(_TRANSMISSION), "LW127") == []
 
 
 @pytest.mark.parametrize(("files", "severity"), [({}, "info"), ({"package.xml": _PACKAGE}, "warning")])
@@ -131,16 +131,16 @@ def test_a_relative_mesh_path_is_a_warning_in_a_package(tmp_path, files, severit
 @pytest.mark.parametrize(
     ("included", "codes"), [("", []), ('<xacro:macro name="laser"><link name="laser"/></xacro:macro>', ["LW704"])]
 )
-def test_an_include_of_a_file_that_is_yet_to_be_filled(told, included, codes):
+def test_an_include_of_a_file_that_is_yet_to_be_filled(codes_of, included, codes):
     text = robot('<xacro:include filename="more.xacro"/><link name="base"/>', PREFIX)
     files = {"more_dot_xacro": f"<robot {PREFIX}>{included}</robot>"}
-    assert told(text, "LW704", name="r.urdf.xacro", **files) == codes
+    assert codes_of(text, "LW704", name="r.urdf.xacro", **files) == codes
 
 
 @pytest.mark.parametrize(("name", "codes"), [("map", ["LW624"]), ("$(arg parent)", [])])
-def test_a_frame_that_the_caller_names(told, name, codes):
+def test_a_frame_that_the_caller_names(codes_of, name, codes):
     text = robot(f'<xacro:arg name="parent" default="map"/><link name="{name}"/>', PREFIX)
-    assert told(text, "LW624", name="r.urdf.xacro") == codes
+    assert codes_of(text, "LW624", name="r.urdf.xacro") == codes
 
 
 _WHEEL = '<xacro:macro name="wheel" params="name prefix"><link name="${name}"/></xacro:macro>'
@@ -148,9 +148,9 @@ _ARM = '<xacro:macro name="arm" params="prefix"><link name="${prefix}arm"/></xac
 
 
 @pytest.mark.parametrize(("more", "codes"), [("", ["LW705"]), (_ARM + '<xacro:arm prefix="l_"/>', [])])
-def test_a_parameter_that_other_macros_take_too(told, more, codes):
+def test_a_parameter_that_other_macros_take_too(codes_of, more, codes):
     text = robot(f'{_WHEEL}<xacro:wheel name="w" prefix=""/>{more}', PREFIX)
-    assert told(text, "LW705", name="r.urdf.xacro") == codes
+    assert codes_of(text, "LW705", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(
@@ -174,10 +174,10 @@ def test_a_fixed_frame_of_another_robot(tmp_path, frame, codes):
 
 
 @pytest.mark.parametrize(("shape", "codes"), [("", []), ("c", ["LW410"])])
-def test_a_hip_between_parts_with_collisions_needs_none(told, shape, codes):
+def test_a_hip_between_parts_with_collisions_needs_none(codes_of, shape, codes):
     body = BOX.format(0.2) + '<collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision>'
     leg = moving("hip", BOX.format(0.1)) + (moving("thigh", body, "hip") if not shape else moving("thigh", body))
-    assert told(robot(f'<link name="base">{body}</link>{leg}'), "LW410") == codes
+    assert codes_of(robot(f'<link name="base">{body}</link>{leg}'), "LW410") == codes
 
 
 def test_a_visual_without_any_extent_marks_a_place(tmp_path):
@@ -187,38 +187,38 @@ def test_a_visual_without_any_extent_marks_a_place(tmp_path):
     assert [each.severity.name for each in found if each.code == "LW401"] == ["INFO", "WARNING"]
 
 
-def test_an_attribute_that_keeps_isaac_gym_from_merging_links_is_known(told):
+def test_an_attribute_that_keeps_isaac_gym_from_merging_links_is_known(codes_of):
     joint = (
         '<joint name="j" type="fixed" dont_collapse="true" origin="0 0 0"><parent link="a"/><child link="b"/></joint>'
     )
-    assert told(robot(f'<link name="a"/><link name="b"/>{joint}'), "LW108") == ["LW108"]
+    assert codes_of(robot(f'<link name="a"/><link name="b"/>{joint}'), "LW108") == ["LW108"]
 
 
 @pytest.mark.parametrize(("kind", "codes"), [("fixed", ["LW230"]), ("$(arg kind)", [])])
-def test_a_type_that_an_argument_chooses_may_follow_another_time(told, kind, codes):
+def test_a_type_that_an_argument_chooses_may_follow_another_time(codes_of, kind, codes):
     joint = f'<joint name="r" type="{kind}"><parent link="a"/><child link="c"/><mimic joint="j_b"/></joint>'
     text = f'<xacro:arg name="kind" default="fixed"/><link name="a"/>{moving("b", "", "a")}<link name="c"/>{joint}'
-    assert told(robot(text, PREFIX), "LW230", name="r.urdf.xacro") == codes
+    assert codes_of(robot(text, PREFIX), "LW230", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(("size", "codes"), [(0.2, []), (8, ["LW321"])])
-def test_a_stray_visual_does_not_make_a_link_too_light(told, size, codes):
+def test_a_stray_visual_does_not_make_a_link_too_light(codes_of, size, codes):
     shape = BOX.format(8) + f'<collision><geometry><box size="{size} {size} {size}"/></geometry></collision>'
-    assert told(robot(f'<link name="base"/>{moving("a", shape + inertial(1, 0.0067))}'), "LW321") == codes
+    assert codes_of(robot(f'<link name="base"/>{moving("a", shape + inertial(1, 0.0067))}'), "LW321") == codes
 
 
 @pytest.mark.parametrize(("upper", "codes"), [("0", ["LW202"]), ("1", ["LW205", "LW206", "LW222"])])
-def test_a_joint_without_a_range_is_told_of_once(told, upper, codes):
+def test_a_joint_without_a_range_is_told_of_once(codes_of, upper, codes):
     joint = '<joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
     joint += f'<limit lower="0" upper="{upper}" effort="0" velocity="0"/></joint><gazebo/>'
-    assert sorted(told(robot(f'<link name="a"/><link name="b"/>{joint}'), "LW2")) == codes
+    assert sorted(codes_of(robot(f'<link name="a"/><link name="b"/>{joint}'), "LW2")) == codes
 
 
 @pytest.mark.parametrize(("tag", "codes"), [("insert_block", ["LW720"]), ("visual", ["LW705"])])
-def test_what_a_tag_without_its_prefix_would_use_is_not_called_unused(told, tag, codes):
+def test_what_a_tag_without_its_prefix_would_use_is_not_called_unused(codes_of, tag, codes):
     inside = f'<xacro:macro name="m" params="*origin"><link name="l"/><{tag} name="origin"/></xacro:macro>'
     call = '<xacro:m><origin xyz="0 0 1"/></xacro:m>'
-    assert told(robot(inside + call, PREFIX), "LW705", "LW720", name="r.urdf.xacro") == codes
+    assert codes_of(robot(inside + call, PREFIX), "LW705", "LW720", name="r.urdf.xacro") == codes
 
 
 MANIFEST = """<package format="3"><name>p</name><version>1.0.0</version><description>A robot.</description>
@@ -313,7 +313,7 @@ def test_what_cmake_makes_is_there_when_it_is_installed(tmp_path, before, codes)
 
 
 @pytest.mark.parametrize(
-    ("lines", "told"),
+    ("lines", "message"),
     [
         ("<exec_depend>xacro</exec_depend><exec_depend>xacro</exec_depend>", ["info"]),
         ("<depend>xacro</depend><exec_depend>xacro</exec_depend>", ["error"]),
@@ -321,10 +321,10 @@ def test_what_cmake_makes_is_there_when_it_is_installed(tmp_path, before, codes)
         ("<depend>xacro</depend><test_depend>xacro</test_depend>", []),
     ],
 )
-def test_a_dependency_twice_is_an_information_and_beside_depend_what_catkin_pkg_refuses(tmp_path, lines, told):
+def test_a_dependency_twice_is_an_information_and_beside_depend_what_catkin_pkg_refuses(tmp_path, lines, message):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=lines))
     found = examine_package(tmp_path, Settings(select=("LW809",))).diagnostics
-    assert [each.severity.value for each in found] == told
+    assert [each.severity.value for each in found] == message
 
 
 @pytest.mark.parametrize("name", ["iCub", "neo-mpo"])
@@ -336,15 +336,15 @@ def test_a_name_that_colcon_takes_is_an_information(tmp_path, name):
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [("", "info"), ("# from launch import LaunchDescription\n", "info"), ("import launch\n", "warning")],
 )
-def test_a_launch_file_to_be_written_is_an_information(tmp_path, text, told):
+def test_a_launch_file_to_be_written_is_an_information(tmp_path, text, message):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
     (tmp_path / "launch").mkdir()
     (tmp_path / "launch" / "a.launch.py").write_text(text)
     found = examine_package(tmp_path, Settings(select=("LW841",))).diagnostics
-    assert [each.severity.value for each in found] == [told]
+    assert [each.severity.value for each in found] == [message]
 
 
 @pytest.mark.parametrize(
@@ -369,27 +369,27 @@ def test_what_is_called_as_a_launch_file_and_runs_otherwise_is_none(tmp_path, te
     ("value", "codes"),
     [("3.14159265", []), ("${pi/2}", []), ("1.5708", []), ("0.0174533", []), ("57.29578", []), ("3.2", ["LW701"])],
 )
-def test_a_constant_of_mathematics_may_stand_by(told, value, codes):
+def test_a_constant_of_mathematics_may_stand_by(codes_of, value, codes):
     text = robot(f'<xacro:property name="constant" value="{value}"/><link name="a"/>', PREFIX)
-    assert told(text, "LW701", name="r.urdf.xacro") == codes
+    assert codes_of(text, "LW701", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(("default", "codes"), [("^|false", []), ("^", []), ("false", ["LW705"])])
-def test_a_parameter_that_is_taken_from_around_costs_no_call_anything(told, default, codes):
+def test_a_parameter_that_is_taken_from_around_costs_no_call_anything(codes_of, default, codes):
     macro = f'<xacro:macro name="m" params="use_sim:={default}"><link name="m"/></xacro:macro>'
     outer = '<xacro:property name="use_sim" value="1"/><joint name="${use_sim}"/>'
     text = robot(f'{outer}<link name="base"/>{macro}<xacro:m/>', PREFIX)
-    assert told(text, "LW705", name="r.urdf.xacro") == codes
+    assert codes_of(text, "LW705", name="r.urdf.xacro") == codes
 
 
-def test_a_bare_call_beside_that_of_the_group_is_for_older_releases(told):
+def test_a_bare_call_beside_that_of_the_group_is_for_older_releases(codes_of):
     chosen = (
         '<xacro:property name="a" value="${xacro.load_yaml(f)}"/><xacro:property name="b" value="${load_yaml(f)}"/>'
     )
     outer = f'<xacro:macro name="m" params="f">{chosen}<link name="${{a}}${{b}}"/></xacro:macro>'
-    assert told(robot(f'<link name="base"/>{outer}', PREFIX), "LW714", name="r.urdf.xacro") == []
+    assert codes_of(robot(f'<link name="base"/>{outer}', PREFIX), "LW714", name="r.urdf.xacro") == []
     alone = outer.replace("xacro.load_yaml", "xacro.abs_filename")
-    assert told(robot(f'<link name="base"/>{alone}', PREFIX), "LW714", name="r.urdf.xacro") == ["LW714"]
+    assert codes_of(robot(f'<link name="base"/>{alone}', PREFIX), "LW714", name="r.urdf.xacro") == ["LW714"]
 
 
 def test_folders_beside_each_other_that_are_not_installed_are_one_finding(tmp_path):
@@ -435,19 +435,19 @@ def test_a_package_that_depends_on_this_one_cannot_be_declared(tmp_path, needs, 
         ("<visual acme_layer='2'><geometry><sphere radius='1'/></geometry></visual>", []),
     ],
 )
-def test_names_that_are_of_no_format_are_a_vendors_own(told, inside, codes):
-    assert told(robot(f'<link name="base">{inside}</link>'), "LW107", "LW108") == codes
+def test_names_that_are_of_no_format_are_a_vendors_own(codes_of, inside, codes):
+    assert codes_of(robot(f'<link name="base">{inside}</link>'), "LW107", "LW108") == codes
 
 
 @pytest.mark.parametrize(
     ("lower", "upper", "codes"),
     [(-0.01, 0.088, []), (-0.01, 0.1, ["LW240", "LW240"]), (-0.01, 0.09, ["LW240"]), (-0.05, 0.088, ["LW240"])],
 )
-def test_a_gripper_that_presses_has_no_soft_limit_where_it_is_closed(told, lower, upper, codes):
+def test_a_gripper_that_presses_has_no_soft_limit_where_it_is_closed(codes_of, lower, upper, codes):
     soft = f'soft_lower_limit="{lower}" soft_upper_limit="{upper}"'
     limits = f'<limit lower="0" upper="0.09" effort="1" velocity="1"/><safety_controller k_velocity="1" {soft}/>'
     joint = f'<joint name="j" type="prismatic"><parent link="base"/><child link="a"/>{limits}</joint>'
-    assert told(robot(f'<link name="base"/><link name="a"/>{joint}'), "LW240") == codes
+    assert codes_of(robot(f'<link name="base"/><link name="a"/>{joint}'), "LW240") == codes
 
 
 @pytest.mark.parametrize(
@@ -465,28 +465,28 @@ def test_a_mesh_off_its_own_origin_needs_another_origin_for_its_collision(tmp_pa
 
 
 @pytest.mark.parametrize(("size", "codes"), [(60, ["LW433"]), (40, ["LW412", "LW413"])])
-def test_a_mesh_in_millimetres_is_told_of_once(told, size, codes):
+def test_a_mesh_in_millimetres_is_told_of_once(codes_of, size, codes):
     facet = f"facet normal 0 0 1\nouter loop\nvertex 5 0 0\nvertex {5 + size} 0 0\nvertex 5 {size} 0\nendloop\nendfacet"
     seen = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
     felt = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
     text = robot(f'<link name="a">{seen}{felt}</link>')
-    found = told(text, "LW412", "LW413", "LW433", a_dot_stl=f"solid a\n{facet}\nendsolid a\n")
+    found = codes_of(text, "LW412", "LW413", "LW433", a_dot_stl=f"solid a\n{facet}\nendsolid a\n")
     assert sorted(found) == codes
 
 
 @pytest.mark.parametrize(("far", "codes"), [(25, ["LW405"]), (2.5, ["LW412"])])
-def test_a_shape_that_is_far_away_is_told_of_once(told, far, codes):
+def test_a_shape_that_is_far_away_is_told_of_once(codes_of, far, codes):
     seen = f'<visual><origin xyz="{far} 0 0"/><geometry><box size="1 1 1"/></geometry></visual>'
     felt = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
-    assert told(robot(f'<link name="a">{seen}{felt}</link>'), "LW405", "LW412") == codes
+    assert codes_of(robot(f'<link name="a">{seen}{felt}</link>'), "LW405", "LW412") == codes
 
 
 @pytest.mark.parametrize(
     ("part", "codes"),
     [('<ros2_control name="c" type="system"/>', ["LINT302"]), ('<gazebo reference="a"/>', ["URDF106"])],
 )
-def test_the_ros2_control_of_a_robot_may_stand_alone(told, part, codes):
-    assert told(robot(part, PREFIX), "LINT302", "URDF106", name="r.urdf.xacro") == codes
+def test_the_ros2_control_of_a_robot_may_stand_alone(codes_of, part, codes):
+    assert codes_of(robot(part, PREFIX), "LINT302", "URDF106", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(
@@ -559,9 +559,9 @@ def test_a_program_that_setup_py_copies_is_an_executable(tmp_path, data, codes):
 
 
 @pytest.mark.parametrize("big", ["a", "b"])
-def test_of_two_parts_that_are_not_connected_one_is_told(told, big):
+def test_of_two_parts_that_are_not_connected_one_is_told(codes_of, big):
     text = robot(f'<link name="a"/><link name="b"/>{moving("c", "", parent=big)}')
-    assert told(text, "LW103", "URDF152") == ["URDF152"]
+    assert codes_of(text, "LW103", "URDF152") == ["URDF152"]
 
 
 @pytest.mark.parametrize(
@@ -628,22 +628,22 @@ def test_a_package_of_meshes_that_a_package_beside_declares_is_only_not_here(tmp
     assert [each.severity.name for each in found if each.code == "LW423"] == ["INFO", "WARNING"]
 
 
-def test_what_an_include_that_is_not_here_may_define_is_not_missing(told):
+def test_what_an_include_that_is_not_here_may_define_is_not_missing(codes_of):
     coloured = '<visual><geometry><box size="1 1 1"/></geometry><material name="dark"/></visual>'
     include = '<xacro:include filename="$(find far_description)/colours.xacro"/>'
     link = f'<link name="a">{coloured}</link>'
-    assert told(robot(link), "URDF160") == ["URDF160"]
-    assert told(robot(include + link, PREFIX), "URDF160") == []
+    assert codes_of(robot(link), "URDF160") == ["URDF160"]
+    assert codes_of(robot(include + link, PREFIX), "URDF160") == []
 
 
 @pytest.mark.parametrize(("more", "codes"), [("", ["LW102"]), ('<ros2_control name="c" type="system"/>', [])])
-def test_hardware_on_a_bench_has_no_shapes(told, more, codes):
-    assert told(robot(f'<link name="base"/>{moving("a", "")}{more}'), "LW102") == codes
+def test_hardware_on_a_bench_has_no_shapes(codes_of, more, codes):
+    assert codes_of(robot(f'<link name="base"/>{moving("a", "")}{more}'), "LW102") == codes
 
 
 @pytest.mark.parametrize(("xyz", "codes"), [("0 0 0", []), ("0 0 1", ["LW105"])])
-def test_an_origin_that_would_move_nothing(told, xyz, codes):
-    assert told(robot(f'<link name="base"><origin xyz="{xyz}" rpy="0 0 0"/></link>'), "LW105") == codes
+def test_an_origin_that_would_move_nothing(codes_of, xyz, codes):
+    assert codes_of(robot(f'<link name="base"><origin xyz="{xyz}" rpy="0 0 0"/></link>'), "LW105") == codes
 
 
 def test_a_misplaced_element_belongs_where_it_stands_nearly(tmp_path):
@@ -660,29 +660,29 @@ def test_a_misplaced_element_belongs_where_it_stands_nearly(tmp_path):
         (f'<link name="base"/>{moving("rock", BOX.format(1) + inertial(0, 0))}', ["LW302"]),
     ],
 )
-def test_scenery_of_one_link_never_moves(told, text, codes):
-    assert told(robot(text), "LW302") == codes
+def test_scenery_of_one_link_never_moves(codes_of, text, codes):
+    assert codes_of(robot(text), "LW302") == codes
 
 
 @pytest.mark.parametrize(("second", "count"), [(1.0, 1), (2.0, 2)])
-def test_an_inertia_that_is_too_large_on_many_links_is_told_of_once(told, second, count):
+def test_an_inertia_that_is_too_large_on_many_links_is_told_of_once(codes_of, second, count):
     fingers = moving("a", BOX.format(0.01) + inertial(0.01, 1.0)) + moving(
         "b", BOX.format(0.02) + inertial(0.01, second)
     )
-    assert told(robot(f'<link name="base">{BOX.format(1)}</link>{fingers}'), "LW324") == ["LW324"] * count
+    assert codes_of(robot(f'<link name="base">{BOX.format(1)}</link>{fingers}'), "LW324") == ["LW324"] * count
 
 
 @pytest.mark.parametrize(("call", "codes"), [("<!-- <xacro:m/> -->", []), ("<!-- <xacro:n/> -->", ["LW704"])])
-def test_an_include_whose_call_is_switched_off(told, call, codes):
+def test_an_include_whose_call_is_switched_off(codes_of, call, codes):
     part = f'<robot {PREFIX}><xacro:macro name="m"><link name="m"/></xacro:macro></robot>'
     text = robot(f'<link name="base"/><xacro:include filename="part.xacro"/>{call}', PREFIX)
-    assert told(text, "LW704", name="r.urdf.xacro", part_dot_xacro=part) == codes
+    assert codes_of(text, "LW704", name="r.urdf.xacro", part_dot_xacro=part) == codes
 
 
 @pytest.mark.parametrize(("body", "codes"), [("", []), ('<link name="m"/>', ["LW705"])])
-def test_an_empty_macro_takes_what_those_take_that_it_stands_for(told, body, codes):
+def test_an_empty_macro_takes_what_those_take_that_it_stands_for(codes_of, body, codes):
     macro = f'<xacro:macro name="m" params="sim">{body}</xacro:macro><xacro:m sim="1"/>'
-    assert told(robot(f'<link name="base"/>{macro}', PREFIX), "LW705", name="r.urdf.xacro") == codes
+    assert codes_of(robot(f'<link name="base"/>{macro}', PREFIX), "LW705", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(
@@ -716,9 +716,9 @@ def test_a_file_that_is_in_the_sources_but_not_in_an_old_build(tmp_path, there, 
 
 
 @pytest.mark.parametrize(("izz", "codes"), [(1, ["LW324"]), (3, ["LW314"])])
-def test_an_inertia_that_no_body_has_is_not_called_too_large_as_well(told, izz, codes):
+def test_an_inertia_that_no_body_has_is_not_called_too_large_as_well(codes_of, izz, codes):
     part = moving("a", BOX.format(0.1) + inertial(0.1, 1).replace('izz="1"', f'izz="{izz}"'))
-    assert told(robot(f'<link name="base"/>{part}'), "LW314", "LW324") == codes
+    assert codes_of(robot(f'<link name="base"/>{part}'), "LW314", "LW324") == codes
 
 
 @pytest.mark.parametrize(
@@ -729,20 +729,20 @@ def test_an_inertia_that_no_body_has_is_not_called_too_large_as_well(told, izz, 
         ("base", "prismatic", ["LW324"]),
     ],
 )
-def test_the_inertia_of_what_only_slides_on_the_world_does_nothing(told, root, kind, codes):
+def test_the_inertia_of_what_only_slides_on_the_world_does_nothing(codes_of, root, kind, codes):
     part = moving("cart", BOX.format(0.1) + inertial(0.1, 1), parent=root).replace("continuous", kind)
     part = part.replace("</joint>", '<limit lower="0" upper="1" effort="1" velocity="1"/></joint>')
-    assert told(robot(f'<link name="{root}"/>{part}'), "LW322", "LW324") == codes
+    assert codes_of(robot(f'<link name="{root}"/>{part}'), "LW322", "LW324") == codes
 
 
 @pytest.mark.parametrize(
     ("lower", "upper", "count"),
     [("-100", "100", 0), ("-1000.0", "1e3", 0), ("0", "100", 1), ("-120", "120", 2), ("-100", "1000", 2)],
 )
-def test_a_round_limit_to_both_sides_of_a_slide_means_no_end(told, lower, upper, count):
+def test_a_round_limit_to_both_sides_of_a_slide_means_no_end(codes_of, lower, upper, count):
     slide = moving("cart", "").replace("continuous", "prismatic")
     limit = f'<limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/></joint>'
-    assert told(robot(f'<link name="base"/>{slide.replace("</joint>", limit)}'), "LW213") == ["LW213"] * count
+    assert codes_of(robot(f'<link name="base"/>{slide.replace("</joint>", limit)}'), "LW213") == ["LW213"] * count
 
 
 ROVER = """<link name="rocker"><visual><geometry><box size="0.4 0.02 0.02"/></geometry></visual></link>
@@ -755,31 +755,31 @@ WHEEL = """<link name="{0}_wheel"><visual><origin rpy="1.5707963 0 0"/>
 
 
 @pytest.mark.parametrize(("axis", "codes"), [("0 1 0", []), ("0 0 1", ["LW390"])])
-def test_wheels_on_a_rocker_find_the_ground_by_themselves(told, axis, codes):
+def test_wheels_on_a_rocker_find_the_ground_by_themselves(codes_of, axis, codes):
     wheels = WHEEL.format("front", "rocker", 0.2, 0) + WHEEL.format("rear", "base", -0.2, 0.05)
     rocker = ROVER.format(rocker="rocker", axis=axis)
-    assert told(robot(f'<link name="base"/>{rocker}{wheels}'), "LW390") == codes
+    assert codes_of(robot(f'<link name="base"/>{rocker}{wheels}'), "LW390") == codes
 
 
 @pytest.mark.parametrize(("between", "codes"), [(False, ["LW641"]), (True, [])])
-def test_what_carries_wheels_is_no_wheel(told, between, codes):
+def test_what_carries_wheels_is_no_wheel(codes_of, between, codes):
     carrier = ROVER.replace('name="rocker"', 'name="left_wheel_connector"').format(
         rocker="left_wheel_connector", axis="0 1 0"
     )
     ends = '<parent link="left_wheel_connector"/><child link="leg"/>'
     leg = f'<link name="leg"/><joint name="leg" type="fixed">{ends}</joint>'
     wheel = WHEEL.format("front", "leg" if between else "base", 0.2, 0)
-    assert told(robot(f'<link name="base"/>{carrier}{leg}{wheel}'), "LW641") == codes
+    assert codes_of(robot(f'<link name="base"/>{carrier}{leg}{wheel}'), "LW641") == codes
 
 
 @pytest.mark.parametrize(("parent", "codes"), [("world", []), ("base", ["LW226"])])
-def test_a_robot_may_stand_anywhere_in_its_world(told, parent, codes):
+def test_a_robot_may_stand_anywhere_in_its_world(codes_of, parent, codes):
     joint = f'<joint name="j" type="fixed"><origin xyz="33 17 2"/><parent link="{parent}"/><child link="a"/></joint>'
-    assert told(robot(f'<link name="{parent}"/><link name="a"/>{joint}'), "LW226") == codes
+    assert codes_of(robot(f'<link name="{parent}"/><link name="a"/>{joint}'), "LW226") == codes
 
 
-def test_of_two_joints_with_one_name_it_is_not_told_that_their_link_has_two(told):
+def test_of_two_joints_with_one_name_it_is_not_told_that_their_link_has_two(codes_of):
     joint = '<joint name="{}" type="fixed"><parent link="base"/><child link="a"/></joint>'
     links = '<link name="base"/><link name="a"/>'
-    assert told(robot(links + joint.format("j") + joint.format("j")), "URDF1") == ["URDF110"]
-    assert told(robot(links + joint.format("j") + joint.format("k")), "URDF1") == ["URDF151"]
+    assert codes_of(robot(links + joint.format("j") + joint.format("j")), "URDF1") == ["URDF110"]
+    assert codes_of(robot(links + joint.format("j") + joint.format("k")), "URDF1") == ["URDF151"]

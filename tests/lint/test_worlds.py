@@ -17,7 +17,7 @@ GOOD = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></i
 
 
 @pytest.fixture
-def told(tmp_path, monkeypatch):
+def findings_of(tmp_path, monkeypatch):
     """Code, line, place and message of what is said of models in a world."""
     monkeypatch.setenv("HOME", str(tmp_path))
 
@@ -49,19 +49,19 @@ def tensor(ixx, iyy, izz, more=""):
         (tensor(1, "nan", 1), "SDF122", "the mass or inertia of link 'l' is not a finite number"),
     ],
 )
-def test_masses_that_no_body_has(told, inertial, code, message):
-    assert told(link(inertial)) == [(code, 2, message)]
-    assert told(link(inertial, "<static>true</static>")) == []
+def test_masses_that_no_body_has(findings_of, inertial, code, message):
+    assert findings_of(link(inertial)) == [(code, 2, message)]
+    assert findings_of(link(inertial, "<static>true</static>")) == []
 
 
-def test_an_inertia_that_is_worked_out_is_not_judged(told):
-    assert told(link('<inertial auto="true"><mass>0</mass></inertial>')) == []
+def test_an_inertia_that_is_worked_out_is_not_judged(findings_of):
+    assert findings_of(link('<inertial auto="true"><mass>0</mass></inertial>')) == []
 
 
-def test_models_in_static_models_are_static(told):
+def test_models_in_static_models_are_static(findings_of):
     inner = link("<inertial><mass>-2</mass></inertial>")
-    assert told(f'<model name="o"><static>1</static>{inner}</model>') == []
-    assert len(told(f'<model name="o"><link name="a"/>{inner}</model>')) == 1
+    assert findings_of(f'<model name="o"><static>1</static>{inner}</model>') == []
+    assert len(findings_of(f'<model name="o"><link name="a"/>{inner}</model>')) == 1
 
 
 @pytest.mark.parametrize(
@@ -73,40 +73,40 @@ def test_models_in_static_models_are_static(told):
         "<ellipsoid><radii>1 1 0</radii></ellipsoid>",
     ],
 )
-def test_sizes_that_are_not_positive(told, shape):
+def test_sizes_that_are_not_positive(findings_of, shape):
     collision = f'<collision name="c"><geometry>{shape}</geometry></collision>'
-    assert told(link(GOOD + collision)) == [("SDF122", 2, "a size of collision 'c' is not positive")]
+    assert findings_of(link(GOOD + collision)) == [("SDF122", 2, "a size of collision 'c' is not positive")]
 
 
-def test_an_axis_and_a_step_of_zero(told):
+def test_an_axis_and_a_step_of_zero(findings_of):
     joint = '<joint name="j" type="revolute"><parent>l</parent><child>k</child><axis><xyz>0 0 0</xyz></axis></joint>'
     model = f'<model name="m"><link name="l"/><link name="k"/>{joint}</model>'
-    assert told(model) == [("SDF122", 2, "the axis of joint 'j' has no direction")]
+    assert findings_of(model) == [("SDF122", 2, "the axis of joint 'j' has no direction")]
     fixed = [joint.replace('"j"', f'"{name}"').replace("revolute", "fixed") for name in ("f", "g", "h")]
     model = f'<model name="m"><link name="l"/><link name="k"/>{joint}{"".join(fixed)}</model>'
-    assert told(model) == [
+    assert findings_of(model) == [
         ("SDF122", 2, "the axis of joint 'j' has no direction"),
         ("SDF122", 2, "the axis of joint 'f' has no direction (and 2 more)"),
     ]
     step = '<physics type="ode"><max_step_size>0</max_step_size></physics>'
-    assert told(step + link(GOOD)) == [("SDF122", 2, "the time step is not positive: 0 s")]
+    assert findings_of(step + link(GOOD)) == [("SDF122", 2, "the time step is not positive: 0 s")]
 
 
-def test_walls_without_a_length_are_one_finding_for_each_model(told):
+def test_walls_without_a_length_are_one_finding_for_each_model(findings_of):
     box = '<{0} name="{1}"><geometry>\n<box><size>0 1 2</size></box></geometry></{0}>'
     walls = "".join(box.format(kind, f"{kind}{number}") for number in range(2) for kind in ("visual", "collision"))
-    assert told(link(GOOD + walls)) == [("SDF122", 3, "a size of visual 'visual0' is not positive (and 3 more)")]
+    assert findings_of(link(GOOD + walls)) == [("SDF122", 3, "a size of visual 'visual0' is not positive (and 3 more)")]
 
 
-def test_a_mesh_that_is_not_there_is_told_of_once(told, tmp_path):
+def test_a_mesh_that_is_not_there_is_told_of_once(findings_of, tmp_path):
     visual = '<visual name="v{}"><geometry><mesh>\n<uri>meshes/a.stl</uri></mesh></geometry></visual>'
     model = link(GOOD + visual.format(1) + visual.format(2))
-    found = told(model)
+    found = findings_of(model)
     assert [each[:2] for each in found] == [("SDF162", 3)]
     assert found[0][2].startswith("'meshes/a.stl' of visual 'v1' is left out: ")
     (tmp_path / "meshes").mkdir()
     (tmp_path / "meshes/a.stl").touch()
-    assert told(model) == []
+    assert findings_of(model) == []
 
 
 def test_models_and_meshes_that_are_not_there_are_one_finding_each(tmp_path, monkeypatch):

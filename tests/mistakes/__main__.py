@@ -14,9 +14,9 @@ def renew(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     for case in read_cases(page):
         with tempfile.TemporaryDirectory() as folder:
-            said = case.check(Path(folder).resolve())
+            result = case.check(Path(folder).resolve())
         at = text.index("\n```text\n", text.index(f"## {case.title}\n")) + len("\n```text\n")
-        text = text[:at] + (f"{said}\n" if said else "") + text[text.index("```\n", at) :]
+        text = text[:at] + (f"{result}\n" if result else "") + text[text.index("```\n", at) :]
     page.write_text(text, encoding="utf-8")
 
 

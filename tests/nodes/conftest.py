@@ -13,7 +13,7 @@ def stage(graph, clock, log) -> Stage:  # noqa: F811
 
 
 @pytest.fixture
-def said(log):  # noqa: F811
+def logged(log):  # noqa: F811
     """What was logged at a level."""
 
     def texts(level: str) -> list[str]:

@@ -10,13 +10,13 @@ from linkwright.nodes.add_two_ints import AddTwoIntsClient, AddTwoIntsServer
 from linkwright.nodes.demo_camera import DemoCamera
 
 
-async def test_the_client_waits_for_the_server_and_ends(stage, said):
+async def test_the_client_waits_for_the_server_and_ends(stage, logged):
     client = AddTwoIntsClient(stage.graph, NodeOptions())
     await stage.clock.advance(2.5)
-    assert said("INFO") == ["service not available, waiting again..."] * 2
+    assert logged("INFO") == ["service not available, waiting again..."] * 2
     AddTwoIntsServer(stage.graph, NodeOptions())
     await stage.clock.advance(0.1)
-    assert said("INFO")[2:] == ["Incoming request\na: 2 b: 3", "Result of add_two_ints: 5"]
+    assert logged("INFO")[2:] == ["Incoming request\na: 2 b: 3", "Result of add_two_ints: 5"]
     assert client.finished.result() == 0
     client.close()
 

@@ -27,10 +27,10 @@ async def gui(stage):
 
 
 @pytest.fixture
-def told(gui):
-    told = []
-    gui.panel.subscribe(told.append)
-    return told
+def messages(gui):
+    messages = []
+    gui.panel.subscribe(messages.append)
+    return messages
 
 
 def test_rows(gui):
@@ -53,7 +53,7 @@ async def test_there_are_no_rows_before_a_description(stage):
     assert not panel.set_position("a", 1.0)
 
 
-async def test_a_move_is_published_at_once_and_many_as_one(stage, gui, told):
+async def test_a_move_is_published_at_once_and_many_as_one(stage, gui, messages):
     before = len(stage.joint_states)
     for position in (0.1, 0.2, 0.3):
         assert gui.panel.set_position("grip", position)
@@ -62,7 +62,7 @@ async def test_a_move_is_published_at_once_and_many_as_one(stage, gui, told):
     assert len(stage.joint_states) == before + 1
     assert stage.positions()["grip"] == 0.3
     assert stage.positions()["claw"] == pytest.approx(-0.2)
-    assert told == ["positions"]
+    assert messages == ["positions"]
 
 
 async def test_a_move_reaches_the_transforms_without_a_tick(stage, gui, clock):
@@ -105,15 +105,15 @@ async def test_moves_stay_within_limits(gui, value, position):
 @pytest.mark.parametrize(
     ("name", "value"), [("gone", 1.0), ("claw", 1.0), ("stuck", 1.0), ("grip", nan), ("grip", inf)]
 )
-async def test_what_cannot_be_moved_is_left_alone(stage, gui, told, name, value):
+async def test_what_cannot_be_moved_is_left_alone(stage, gui, messages, name, value):
     before = gui.panel.positions()
     assert not gui.panel.set_position(name, value)
     await stage.graph.settle()
     assert gui.panel.positions() == before
-    assert told == []
+    assert messages == []
 
 
-async def test_randomize_goes_anywhere_within_limits(stage, gui, told, said):
+async def test_randomize_goes_anywhere_within_limits(stage, gui, messages, logged):
     panel = JointPanel(gui.node, gui.joints, gui.publish_soon, Random(1))
     panel.rebuild()
     seen = {name: [] for name in panel.positions()}
@@ -127,7 +127,7 @@ async def test_randomize_goes_anywhere_within_limits(stage, gui, told, said):
             assert slider.lower <= min(seen[slider.name]) < slider.lower + 0.1 * width
             assert slider.upper - 0.1 * width < max(seen[slider.name]) <= slider.upper
     assert seen["claw"] == pytest.approx([0.1 - position for position in seen["grip"]])
-    assert said("INFO")[-1] == "Randomizing"
+    assert logged("INFO")[-1] == "Randomizing"
 
 
 async def test_center_goes_to_the_zeros(stage):
@@ -138,10 +138,10 @@ async def test_center_goes_to_the_zeros(stage):
     assert gui.panel.positions() == {"lift": 1.0, "claw": pytest.approx(-0.65), "grip": 0.75, "spin": pi}
 
 
-async def test_a_new_description_tells_and_keeps_positions(stage, gui, told):
+async def test_a_new_description_tells_and_keeps_positions(stage, gui, messages):
     gui.panel.set_position("grip", 1.25)
     await stage.describe(robot(joint("grip"), joint("added")))
-    assert set(told) == {"positions", "sliders"}
+    assert set(messages) == {"positions", "sliders"}
     assert [slider.name for slider in gui.panel.sliders()] == ["grip", "added"]
     assert gui.panel.positions() == {"grip": 1.25, "added": 0.0}
 
@@ -149,18 +149,18 @@ async def test_a_new_description_tells_and_keeps_positions(stage, gui, told):
 async def test_sources_and_the_sweep_move_the_sliders(stage, clock):
     gui = stage.gui(source_list=["source"], delta=0.125)
     await stage.describe(robot(joint("a")))
-    told = []
-    gui.panel.subscribe(told.append)
+    messages = []
+    gui.panel.subscribe(messages.append)
     stage.node.create_publisher(JointState, "source", 10).publish(JointState(name=["a"], position=[1.0]))
     await stage.graph.settle()
     assert gui.panel.positions() == {"a": 1.0}
-    assert told == ["positions"]
+    assert messages == ["positions"]
     await clock.advance(0.1)
     assert gui.panel.positions() == {"a": 1.125}
-    assert told == ["positions", "positions"]
+    assert messages == ["positions", "positions"]
 
 
-async def test_subscribers_come_and_go_and_may_fail(stage, gui, told, said):
+async def test_subscribers_come_and_go_and_may_fail(stage, gui, messages, logged):
     def fail(_change):
         raise RuntimeError("page is gone")
 
@@ -173,9 +173,9 @@ async def test_subscribers_come_and_go_and_may_fail(stage, gui, told, said):
     end()
     gui.panel.set_position("grip", 0.0)
     await stage.graph.settle()
-    assert told == ["positions", "positions"]
+    assert messages == ["positions", "positions"]
     assert late == ["positions"]
-    assert said("ERROR")[0].startswith("joint panel callback failed:\nTraceback")
+    assert logged("ERROR")[0].startswith("joint panel callback failed:\nTraceback")
 
 
 async def test_a_file_given_at_the_start_has_its_rows(stage, tmp_path):

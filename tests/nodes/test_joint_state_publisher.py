@@ -20,11 +20,11 @@ CHAIN = robot(
 )
 
 
-async def test_it_waits_for_a_description_and_publishes_at_once_and_then_at_its_rate(stage, clock, said):
+async def test_it_waits_for_a_description_and_publishes_at_once_and_then_at_its_rate(stage, clock, logged):
     stage.joint_state_publisher()
     await clock.advance(1.0)
     assert stage.joint_states == []
-    assert said("INFO") == ["Waiting for robot_description to be published on the robot_description topic..."]
+    assert logged("INFO") == ["Waiting for robot_description to be published on the robot_description topic..."]
     await stage.describe(robot(joint("a")))
     assert len(stage.joint_states) == 1
     assert stage.joint_states[0].header.stamp.nanoseconds == clock.now_ns()
@@ -129,11 +129,11 @@ class TestLimits:
         assert found == {"wide": (-pi, pi), "up": (1.0, 3.0), "down": (-1.0, 1.0)}
         assert [joint.zero for joint in layout.free] == [0.0, 2.0, 0.0]
 
-    async def test_that_are_missing(self, stage, said):
+    async def test_that_are_missing(self, stage, logged):
         stage.joint_state_publisher()
         await stage.describe(robot(joint("j", limit="upper='1'"), joint("k", limit="lower='1'"), joint("a")))
         assert stage.joint_states[-1].name == ["a"]
-        assert said("WARN") == [
+        assert logged("WARN") == [
             '"lower" limit must be specified for joint "j" of type "revolute"',
             '"upper" limit must be specified for joint "k" of type "revolute"',
         ]
@@ -176,17 +176,17 @@ class TestDependentJoints:
             assert positions["c"] == pytest.approx(15.1)
             assert positions["dotted.name"] == pytest.approx(2.0)
 
-    async def test_a_circle_is_told_and_the_last_robot_stays(self, stage, said):
+    async def test_a_circle_is_told_and_the_last_robot_stays(self, stage, logged):
         publisher = stage.joint_state_publisher()
         await stage.describe(robot(joint("a")))
         await stage.describe(robot(joint("a", more=mimic("b")), joint("b", more=mimic("a"))))
-        assert said("ERROR") == ["Found an infinite recursive mimic chain: ['a', 'b', 'a']"]
+        assert logged("ERROR") == ["Found an infinite recursive mimic chain: ['a', 'b', 'a']"]
         assert list(publisher.joints.layout.ranges) == ["a"]
 
-    async def test_a_master_that_does_not_move(self, stage, said):
+    async def test_a_master_that_does_not_move(self, stage, logged):
         stage.joint_state_publisher()
         await stage.describe(robot(joint("f", "fixed"), joint("a", more=mimic("f", "offset='0.25'")), joint("b")))
-        assert said("WARN") == ["joint 'a' follows joint 'f', which does not move"]
+        assert logged("WARN") == ["joint 'a' follows joint 'f', which does not move"]
         assert stage.positions() == {"a": 0.25, "b": 0.0}
 
 
@@ -239,11 +239,11 @@ class TestNewDescription:
         await stage.describe(robot(joint("a", limit="lower='1' upper='3'")))
         assert stage.positions() == {"a": 2.0}
 
-    async def test_one_that_cannot_be_read_is_ignored(self, stage, clock, said):
+    async def test_one_that_cannot_be_read_is_ignored(self, stage, clock, logged):
         stage.joint_state_publisher()
         await stage.describe(robot(joint("a")))
         await stage.describe("<robot")
-        assert said("WARN") == ["Invalid robot_description given, ignoring"]
+        assert logged("WARN") == ["Invalid robot_description given, ignoring"]
         await clock.advance(0.1)
         assert list(stage.positions()) == ["a"]
 
@@ -265,7 +265,7 @@ class TestFile:
         await stage.describe(robot(joint("from_topic")))
         assert list(stage.positions()) == ["from_file"]
 
-    async def test_bad_files_and_arguments(self, stage, tmp_path, said):
+    async def test_bad_files_and_arguments(self, stage, tmp_path, logged):
         bad = tmp_path / "bad.urdf"
         bad.write_text("<robot", encoding="utf-8")
         for arguments, message in (
@@ -276,7 +276,7 @@ class TestFile:
             with pytest.raises(LinkwrightError) as caught:
                 JointStatePublisher(stage.graph, NodeOptions(arguments=arguments))
             assert message in str(caught.value)
-        assert len(said("FATAL")) == 3
+        assert len(logged("FATAL")) == 3
         assert stage.graph.node_names() == ["/audience"]
 
 
@@ -336,12 +336,12 @@ class TestParameters:
         ]
 
 
-async def test_other_formats_are_named(stage, said, tmp_path):
+async def test_other_formats_are_named(stage, logged, tmp_path):
     stage.joint_state_publisher()
     await stage.describe("<?xml version='1.0'?><sdf version='1.7'><model name='a'/></sdf>")
     await stage.describe("<COLLADA/>")
     await stage.describe("nothing")
-    assert said("WARN") == [
+    assert logged("WARN") == [
         "Invalid robot_description given, ignoring: it is SDF, and this node reads URDF",
         "Invalid robot_description given, ignoring: it is COLLADA, and this node reads URDF",
         "Invalid robot_description given, ignoring",

@@ -65,7 +65,7 @@ def test_a_joint_without_an_axis_stands_still():
     np.testing.assert_array_equal(JointMotion(joints).poses(np.ones(2)), [[0, 0, 0, 0, 0, 0, 1]] * 2)
 
 
-async def test_description_fixed_and_moving_transforms(stage, clock, said):
+async def test_description_fixed_and_moving_transforms(stage, clock, logged):
     text = robot(joint("wheel", axis="0 1 0", xyz="0 0.19 -0.05"), joint("camera", "fixed", xyz="0.2 0 0"))
     start = clock.now_ns()
     stage.robot_state_publisher(text)
@@ -87,7 +87,7 @@ async def test_description_fixed_and_moving_transforms(stage, clock, said):
     assert transform.transform.rotation.w == pytest.approx(cos(pi / 4))
     await clock.advance(10.0)
     assert len(stage.tf_static) == 1
-    assert said("INFO") == ["Robot initialized"]
+    assert logged("INFO") == ["Robot initialized"]
 
 
 async def test_topics_and_their_quality_of_service(stage, log):
@@ -121,26 +121,26 @@ async def test_only_joints_in_the_message_that_move_are_published(stage):
     assert len(stage.tf) == 1
 
 
-async def test_floating_joints_are_skipped_and_planar_ones_fixed(stage, said):
+async def test_floating_joints_are_skipped_and_planar_ones_fixed(stage, logged):
     text = robot(joint("float", "floating"), joint("plane", "planar", xyz="1 2 3"), joint("fix", "fixed"))
     stage.robot_state_publisher(text)
     await stage.graph.settle()
     batch = stage.tf_static[0].batch
     assert batch.children == ("plane_link", "fix_link")
     assert batch.poses[0, :3].tolist() == [1, 2, 3]
-    assert said("WARN") == [
+    assert logged("WARN") == [
         "Converting unknown joint type of joint 'float' into a fixed joint",
         "Converting unknown joint type of joint 'plane' into a fixed joint",
     ]
     assert stage.log[0].node == "kdl_parser"
 
 
-async def test_inertia_of_the_root_link_is_told_as_kdl_parser_does(stage, said):
+async def test_inertia_of_the_root_link_is_told_as_kdl_parser_does(stage, logged):
     inertia = "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>"
     stage.robot_state_publisher(
         f"<robot name='r'><link name='base'><inertial><mass value='1'/>{inertia}</inertial></link></robot>"
     )
-    assert said("WARN")[0].startswith("The root link base has an inertia specified in the URDF, but KDL does not")
+    assert logged("WARN")[0].startswith("The root link base has an inertia specified in the URDF, but KDL does not")
 
 
 async def test_the_prefix_is_put_before_every_frame_as_it_is(stage):
@@ -178,29 +178,29 @@ class TestMimic:
 
 
 class TestBadMessages:
-    async def test_no_positions(self, stage, said):
+    async def test_no_positions(self, stage, logged):
         stage.robot_state_publisher(TWO)
         await stage.send(JointState(name=["a", "b"]))
         about = 'about joint(s) "a"(,...) whose position member was empty.'
-        assert said("WARN") == [f"Robot state publisher ignored a JointState message {about}"]
+        assert logged("WARN") == [f"Robot state publisher ignored a JointState message {about}"]
         assert stage.tf == []
 
-    async def test_more_positions_than_names(self, stage, said):
+    async def test_more_positions_than_names(self, stage, logged):
         stage.robot_state_publisher(TWO)
         await stage.send(JointState(name=["a"], position=[1.0, 2.0]))
-        assert said("ERROR") == ["Robot state publisher ignored an invalid JointState message"]
+        assert logged("ERROR") == ["Robot state publisher ignored an invalid JointState message"]
 
-    async def test_nothing_at_all(self, stage, said):
+    async def test_nothing_at_all(self, stage, logged):
         stage.robot_state_publisher(TWO)
         await stage.send(JointState())
-        assert said("WARN") == said("ERROR") == []
+        assert logged("WARN") == logged("ERROR") == []
 
-    async def test_no_stamp(self, stage, said):
+    async def test_no_stamp(self, stage, logged):
         stage.robot_state_publisher(TWO)
         for _ in range(3):
             await stage.move({"a": 0.5}, stamp_ns=0)
         assert stage.tf == []
-        assert said("WARN") == [
+        assert logged("WARN") == [
             "Ignoring JointState messages without a time stamp: set header.stamp, or the parameter ignore_timestamp"
         ]
 
@@ -314,14 +314,14 @@ class TestThrottle:
         await clock.advance(1.0)
         assert [message.batch.poses[0, 0] for message in stage.tf] == [1.0, 3.0]
 
-    async def test_time_going_backwards_opens_the_throttle(self, stage, slide, clock, said):
+    async def test_time_going_backwards_opens_the_throttle(self, stage, slide, clock, logged):
         slide()
         await stage.move({"a": 1.0})
         await clock.advance(0.01)
         await stage.move({"a": 2.0})
         clock.jump(-100.0)
         await stage.move({"a": 3.0})
-        assert said("WARN") == ["Moved backwards in time, re-publishing joint transforms!"]
+        assert logged("WARN") == ["Moved backwards in time, re-publishing joint transforms!"]
         await clock.advance(1.0)
         assert [message.batch.poses[0, 0] for message in stage.tf] == [1.0, 3.0]
 
@@ -336,14 +336,14 @@ class TestThrottle:
 
 class TestStart:
     @pytest.mark.parametrize("parameters", [{}, {"robot_description": ""}])
-    async def test_without_a_description(self, stage, said, parameters):
+    async def test_without_a_description(self, stage, logged, parameters):
         with pytest.raises(LinkwrightError) as caught:
             RobotStatePublisher(stage.graph, NodeOptions(parameters=parameters))
         assert caught.value.diagnostics[0].code == "NODE101"
-        assert said("FATAL") == ["robot_description parameter must not be empty"]
+        assert logged("FATAL") == ["robot_description parameter must not be empty"]
         assert stage.graph.node_names() == ["/audience"]
 
-    async def test_with_a_description_that_cannot_be_read(self, stage, said):
+    async def test_with_a_description_that_cannot_be_read(self, stage, logged):
         with pytest.raises(LinkwrightError) as caught:
             stage.robot_state_publisher(robot(joint("a", parent="nowhere")))
         first, *rest = caught.value.diagnostics
@@ -369,13 +369,13 @@ class TestStart:
             stage.robot_state_publisher(TWO, publish_frequency=30)
         assert caught.value.diagnostics[0].hint == "write 30.0"
 
-    async def test_with_a_file_on_the_command_line(self, stage, said, tmp_path):
+    async def test_with_a_file_on_the_command_line(self, stage, logged, tmp_path):
         path = tmp_path / "robot.urdf"
         path.write_text(TWO, encoding="utf-8")
         RobotStatePublisher(stage.graph, NodeOptions(arguments=[str(path)]))
         await stage.graph.settle()
         assert stage.descriptions == [TWO]
-        assert said("WARN")[0].startswith("No robot_description parameter, but command-line argument available.")
+        assert logged("WARN")[0].startswith("No robot_description parameter, but command-line argument available.")
         with pytest.raises(LinkwrightError, match=r"URDF file 'missing.urdf' cannot be read: No such file"):
             RobotStatePublisher(stage.graph, NodeOptions(arguments=["missing.urdf"]))
 

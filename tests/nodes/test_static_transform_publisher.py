@@ -60,7 +60,7 @@ def test_wrong_arguments(arguments, reason):
     assert diagnostic.hint.startswith("usage: static_transform_publisher [--x X]")
 
 
-async def test_the_transform_is_published_for_good(stage, said):
+async def test_the_transform_is_published_for_good(stage, logged):
     options = NodeOptions(arguments=["1", "2", "3", "0", "0", "0", "map", "base"])
     first = StaticTransformPublisher(stage.graph, options)
     second = StaticTransformPublisher(
@@ -71,8 +71,8 @@ async def test_the_transform_is_published_for_good(stage, said):
     names = [each.node.get_name() for each in (first, second)]
     assert all(re.fullmatch(r"static_transform_publisher_[A-Za-z0-9]{16}", name) for name in names)
     assert names[0] != names[1]
-    assert said("WARN") == ["Old-style arguments are deprecated; see --help for new-style arguments"]
-    assert said("INFO")[0] == (
+    assert logged("WARN") == ["Old-style arguments are deprecated; see --help for new-style arguments"]
+    assert logged("INFO")[0] == (
         "Spinning until stopped - publishing transform\ntranslation: ('1.000000', '2.000000', '3.000000')\n"
         "rotation: ('0.000000', '0.000000', '0.000000', '1.000000')\nfrom 'map' to 'base'"
     )
@@ -81,10 +81,10 @@ async def test_the_transform_is_published_for_good(stage, said):
     assert stage.graph.count_publishers("/tf_static") == 1
 
 
-async def test_wrong_arguments_end_the_node(stage: object, graph: Graph, said):
+async def test_wrong_arguments_end_the_node(stage: object, graph: Graph, logged):
     with pytest.raises(LinkwrightError):
         StaticTransformPublisher(graph, NodeOptions(name="camera_tf", arguments=["1"]))
-    assert said("FATAL") == ["error parsing command line arguments: Extra unparsed arguments on command-line"]
+    assert logged("FATAL") == ["error parsing command line arguments: Extra unparsed arguments on command-line"]
     assert graph.node_names() == ["/audience"]
 
 

@@ -38,11 +38,11 @@ def started(stage, kind, *arguments):
     return running, printed
 
 
-async def test_tf2_echo_waits_and_prints(stage, send, said):
+async def test_tf2_echo_waits_and_prints(stage, send, logged):
     _, printed = started(stage, Tf2Echo, "map", "base", "2")
     await stage.clock.advance(1.2)
     waiting = 'Waiting for transform map ->  base: Invalid frame ID "map" passed to canTransform argument target_frame'
-    assert said("INFO")[0] == f"{waiting} - frame does not exist"
+    assert logged("INFO")[0] == f"{waiting} - frame does not exist"
     assert printed == []
     await send("map", "base", xyz=(1.0, 0.5, 0.0), rpy=(0.0, 0.0, pi / 2))
     await stage.clock.advance(0.5)
@@ -126,7 +126,7 @@ async def test_tf2_monitor_on_the_way_between_two(stage, send):
     assert started(stage, Tf2Monitor, "one")[0].finished.result() == 255
 
 
-async def test_view_frames_draws_the_tree(stage, send, said, tmp_path, monkeypatch):
+async def test_view_frames_draws_the_tree(stage, send, logged, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     running, _ = started(stage, ViewFrames, "-t", "2", "-o", "tree")
     await send("map", "base")
@@ -140,7 +140,7 @@ async def test_view_frames_draws_the_tree(stage, send, said, tmp_path, monkeypat
     assert '"map" -> "base"[label=" Broadcaster: default_authority\\nAverage rate: 10000.0\\n' in drawing
     assert drawing.endswith('"Recorded at time: 1700000002.0"->"map";\n}')
     assert (tmp_path / "tree.pdf").read_bytes().startswith(b"%PDF")
-    texts = said("INFO")
+    texts = logged("INFO")
     assert texts[0] == "Listening to tf data for 2.0 seconds..."
     assert texts[2].startswith("Result:tf2_msgs.srv.FrameGraph_Response(frame_yaml=\"base: \\n  parent: 'map'")
     assert texts[3] == "Exporting graph in tree.pdf file..."
@@ -155,7 +155,7 @@ async def test_view_frames_without_frames(stage, tmp_path, monkeypatch):
     assert drawing.read_text() == 'digraph G { "No tf data received" }'
 
 
-async def test_misuse_of_view_frames(stage, said, tmp_path):
+async def test_misuse_of_view_frames(stage, logged, tmp_path):
     with pytest.raises(LinkwrightError, match="does not know the arguments --wat"):
         started(stage, ViewFrames, "--wat")
     with pytest.raises(LinkwrightError, match="-t: invalid float value: 'long'"):
@@ -163,7 +163,7 @@ async def test_misuse_of_view_frames(stage, said, tmp_path):
     running, _ = started(stage, ViewFrames, "-t", "0", "-o", str(tmp_path / "no" / "folder"))
     await stage.clock.advance(0.01)
     assert running.finished.result() == 1
-    assert "cannot be written" in said("ERROR")[0]
+    assert "cannot be written" in logged("ERROR")[0]
 
 
 async def test_describing_a_transform_keeps_the_zeros_of_tf2(stage, send):

@@ -23,7 +23,7 @@ def start(test, kind, *words, **parameters):
     return kind(test.graph, NodeOptions(arguments=list(words), parameters=parameters))
 
 
-def said(test, level):
+def logged(test, level):
     return [record.text for record in test.log if record.level.name == level]
 
 
@@ -75,7 +75,7 @@ async def test_relay_has_the_quality_of_its_sources_and_goes_with_them(test):
     (copy,) = test.graph.get_publishers_info_by_topic("/copy")
     assert copy.qos_profile.durability is DurabilityPolicy.VOLATILE
     assert copy.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
-    assert len([text for text in said(test, "WARN") if text.startswith("Some, but not all, publishers")]) == 2
+    assert len([text for text in logged(test, "WARN") if text.startswith("Some, but not all, publishers")]) == 2
     for publisher in [publisher for publisher in test.node.publishers if publisher.name == "/chatter"]:
         test.node.destroy_publisher(publisher)
     await test.settle()
@@ -174,7 +174,7 @@ async def test_mux_selects_adds_lists_and_deletes(test):
     assert (await ask("select", "__none")).success
     await say(test, "second", "2")
     assert heard(out) == ["1", "2"]
-    assert said(test, "WARN") == [
+    assert logged(test, "WARN") == [
         "tried to add a topic that mux was already listening to: [third]",
         "tried to delete currently selected topic second from mux",
     ]
@@ -231,7 +231,7 @@ async def test_an_expression_that_fails_is_told_and_the_next_message_counts(test
     await test.settle()
     await say(test, "/chatter", "one", "1")
     assert [message.data for message in number] == [1]
-    (text,) = said(test, "ERROR")
+    (text,) = logged(test, "ERROR")
     assert text.endswith("ValueError: invalid literal for int() with base 10: 'one'")
 
 
@@ -261,8 +261,8 @@ async def test_words_that_mean_nothing(test, kind, words, text):
 
 async def test_parameters_that_a_node_does_not_have_are_named_once(test):
     start(test, Relay, input_topic="a", lasy=True, robot_model="x")
-    assert said(test, "WARN") == ["'lasy' is not a parameter of this node; did you mean 'lazy'?"]
-    assert said(test, "INFO") == ["parameters that this node does not have are not read: robot_model"]
+    assert logged(test, "WARN") == ["'lasy' is not a parameter of this node; did you mean 'lazy'?"]
+    assert logged(test, "INFO") == ["parameters that this node does not have are not read: robot_model"]
 
 
 @pytest.mark.parametrize(
@@ -281,5 +281,5 @@ async def test_a_stop_is_sent_when_who_sent_the_last_velocity_is_lost(test, kind
     driver.be_lost()
     await test.settle()
     assert driven.last.linear.x == 0.0
-    (told,) = said(test, "WARN")
-    assert told.endswith("was lost (killed, crashed or out of reach): a stop is sent to '/cmd_vel'")
+    (line,) = logged(test, "WARN")
+    assert line.endswith("was lost (killed, crashed or out of reach): a stop is sent to '/cmd_vel'")

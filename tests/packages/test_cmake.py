@@ -184,7 +184,7 @@ def test_what_is_compiled_is_told_and_the_rest_is_read(package: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("foreach(name ${SOMETHING})\n  install(DIRECTORY ${name} DESTINATION share/arm)\nendforeach()", "foreach()"),
         ("install(DIRECTORY urdf DESTINATION ${SOMEWHERE})", "cannot be read without CMake"),
@@ -194,8 +194,8 @@ def test_what_is_compiled_is_told_and_the_rest_is_read(package: Path) -> None:
         ("foreach(a 1 2 3 4 5 6 7 8 9)\n" * 9 + "message(x)\n" + "endforeach()\n" * 9, "message()"),
     ],
 )
-def test_what_is_not_known_is_told(package: Path, text: str, said: str) -> None:
-    assert any(said in reason for reason in rules(text, package).unknown)
+def test_what_is_not_known_is_told(package: Path, text: str, message: str) -> None:
+    assert any(message in reason for reason in rules(text, package).unknown)
 
 
 def test_what_is_not_there_is_named(package: Path) -> None:

@@ -14,7 +14,7 @@ from tests.places import REPOSITORY
 SERVER = "import sys; from linkwright.page.http_server import web; import aiohttp; "
 
 
-def told(code: str) -> list[str]:
+def output_of(code: str) -> list[str]:
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", SERVER + code], capture_output=True, text=True, check=True
     )
@@ -22,22 +22,22 @@ def told(code: str) -> list[str]:
 
 
 def test_a_server_does_without_the_client():
-    assert told("print('aiohttp.web' in sys.modules, 'aiohttp.connector' in sys.modules)") == ["True", "False"]
+    assert output_of("print('aiohttp.web' in sys.modules, 'aiohttp.connector' in sys.modules)") == ["True", "False"]
 
 
 def test_the_client_comes_when_somebody_asks_for_it():
     code = "from aiohttp import ClientSession; print(ClientSession is aiohttp.client.ClientSession)"
-    assert told(f"{code}; print(aiohttp.web is web, aiohttp.WSMsgType is web.WSMsgType)") == ["True"] * 3
+    assert output_of(f"{code}; print(aiohttp.web is web, aiohttp.WSMsgType is web.WSMsgType)") == ["True"] * 3
 
 
 def test_the_package_has_the_version_that_is_installed_before_and_after():
     code = "from importlib.metadata import version; print(version('aiohttp'), aiohttp.__version__)"
-    assert len(set(told(f"{code}; aiohttp.ClientSession; print(aiohttp.__version__)"))) == 1
+    assert len(set(output_of(f"{code}; aiohttp.ClientSession; print(aiohttp.__version__)"))) == 1
 
 
 def test_the_names_it_has_not_are_missing_as_ever():
     for name in ("nothing", "__nothing__"):
-        assert told(f"print(hasattr(aiohttp, '{name}'))") == ["False"]
+        assert output_of(f"print(hasattr(aiohttp, '{name}'))") == ["False"]
 
 
 def test_a_server_that_needs_the_whole_package_gets_it(tmp_path):

@@ -174,9 +174,9 @@ async def test_no_socket_opens_without_the_token(served):
     base = served.viewer.url.partition("?")[0]
     async with aiohttp.ClientSession() as session:
         for query in ("", "?token=", "?token=wrong"):
-            for told in ({}, {"Cookie": f"linkwright={urlsplit(served.viewer.url).query}"}):
+            for text in ({}, {"Cookie": f"linkwright={urlsplit(served.viewer.url).query}"}):
                 with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
-                    await session.ws_connect(f"{base}ws{query}", headers=told)
+                    await session.ws_connect(f"{base}ws{query}", headers=text)
                 assert caught.value.status == 401
 
 
@@ -346,9 +346,9 @@ async def test_a_thousand_sockets_are_refused_but_for_some(served):
 async def test_half_a_request_is_not_waited_for_long(served, monkeypatch):
     monkeypatch.setattr("linkwright.page.access.PATIENCE", 0.2)
     address = urlsplit(served.viewer.url)
-    for said in (b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: "):
+    for text in (b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: "):
         reader, writer = await asyncio.open_connection(address.hostname, address.port)
-        writer.write(said)
+        writer.write(text)
         ended = asyncio.ensure_future(reader.read())
         while not ended.done():
             writer.write(b"a")  # a byte now and then changes nothing
@@ -425,7 +425,7 @@ async def test_a_refused_request_ends_its_connection(served):
 
 
 @pytest.mark.parametrize(
-    "said",
+    "message",
     [
         b"GET /" + b"a" * 100_000 + b" HTTP/1.1\r\n\r\n",
         b"GET / HTTP/1.1\r\nHost: localhost\r\nX: " + b"a" * 100_000 + b"\r\n\r\n",
@@ -436,12 +436,12 @@ async def test_a_refused_request_ends_its_connection(served):
     ],
     ids=["path", "header", "headers", "tls", "length", "chunk"],
 )
-async def test_requests_beyond_all_bounds_are_refused(served, said):
+async def test_requests_beyond_all_bounds_are_refused(served, message):
     before = memory()
     address = urlsplit(served.viewer.url)
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
     with suppress(ConnectionError):
-        writer.write(said)
+        writer.write(message)
         answer = await reader.read(4096)
         assert answer == b"" or answer.split(b" ")[1][:1] == b"4"
     writer.close()
@@ -450,7 +450,7 @@ async def test_requests_beyond_all_bounds_are_refused(served, said):
 
 
 @pytest.mark.parametrize(
-    "said",
+    "message",
     [
         b"\x00\xff\xfe nonsense\r\n\r\n",
         bytes.fromhex("16030100c8010000c40303") + bytes(range(200)) + b"\r\n\r\n",
@@ -484,11 +484,11 @@ async def test_requests_beyond_all_bounds_are_refused(served, said):
         "h2",
     ],
 )
-async def test_what_is_no_request_writes_nothing_on_the_terminal(served, said, caplog):
+async def test_what_is_no_request_writes_nothing_on_the_terminal(served, message, caplog):
     address = urlsplit(served.viewer.url)
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
     with suppress(ConnectionError):
-        writer.write(said)
+        writer.write(message)
         answer = await reader.read(4096)
         assert answer == b"" or answer.split(b" ")[1][:1] == b"4"
     writer.close()

@@ -56,8 +56,8 @@ class Sender:
         async with self.session.request(method, f"{self.base}/{path}", params=params, **options) as answer:
             if answer.content_type != "application/json":
                 return answer.status, {"text": await answer.text()}
-            said = await answer.json()
-            return REFUSED if "problem" in said else answer.status, said
+            message = await answer.json()
+            return REFUSED if "problem" in message else answer.status, message
 
     async def announce(self, name: str, files: dict[str, int]) -> tuple[int, dict[str, str]]:
         listed = [{"name": each, "size": size} for each, size in files.items()]

@@ -112,14 +112,14 @@ def marks(message: dict, side: str) -> dict[str, str]:
 
 async def test_a_page_is_told_of_all_differences_and_of_the_links_that_show_them(tmp_path):
     async with compared(tmp_path) as (both, client):
-        told = await client.until("compared_descriptions")
+        message = await client.until("compared_descriptions")
         displays = [display.id for display in both.made.viewer.displays if display.CLASS.endswith("RobotModel")]
-        assert [told["new"]["display"], told["old"]["display"]] == displays
-        assert told["new"]["label"].endswith("new.urdf")
-        assert marks(told, "old") == {"camera": "removed"}
-        assert marks(told, "new") == {"lidar": "added", "lower": "changed", "upper": "changed"}
-        assert told["joints"] == {"turn": "spin"}, "a joint that turned and slides now follows nothing"
-        items = {(each["subject"], each["name"], each["property"]): each for each in told["items"]}
+        assert [message["new"]["display"], message["old"]["display"]] == displays
+        assert message["new"]["label"].endswith("new.urdf")
+        assert marks(message, "old") == {"camera": "removed"}
+        assert marks(message, "new") == {"lidar": "added", "lower": "changed", "upper": "changed"}
+        assert message["joints"] == {"turn": "spin"}, "a joint that turned and slides now follows nothing"
+        items = {(each["subject"], each["name"], each["property"]): each for each in message["items"]}
         mass = items["link", "lower", "inertial mass"]
         assert (mass["old"], mass["new"], mass["unit"], mass["element"]) == ("1", "2", "kg", "lower")
         assert (mass["old_place"]["line"], mass["new_place"]["line"]) == (3, 3)
@@ -130,7 +130,7 @@ async def test_a_page_is_told_of_all_differences_and_of_the_links_that_show_them
         joint = items["joint", "mount", ""]
         assert (joint["element_kind"], joint["element"], joint["in_old"]) == ("joint", "mount", True)
         assert items["joint", "spin", "name"]["kind"] == "renamed"
-        friction = next(each for each in told["items"] if each["subject"] == "extension")
+        friction = next(each for each in message["items"] if each["subject"] == "extension")
         assert (friction["element_kind"], friction["element"], friction["in_old"]) == ("link", "lower", False)
 
 
@@ -155,8 +155,8 @@ async def test_a_new_root_carries_the_old_robot_along(tmp_path):
         '<joint name="fix" type="fixed"><origin xyz="0 0 3"/><parent link="foot"/><child link="base"/></joint>',
     )
     async with compared(tmp_path, lifted, NEW) as (both, client):
-        told = await client.until("compared_descriptions")
-        assert marks(told, "old") == {"foot": "removed"}
+        message = await client.until("compared_descriptions")
+        assert marks(message, "old") == {"foot": "removed"}
         await eventually(lambda: both.pose("old/foot") is not None)
         assert both.pose("old/base")[:3] == pytest.approx([0, 0, 0], abs=1e-6)
         assert both.pose("old/foot")[:3] == pytest.approx([0, 0, -3], abs=1e-6)
@@ -178,29 +178,29 @@ async def test_an_edit_of_either_is_compared_anew(tmp_path):
 
 async def test_sources_of_both_can_be_asked_for_though_they_say_the_same(tmp_path):
     async with compared(tmp_path, NEW, NEW) as (both, client):
-        told = await client.until("compared_descriptions")
-        assert told["items"] == []
+        message = await client.until("compared_descriptions")
+        assert message["items"] == []
         for side, name in (("old", "old.urdf"), ("new", "new.urdf")):
             file = str(tmp_path / name)
-            await client.send("ask_description_text", display=told[side]["display"], file=file)
+            await client.send("ask_description_text", display=message[side]["display"], file=file)
             assert (await client.until("description_text", file=file))["text"] == NEW
         assert both.made.library.packages(both.made.display("RobotModel").text) is None
 
 
 async def test_a_page_without_the_old_display_is_told_that_nothing_shows_it(tmp_path):
     async with compared(tmp_path) as (both, client):
-        told = await client.until("compared_descriptions")
-        await client.send("remove_displays", displays=[told["old"]["display"]])
+        message = await client.until("compared_descriptions")
+        await client.send("remove_displays", displays=[message["old"]["display"]])
         assert (await client.until("compared_descriptions"))["old"]["display"] == ""
-        assert both.made.viewer.manager.display(told["old"]["display"]) is None
+        assert both.made.viewer.manager.display(message["old"]["display"]) is None
 
 
 async def test_what_is_given_away_has_no_paths(tmp_path):
     async with compared(tmp_path) as (both, client):
         await client.until("compared_descriptions")
         manager = both.made.viewer.manager
-        told = next(each for each in both.made.viewer.configured(manager) if isinstance(each, ComparedDescriptions))
-        bare = without_paths(told)
+        result = next(each for each in both.made.viewer.configured(manager) if isinstance(each, ComparedDescriptions))
+        bare = without_paths(result)
         assert (bare.old.label, bare.new.label) == ("old.urdf", "new.urdf")
         places = [place for item in bare.items for place in (item.old_place, item.new_place) if place is not None]
         assert {place.file for place in places} == {""}

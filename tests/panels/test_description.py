@@ -81,9 +81,9 @@ def lines(text: str, written: dict) -> str:
 async def test_links_and_joints_are_told_with_their_places(files):
     async with world() as scene, page(scene.viewer) as client:
         text = describe(scene, files)
-        told = await ask(client, "ask_description", "description", display=DISPLAY)
-    assert (told["name"], told["root"]) == ("wheeled", "base")
-    links = {link["name"]: link for link in told["links"]}
+        message = await ask(client, "ask_description", "description", display=DISPLAY)
+    assert (message["name"], message["root"]) == ("wheeled", "base")
+    links = {link["name"]: link for link in message["links"]}
     assert list(links) == ["base", "left_wheel", "right_wheel"]
     left = links["left_wheel"]
     assert (left["frame"], left["parent_joint"]) == ("left_wheel", "left_wheel_joint")
@@ -94,7 +94,7 @@ async def test_links_and_joints_are_told_with_their_places(files):
     assert (origin["line"], origin["end_line"]) == (3, 9)
     calls = [(call["macro"], Path(call["file"]).name, call["line"]) for call in left["written"]["calls"]]
     assert calls == [("wheel", "robot.xacro", 11)]
-    (joint, _) = told["joints"]
+    (joint, _) = message["joints"]
     assert (joint["kind"], joint["parent"], joint["child"]) == ("revolute", "base", "left_wheel")
     assert joint["axis"] == [0, 0, 1]
     assert joint["xyz"] == pytest.approx([0, 0.2, 0])
@@ -109,8 +109,8 @@ async def test_links_and_joints_are_told_with_their_places(files):
 async def test_masses_are_boxes_of_the_same_inertia(files):
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, files)
-        told = await ask(client, "ask_description", "description", display=DISPLAY)
-    base, left, _ = (link["inertia"] for link in told["links"])
+        message = await ask(client, "ask_description", "description", display=DISPLAY)
+    base, left, _ = (link["inertia"] for link in message["links"])
     assert (base["mass"], base["center"]) == (6, [0, 0, 0.1])
     # A cube of edge a has I = m a2 / 6.
     assert base["box"] == pytest.approx([(0.05 * 6 / 6) ** 0.5] * 3)
@@ -120,18 +120,18 @@ async def test_masses_are_boxes_of_the_same_inertia(files):
 async def test_implausible_inertias_are_told_for_each_link_of_a_macro(files):
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, files)
-        told = await ask(client, "ask_inertia", "inertia_findings", display=DISPLAY)
-    broken = [finding["link"] for finding in told["findings"] if finding["code"] == "LW314"]
+        message = await ask(client, "ask_inertia", "inertia_findings", display=DISPLAY)
+    broken = [finding["link"] for finding in message["findings"] if finding["code"] == "LW314"]
     assert broken == ["left_wheel", "right_wheel"]
-    assert all(finding["message"] and finding["code"].startswith("LW3") for finding in told["findings"])
+    assert all(finding["message"] and finding["code"].startswith("LW3") for finding in message["findings"])
 
 
 async def test_texts_are_told_of_the_files_of_the_description_only(files):
     (files / "secret.txt").write_text("secret")
     async with world() as scene, page(scene.viewer) as client:
         text = describe(scene, files)
-        told = await ask(client, "ask_description", "description", display=DISPLAY)
-        assert [Path(name).name for name in told["files"]] == ["robot.xacro", "wheel.xacro", "sizes.yaml"]
+        message = await ask(client, "ask_description", "description", display=DISPLAY)
+        assert [Path(name).name for name in message["files"]] == ["robot.xacro", "wheel.xacro", "sizes.yaml"]
 
         async def text_of(file: str) -> str | None:
             answer = await ask(client, "ask_description_text", "description_text", display=DISPLAY, file=file)
@@ -172,10 +172,10 @@ async def test_a_page_that_opens_is_told_that_there_is_a_description():
         scene.describe(ARM)
         await scene.settle()
         async with page(scene.viewer) as client:
-            told = await client.until("description_changed", display=DISPLAY)
-            assert (told["links"], told["joints"]) == ([], [])
+            message = await client.until("description_changed", display=DISPLAY)
+            assert (message["links"], message["joints"]) == ([], [])
             account = await ask(client, "ask_description", "description", display=DISPLAY)
-    assert account["revision"] == told["revision"]
+    assert account["revision"] == message["revision"]
     # Nobody knows of files: there is the text alone.
     assert account["files"] == []
     assert account["links"][0]["written"]["origin"] is None
@@ -190,11 +190,11 @@ async def test_the_text_that_is_wrong_is_told_and_not_the_one_of_the_robot_that_
             examine(files / "robot.xacro")
         scene.viewer.show_diagnostics(caught.value.diagnostics)
         file = str(files / "robot.xacro")
-        told = await ask(client, "ask_description_text", "description_text", display=DISPLAY, file=file)
-        assert 'sid="left"' in told["text"]
+        message = await ask(client, "ask_description_text", "description_text", display=DISPLAY, file=file)
+        assert 'sid="left"' in message["text"]
         scene.viewer.show_diagnostics([])
-        told = await ask(client, "ask_description_text", "description_text", display=DISPLAY, file=file)
-        assert told["text"] == WHEELED
+        message = await ask(client, "ask_description_text", "description_text", display=DISPLAY, file=file)
+        assert message["text"] == WHEELED
 
 
 async def test_a_robot_none_of_whose_meshes_is_there_is_told_of(files):
@@ -204,16 +204,16 @@ async def test_a_robot_none_of_whose_meshes_is_there_is_told_of(files):
         assert (await client.until("diagnostics"))["items"] == []
         for shapes, codes in ((mesh, ["VIEW207"]), (box + mesh, []), (mesh, ["VIEW207"])):
             scene.describe(f'<robot name="r"><link name="base">{shapes}</link></robot>')
-            told = await client.until("diagnostics")
-            assert [each["code"] for each in told["items"]] == codes
-        (note,) = told["items"][0]["notes"]
+            message = await client.until("diagnostics")
+            assert [each["code"] for each in message["items"]] == codes
+        (note,) = message["items"][0]["notes"]
         assert "gone.stl" in note["message"]
 
 
 async def test_what_is_not_there_is_not_answered_or_refused():
     async with world(RvizConfig.for_model("base")) as scene, page(scene.viewer) as client:
-        told = await ask(client, "ask_description_text", "description_text", display="display-99", file="/etc/passwd")
-        assert told["text"] is None
+        answer = await ask(client, "ask_description_text", "description_text", display="display-99", file="/etc/passwd")
+        assert answer["text"] is None
         await client.send("ask_description", display="display-99")
         await client.send("ask_inertia", display="display-99")
         rest = await client.drain()
@@ -223,11 +223,11 @@ async def test_what_is_not_there_is_not_answered_or_refused():
 async def test_a_page_with_displays_of_its_own_hears_of_those_only(files):
     async with world() as scene, page(scene.viewer) as shared:
         describe(scene, files)
-        told = await shared.until("description_changed")
+        answer = await shared.until("description_changed")
         async with page(SimpleNamespace(url=f"{scene.viewer.url}&own=of-my-own")) as alone:
             mine = await alone.until("description_changed")
-            assert mine["display"] != told["display"]
-            await alone.send("ask_description", display=told["display"])  # which it does not see
+            assert mine["display"] != answer["display"]
+            await alone.send("ask_description", display=answer["display"])  # which it does not see
             account = await ask(alone, "ask_description", "description", display=mine["display"])
             assert account["display"] == mine["display"]
             describe(scene, files)
@@ -235,4 +235,4 @@ async def test_a_page_with_displays_of_its_own_hears_of_those_only(files):
     kinds = [
         message["display"] for message in rest if isinstance(message, dict) and "description_changed" in message["type"]
     ]
-    assert set(kinds) <= {told["display"]}
+    assert set(kinds) <= {answer["display"]}

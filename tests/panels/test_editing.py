@@ -48,7 +48,7 @@ def describe(scene: Any, file: Path) -> None:
     scene.describe(scene.library.store(examine(file)))
 
 
-def said(file: Path) -> str:
+def content(file: Path) -> str:
     return file.read_text()
 
 
@@ -81,9 +81,9 @@ async def test_the_parts_of_a_link_are_told_with_numbers_and_places(file: Path) 
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, file)
         await client.until("description_changed")
-        told = await parts(client, "mast")
-        assert told["why_not"] == ""
-        found = [(each["part"], each["name"], each["title"], each["xyz"], each["rpy"]) for each in told["parts"]]
+        answer = await parts(client, "mast")
+        assert answer["why_not"] == ""
+        found = [(each["part"], each["name"], each["title"], each["xyz"], each["rpy"]) for each in answer["parts"]]
         assert found == [
             ("joint", "turn", "continuous", [0, 0, 0.25], [0, 0, 0.5]),
             ("axis", "turn", "continuous", [0, 0, 1], []),
@@ -91,14 +91,14 @@ async def test_the_parts_of_a_link_are_told_with_numbers_and_places(file: Path) 
             ("collision", "mast", "mast.stl", [0, 0, 0], [0, 0, 0]),
             ("inertial", "mast", "1.5 kg", [0, 0, 0.4], [0, 0, 0]),
         ]
-        assert [each["written"] for each in told["parts"]] == [
+        assert [each["written"] for each in answer["parts"]] == [
             'xyz="0 0 ${height}" rpy="0 0 0.5"',
             'xyz="0 0 1"',
             'xyz="0 0 0.5"',
             "",
             'xyz="0 0 0.4"',
         ]
-        assert {(each["file"], each["line"]) for each in told["parts"][:2]} == {(str(file), 19)}
+        assert {(each["file"], each["line"]) for each in answer["parts"][:2]} == {(str(file), 19)}
 
 
 async def test_a_robot_in_sdf_is_not_edited_and_it_is_said_why(tmp_path: Path) -> None:
@@ -110,11 +110,11 @@ async def test_a_robot_in_sdf_is_not_edited_and_it_is_said_why(tmp_path: Path) -
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, file)
         await client.until("description_changed")
-        told = await parts(client, "base")
-        assert "described in SDF" in told["why_not"]
+        answer = await parts(client, "base")
+        assert "described in SDF" in answer["why_not"]
         refused = await preview(client, 1, "visual", "base", xyz=[0, 0, 1])
         assert refused["files"] == []
-        assert refused["refusal"]["message"] == told["why_not"]
+        assert refused["refusal"]["message"] == answer["why_not"]
 
 
 async def test_an_edit_is_shown_written_and_taken_back(file: Path) -> None:
@@ -127,18 +127,18 @@ async def test_an_edit_is_shown_written_and_taken_back(file: Path) -> None:
         assert changed["file"] == str(file)
         old, new = '  <xacro:property name="height" value="0.25"/>', '  <xacro:property name="height" value="0.3"/>'
         assert [line for line in changed["diff"] if line[0] in "+-"] == [f"-{old}", f"+{new}"]
-        assert said(file) == ROBOT
+        assert content(file) == ROBOT
 
         written = await ask(client, "apply_edit", "edit_written", number=7)
         assert (written["files"], written["refusal"]) == ([str(file)], None)
-        assert said(file) == ROBOT.replace(old, new)
+        assert content(file) == ROBOT.replace(old, new)
         history = await client.until("edit_history")
         assert (history["can_undo"], history["can_redo"]) == (True, False)
 
         await ask(client, "undo_edit", "edit_written")
-        assert said(file) == ROBOT
+        assert content(file) == ROBOT
         await ask(client, "redo_edit", "edit_written")
-        assert said(file) == ROBOT.replace(old, new)
+        assert content(file) == ROBOT.replace(old, new)
 
 
 async def test_only_what_was_shown_is_written(file: Path) -> None:
@@ -147,7 +147,7 @@ async def test_only_what_was_shown_is_written(file: Path) -> None:
         await client.until("description_changed")
         await preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
         assert (await ask(client, "apply_edit", "edit_written", number=2))["refusal"]["code"] == "EDIT101"
-        assert said(file) == ROBOT
+        assert content(file) == ROBOT
 
 
 async def test_what_would_change_more_is_refused_and_done_together_when_asked(file: Path) -> None:
@@ -170,7 +170,7 @@ async def test_a_file_that_changed_after_the_preview_is_left_alone(file: Path) -
         await preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
         write(file, ROBOT + "<!-- mine -->")
         assert (await ask(client, "apply_edit", "edit_written", number=1))["refusal"]["code"] == "EDIT107"
-        assert said(file) == ROBOT + "<!-- mine -->"
+        assert content(file) == ROBOT + "<!-- mine -->"
 
 
 async def test_a_file_that_is_broken_or_gone_is_told_and_editing_goes_on(file: Path) -> None:
@@ -190,8 +190,8 @@ async def test_a_description_that_is_only_a_text_is_not_edited(file: Path) -> No
     async with world() as scene, page(scene.viewer) as client:
         scene.describe(ARM)
         await client.until("description_changed")
-        told = await parts(client, "base")
-        assert "linkwright view FILE" in told["why_not"]
+        answer = await parts(client, "base")
+        assert "linkwright view FILE" in answer["why_not"]
         assert (await preview(client, 1, "joint", "shoulder", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT101"
 
 
@@ -211,4 +211,4 @@ async def test_a_page_of_another_machine_is_told_why_nothing_is_written(
         assert "open on the files' machine" in (await parts(client, "mast"))["why_not"]
         assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT109"
         assert (await ask(client, "undo_edit", "edit_written"))["refusal"]["code"] == "EDIT109"
-    assert said(file) == ROBOT
+    assert content(file) == ROBOT

@@ -55,7 +55,7 @@ def bridge(published):
     return JointsFeature(SimpleNamespace(context=SimpleNamespace(pages=pages), managers=None))
 
 
-async def told(graph, bridge):
+async def until_published(graph, bridge):
     """Wait until the bridge has told of a change."""
     await graph.settle()
     await eventually(lambda: bridge._soon is None)
@@ -93,7 +93,7 @@ async def test_rows_follow_the_description(graph, bridge, panel, published):
     bridge.attach(panel)
     assert published[0] == Joints([])
     await filled(graph, panel)
-    await told(graph, bridge)
+    await until_published(graph, bridge)
     last = {type(message): message for message in published}
     assert [control.name for control in last[Joints].controls] == ["turn", "open", "follow"]
     assert set(last[JointPositions].positions) == {"turn", "open", "follow"}
@@ -106,16 +106,16 @@ async def test_pages_move_joints_that_are_free(graph, bridge, panel, published):
     bridge.receive(PAGE, SetJoint("open", 7.0))
     bridge.receive(PAGE, SetJoint("follow", 0.0))
     bridge.receive(PAGE, SetJoint("nobody", 0.0))
-    await told(graph, bridge)
+    await until_published(graph, bridge)
     assert published[-1].positions == pytest.approx({"turn": 0.5, "open": 0.05, "follow": -0.05})
     bridge.receive(PAGE, SetJoints({"turn": -0.25, "open": 0.02, "follow": 1.0, "nobody": 1.0}))
-    await told(graph, bridge)
+    await until_published(graph, bridge)
     assert published[-1].positions == pytest.approx({"turn": -0.25, "open": 0.02, "follow": -0.02})
     bridge.receive(PAGE, CenterJoints())
-    await told(graph, bridge)
+    await until_published(graph, bridge)
     assert published[-1].positions == pytest.approx({"turn": 0.0, "open": 0.03, "follow": -0.03})
     bridge.receive(PAGE, RandomizeJoints())
-    await told(graph, bridge)
+    await until_published(graph, bridge)
     assert published[-1].positions["turn"] != 0.0
 
 
@@ -126,5 +126,5 @@ async def test_another_panel_takes_its_place(graph, bridge, panel, published):
     assert published[-1] == Joints(None)
     count = len(published)
     panel.randomize()
-    await told(graph, bridge)
+    await until_published(graph, bridge)
     assert len(published) == count

@@ -146,9 +146,9 @@ async def test_pages_begin_with_the_file_s_panels_and_the_last_change_is_saved(t
         await client.until("configuration_saved")
         assert RvizConfig.load(path).panels.shown == ["displays", "time"]
         await client.send("new_configuration", discard=False)
-        told = await client.until("panels")
-        assert told["opened"] == 2
-        assert told["shown"] == ["displays", "selection", "tool-properties", "views", "time"]
+        message = await client.until("panels")
+        assert message["opened"] == 2
+        assert message["shown"] == ["displays", "selection", "tool-properties", "views", "time"]
 
 
 async def test_nobody_s_panels_change_by_another_s_hand(tmp_path):

@@ -81,8 +81,8 @@ async def test_what_all_topics_carry_is_recorded_and_the_file_opens_again(folder
             made.move_arm(float(x))
             await made.settle()
             await asyncio.sleep(0.5)
-        told = await client.until("recording_state")
-        assert told["length"] >= 0
+        logged = await client.until("recording_state")
+        assert logged["length"] >= 0
         await client.send("stop_recording")
         (file,) = (await ended(client))["files"]
         assert Path(state["path"]).parent == folder

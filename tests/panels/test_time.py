@@ -61,15 +61,15 @@ def point(x: float, stamp: float, frame: str = "base"):
 
 
 def test_exact_shows_the_time_of_the_sources_last_message():
-    clock, told = FakeClock(), []
-    control = TimeControl(clock, signalled=lambda: told.append(1))
+    clock, received = FakeClock(), []
+    control = TimeControl(clock, signalled=lambda: received.append(1))
     control.took("scan", 90)
     assert (control.lookup_ns(), control.sources) == (None, ["scan"])
     control.set(paused=False, mode="Exact", source="scan")
     assert control.lookup_ns() is None  # until its next message
     control.took("other", 80)
     control.took("scan", 95)
-    assert (control.lookup_ns(), control.now_ns(), told) == (95, 95, [1])
+    assert (control.lookup_ns(), control.now_ns(), received) == (95, 95, [1])
 
 
 def test_approximate_follows_the_delay_of_the_source_smoothly():

@@ -100,20 +100,20 @@ async def test_a_simulation_that_was_recorded_has_no_bar(tmp_path):
             assert (await client.until("simulation_status"))["present"] is False
             state.publish(state.msg_type(state=1))
             await client.until("playhead", playing=False, position=START + 10)
-            told = [
+            messages = [
                 message
                 for message in client.messages
                 if isinstance(message, dict) and message["type"] == "simulation_status"
             ]
-            assert not any(each["present"] for each in told)
+            assert not any(each["present"] for each in messages)
 
 
 @skipping
 async def test_a_page_is_told_of_topics_whose_type_nobody_knows(tmp_path):
     # What the recording carries for the type that nobody has is of no use either.
     async with shown(tmp_path, Point="Paint", float64="flaot64") as made, page(made.viewer) as client:
-        told = await client.until("playhead", playing=True)
-        assert told["problem"] == (
+        message = await client.until("playhead", playing=True)
+        assert message["problem"] == (
             "topics of 'drive' are left out, for the definitions of their types are missing or broken: "
             "/p (geometry_msgs/msg/PaintStamped)"
         )

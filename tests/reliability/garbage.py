@@ -52,11 +52,11 @@ def announcements(participant: bytes) -> list[bytes]:
         return struct.pack("<I", len(value) + 1) + value + bytes(4 - len(value) % 4)
 
     nodes = [(b"/", b"\xff\xfe"), (b"", b""), (b"/", b"\x1b[2Jred"), (b"no slash", b"a b"), (b"//", b"x" * 200)] * 20
-    told = []
+    messages = []
     for count in (1, 2, 3, len(nodes)):
-        said = b"".join(name(space) + name(node) + bytes(8) for space, node in nodes[:count])
-        told.append(HEADER + participant + bytes(8) + struct.pack("<I", count) + said)
-    return told
+        data = b"".join(name(space) + name(node) + bytes(8) for space, node in nodes[:count])
+        messages.append(HEADER + participant + bytes(8) + struct.pack("<I", count) + data)
+    return messages
 
 
 def shout(lottery: random.Random, first_port: int) -> None:

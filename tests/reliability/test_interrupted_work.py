@@ -57,12 +57,12 @@ def test_a_command_that_works_ends_when_it_is_told(words: list[str], tmp_path: P
             begun = _work(watched)
             wait_until(lambda: _work(watched) >= begun + moment, what=words)  # noqa: B023 - called at once
             process.send_signal(signal.SIGINT)
-            _, said = process.communicate(timeout=SECONDS)
+            _, output = process.communicate(timeout=SECONDS)
         finally:
             process.kill()
             process.wait()
-        assert process.returncode == 130, said
-        assert "Traceback" not in said
+        assert process.returncode == 130, output
+        assert "Traceback" not in output
 
 
 def _work(process: psutil.Process) -> float:

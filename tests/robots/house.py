@@ -104,6 +104,6 @@ class House(SteppedSimulation):
         x, y, *_ = self.robot_pose()
         return x, y
 
-    def said(self) -> list[str]:
+    def logged(self) -> list[str]:
         """What the nodes logged."""
         return [record.text for record in self.log]

@@ -53,7 +53,7 @@ def place(test: SteppedSimulation) -> tuple[float, float]:
     return x, y
 
 
-def said(test: SteppedSimulation) -> list[str]:
+def logged(test: SteppedSimulation) -> list[str]:
     return [record.text for record in test.log]
 
 
@@ -66,10 +66,10 @@ def test_a_square_is_closed(load: Any) -> None:
         corners: list[tuple[float, float]] = []
         for _ in range(60):
             test.advance(1.0)
-            reached = sum("corner reached" in text for text in said(test))
+            reached = sum("corner reached" in text for text in logged(test))
             if reached > len(corners):
                 corners.append(place(test))
-            if "the square is closed" in said(test):
+            if "the square is closed" in logged(test):
                 break
         measured = odometry.last.pose.pose.position
         assert math.hypot(measured.x, measured.y) < 0.05, "as far as odometry can tell"
@@ -126,18 +126,18 @@ def test_a_pose_is_reached(load: Any, x: float, y: float, yaw: float) -> None:
         goal.header.frame_id = "map"
         test.publish("/goal_pose", goal)
         test.advance(0.2)
-        assert any("set the Fixed Frame to 'odom'" in text for text in said(test))
+        assert any("set the Fixed Frame to 'odom'" in text for text in logged(test))
         goal.header.frame_id = "odom"
         test.publish("/goal_pose", goal)
         for _ in range(40):
             test.advance(1.0)
-            if "goal reached" in said(test):
+            if "goal reached" in logged(test):
                 break
         pose = odometry.last.pose.pose
         assert math.dist((pose.position.x, pose.position.y), (x, y)) < 0.1
         heading = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
         assert math.cos(heading - yaw) > math.cos(0.1)
-        assert "goal reached" in said(test)
+        assert "goal reached" in logged(test)
 
 
 @pytest.mark.slow
@@ -166,7 +166,7 @@ def test_obstacles_are_not_touched(load: Any) -> None:
             way, before = way + math.dist(before, place(test)), place(test)
             assert min(scans.last.ranges) > RADIUS + 0.05
         assert way > 6.0
-        assert any("m ahead" in text for text in said(test))
+        assert any("m ahead" in text for text in logged(test))
 
 
 def test_it_stops_before_a_box(load: Any) -> None:
@@ -222,7 +222,7 @@ def test_each_node_has_parameters_a_launch_file_and_an_entry_point() -> None:
 
 @pytest.mark.parametrize("name", NODES)
 def test_parameter_files_say_what_nodes_have(load: Any, name: str) -> None:
-    said = yaml.safe_load((CONTROL_PACKAGE / "config" / "control.yaml").read_text(encoding="utf-8"))
+    text = yaml.safe_load((CONTROL_PACKAGE / "config" / "control.yaml").read_text(encoding="utf-8"))
     with SteppedSimulation(world("empty")) as test:
         test.init_rclpy()
         module = load(name)
@@ -232,7 +232,7 @@ def test_parameter_files_say_what_nodes_have(load: Any, name: str) -> None:
             if isinstance(each, type) and each.__module__ == module.__name__ and hasattr(each, "drive")
         ]
         node = kind()
-        expected = said[name]["ros__parameters"]
+        expected = text[name]["ros__parameters"]
         assert {key: node.get_parameter(key).value for key in expected} == expected
 
 

@@ -74,7 +74,7 @@ def test_what_it_touches_is_noticed():
 def test_a_goal_in_a_wall_is_refused_with_a_reason():
     with House() as house:
         assert house.go_to(-0.9, 2.4, seconds=20.0) == GoalStatus.ABORTED
-        assert any("the goal (-0.90, 2.40) is" in text for text in house.said())
+        assert any("the goal (-0.90, 2.40) is" in text for text in house.logged())
         assert math.dist(house.place(), (0.0, 0.0)) < 0.05, "it did not move"
 
 
@@ -88,7 +88,7 @@ def test_an_obstacle_that_appears_on_the_way_is_driven_around():
             house.advance_and_watch(1.0)
             if results:
                 break
-        assert results, house.said()[-5:]
+        assert results, house.logged()[-5:]
         assert results[0].status == GoalStatus.SUCCEEDED
         assert math.dist(house.place(), (-3.2, 0.0)) < 0.3
         assert house.touched == set()

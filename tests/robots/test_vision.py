@@ -68,9 +68,9 @@ def test_the_package_is_checked(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize("name", ["detect", "follow_object"])
 def test_launch_files_start_the_nodes(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", str(VISION_PACKAGE / "launch" / f"{name}.launch.py"), "--print"]) == 0
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     for executable in ("detector", "tracking_node", "detect_3d_node", "object_seeker", "voice_commander", "gazebo"):
-        assert executable in said
+        assert executable in output
 
 
 def test_each_program_of_the_package_is_a_node_of_ours_or_its_own() -> None:

@@ -44,9 +44,9 @@ def test_the_programs_for_ros_2_are_the_nodes_of_their_names(name):
 
 def test_the_launch_file_has_its_arguments(capsys):
     assert main(["launch", "my_robot_voice", "voice.launch.py", "--show-args"]) == 0
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     for argument in ("engine", "language", "words_file", "commands_file", "open_listening", "wav", "navigation"):
-        assert f"'{argument}':\n" in said
+        assert f"'{argument}':\n" in output
 
 
 async def test_mbot_is_driven_through_the_playground():

@@ -123,8 +123,8 @@ class Told:
 
 def read(text: str, version=(1, 1)):
     root = parse(text, "shed.xml").root
-    told = Told()
-    return reader_of(SHED, version).read(root, root, told), told.words
+    result = Told()
+    return reader_of(SHED, version).read(root, root, result), result.words
 
 
 FULL = (

@@ -133,8 +133,8 @@ def test_colours_are_as_gz_makes_them_and_those_of_gazebo_come_first():
     material = converted(link("a", visual)).links[0].visuals[0].material
     assert material is not None
     assert material.diffuse == material.ambient == pytest.approx((0.5, 1.0, 1.0, 0.5))
-    said = '<gazebo reference="a"><visual><material><diffuse>1 0 0 1</diffuse></material></visual></gazebo>'
-    material = converted(link("a", visual) + said).links[0].visuals[0].material
+    text = '<gazebo reference="a"><visual><material><diffuse>1 0 0 1</diffuse></material></visual></gazebo>'
+    material = converted(link("a", visual) + text).links[0].visuals[0].material
     assert material is not None
     assert (material.ambient, material.diffuse) == (None, (1.0, 0.0, 0.0, 1.0))
 
@@ -162,9 +162,9 @@ def test_words_for_links_and_collisions():
         "maxContacts": "5", "laserRetro": "6", "selfCollide": "Yes", "turnGravityOff": "true", "dampingFactor": "0.7",
         "canonicalBody": "a",
     }  # fmt: skip
-    said = "".join(f"<{word}>{text}</{word}>" for word, text in words.items())
+    shown = "".join(f"<{word}>{text}</{word}>" for word, text in words.items())
     found = converted(link("a", SHAPED + f'<collision name="own">{BOX}</collision>')
-                      + f'<gazebo reference="a">{said}</gazebo>').links[0]  # fmt: skip
+                      + f'<gazebo reference="a">{shown}</gazebo>').links[0]  # fmt: skip
     for collision in found.collisions:
         friction, contact = collision.surface.friction, collision.surface.contact
         assert friction is not None
@@ -177,16 +177,16 @@ def test_words_for_links_and_collisions():
 
 
 def test_a_word_may_stand_in_an_attribute_and_the_last_of_several_counts():
-    said = '<gazebo reference="a"><mu1 value="0.1"/></gazebo><gazebo reference="a"><mu1> 0.3 </mu1></gazebo>'
-    friction = converted(link("a", SHAPED) + said).links[0].collisions[0].surface.friction
+    text = '<gazebo reference="a"><mu1 value="0.1"/></gazebo><gazebo reference="a"><mu1> 0.3 </mu1></gazebo>'
+    friction = converted(link("a", SHAPED) + text).links[0].collisions[0].surface.friction
     assert friction is not None
     assert friction.mu == 0.3
 
 
 def test_a_surface_in_collision_and_words_go_together():
     surface = "<surface><friction><ode><mu>0.5</mu><mu2>0.6</mu2></ode></friction></surface>"
-    said = f'<gazebo reference="a"><collision>{surface}</collision><mu1>0.1</mu1></gazebo>'
-    robot = robot_of(link("a", SHAPED) + said)
+    text = f'<gazebo reference="a"><collision>{surface}</collision><mu1>0.1</mu1></gazebo>'
+    robot = robot_of(link("a", SHAPED) + text)
     for _ in range(2):  # the robot's elements stay as they are
         friction = model_from_robot(robot, lump_fixed_joints=False).model.links[0].collisions[0].surface.friction
         assert friction is not None
@@ -211,13 +211,13 @@ def test_sensors_and_plugins_keep_their_places():
 
 
 def test_words_and_sensors_of_joints():
-    said = (
+    text = (
         '<gazebo reference="j"><provideFeedback>1</provideFeedback><springStiffness>3</springStiffness>'
         "<springReference>0.5</springReference><implicitSpringDamper>true</implicitSpringDamper><stopErp>0.2</stopErp>"
         '<sensor name="ft" type="force_torque"/></gazebo>'
     )
     turning = joint("j", "a", "b", kind="revolute", inside=LIMIT + '<dynamics damping="2"/>')
-    found = converted(link("a") + link("b") + turning + said).joints[0]
+    found = converted(link("a") + link("b") + turning + text).joints[0]
     assert found.axis is not None
     dynamics = found.axis.dynamics
     assert (dynamics.spring_stiffness, dynamics.spring_reference, dynamics.damping) == (3.0, 0.5, 2.0)
@@ -315,8 +315,8 @@ def test_what_hangs_from_a_lumped_link_hangs_from_the_body():
 
 @pytest.mark.parametrize(("word", "kind"), [("preserveFixedJoint", "fixed"), ("disableFixedJointLumping", "revolute")])
 def test_a_fixed_joint_that_is_to_stay(word, kind):
-    said = f'<gazebo reference="j"><{word}>true</{word}></gazebo>'
-    found = converted(link("a") + link("b") + joint("j", "a", "b") + said, lump=True).joints[0]
+    text = f'<gazebo reference="j"><{word}>true</{word}></gazebo>'
+    found = converted(link("a") + link("b") + joint("j", "a", "b") + text, lump=True).joints[0]
     assert found.type == kind
     if found.axis is not None:
         assert (found.axis.limit.lower, found.axis.limit.upper) == (0.0, 0.0)
@@ -339,8 +339,8 @@ def test_links_without_mass_are_left_out_only_when_lumping():
 
 
 def test_a_sensor_of_a_lumped_joint_is_told_of():
-    said = '<gazebo reference="j"><sensor name="ft" type="force_torque"/></gazebo>'
-    conversion = model_from_robot(robot_of(link("a") + link("b") + joint("j", "a", "b") + said), lump_fixed_joints=True)
+    text = '<gazebo reference="j"><sensor name="ft" type="force_torque"/></gazebo>'
+    conversion = model_from_robot(robot_of(link("a") + link("b") + joint("j", "a", "b") + text), lump_fixed_joints=True)
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in conversion.diagnostics] == [
         ("SDF171", "sensor 'ft' is left out: the links of joint 'j' become one")
     ]

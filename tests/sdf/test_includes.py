@@ -288,12 +288,12 @@ def test_names_in_a_model_that_could_not_be_had_are_not_called_wrong(tmp_path):
 def test_where_a_model_is_known_or_was_renamed_what_is_missing_is_a_warning_and_else_an_information(tmp_path):
     write(tmp_path, {"box/model.sdf": BOX, "box/model.config": "<model/>", "box/meshes/a.stl": ""})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
-    said = {}
+    facts = {}
     for address in ("model://box/meshes/b.stl", "model://old_box/meshes/a.stl", "model://far/meshes/b.stl"):
         found = finder.file(address, tmp_path / "box")
         assert isinstance(found, Missing)
-        said[address.split("/")[2]] = (found.severity.name, str(found.hint))
-    assert said == {
+        facts[address.split("/")[2]] = (found.severity.name, str(found.hint))
+    assert facts == {
         "box": ("WARNING", "there are: a.stl"),
         "old_box": ("WARNING", "the folder that holds 'meshes/a.stl' is called 'box'"),
         "far": ("INFO", "add the folder that holds 'far' to GZ_SIM_RESOURCE_PATH"),
@@ -435,8 +435,8 @@ def test_what_is_unknown_or_not_there_is_told_of_once(tmp_path):
     box = "<include><uri>model://box</uri></include>"
     inside = f'<mine/><mine/><yours/>{gone}{gone}{box}<model name="m"><static>1</static><mine/></model>'
     found = examined(tmp_path, inside, GZ_SIM_RESOURCE_PATH=str(tmp_path))
-    told = [str(diagnostic.message) for diagnostic in found.diagnostics if diagnostic.code in ("SDF150", "SDF160")]
-    assert [each.split(":")[0] for each in told] == [
+    texts = [str(diagnostic.message) for diagnostic in found.diagnostics if diagnostic.code in ("SDF150", "SDF160")]
+    assert [each.split(":")[0] for each in texts] == [
         "<mine> in <world> is not read",
         "<yours> in <world> is not read",
         "<mine> in <model> is not read",

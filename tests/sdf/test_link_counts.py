@@ -50,6 +50,6 @@ def test_a_world_of_a_million_links_is_refused_with_one_line(tmp_path, capsys):
     path = tmp_path / "crowd.world"
     path.write_text(world(LINK * 100_001))
     assert main(["world", "check", str(path)]) == 1
-    said = capsys.readouterr().err
-    assert said.count("error[") == 1
-    assert "is not read: it has more than 100000 links" in said
+    output = capsys.readouterr().err
+    assert output.count("error[") == 1
+    assert "is not read: it has more than 100000 links" in output

@@ -19,9 +19,9 @@ def test_the_page_was_understood():
     assert len(MISTAKES) == PAGE.count("\n### ") > 40
 
 
-@pytest.mark.parametrize(("text", "said"), MISTAKES)
-def test_mistake(text, said):
-    assert describe(text) == said
+@pytest.mark.parametrize(("text", "message"), MISTAKES)
+def test_mistake(text, message):
+    assert describe(text) == message
 
 
 def test_every_code_is_shown_here_or_in_other_tests():

@@ -156,7 +156,7 @@ def _files():
     return sorted({item["entry"] for item in items if item["entry"].endswith((".world", ".sdf"))})
 
 
-def said(sdf):
+def normalized(sdf):
     """A file as a text in which nan is nan, which an inertia in one of these worlds is, and -0 is 0."""
     return repr(sdf).replace("-0.0,", "0.0,").replace("-0.0)", "0.0)")
 
@@ -167,4 +167,4 @@ def test_real_worlds_and_models(entry):
     finder = PackageFinder(start=path.parent, environment={})
     found = examine_world(path, packages=finder, environment={"HOME": "/nowhere"})
     assert found.sdf is not None
-    assert said(read_back(save(found.sdf))) == said(replace(found.sdf, version="1.11"))
+    assert normalized(read_back(save(found.sdf))) == normalized(replace(found.sdf, version="1.11"))

@@ -160,15 +160,15 @@ def in_shell(command: str, folder: Path) -> subprocess.Popen[str]:
 
 
 def test_termination_is_passed_on_and_the_folder_of_programs_goes(tmp_path: Path) -> None:
-    told = tmp_path / "told"
-    command = f'trap "echo ended > {told}; exit 3" TERM; echo $LINKWRIGHT_SHELL; while :; do sleep 0.05; done'
+    result = tmp_path / "told"
+    command = f'trap "echo ended > {result}; exit 3" TERM; echo $LINKWRIGHT_SHELL; while :; do sleep 0.05; done'
     with in_shell(command, tmp_path) as process:
         assert process.stdout is not None
         folder = Path(process.stdout.readline().strip())
         assert (folder / "ros2").exists()
         process.terminate()
         assert process.wait(timeout=60) == 3
-    assert told.read_text() == "ended\n"
+    assert result.read_text() == "ended\n"
     assert not folder.exists()
 
 

@@ -70,9 +70,9 @@ def test_the_tutorial_word_for_word(home: Path) -> None:
     assert "Summary: 1 package finished" in built
     assert built.splitlines()[-1] == str(home / "ros2_ws" / "install" / "my_robot_description")
 
-    said = launched(home)
-    assert re.search(r"\[robot_state_publisher-\d\] \[INFO\] .*Robot initialized", said)
-    assert "has finished cleanly" in said
+    output = launched(home)
+    assert re.search(r"\[robot_state_publisher-\d\] \[INFO\] .*Robot initialized", output)
+    assert "has finished cleanly" in output
 
     assert typed(DIAGRAM, home).splitlines() == ["Created file mbot.gv", "Created file mbot.pdf"]
     assert (package / "urdf" / "mbot.pdf").read_bytes().startswith(b"%PDF")
@@ -98,9 +98,9 @@ def launched(home: Path) -> str:
         guard.cancel()
         with urllib.request.urlopen(address, timeout=60) as page:
             assert page.status == 200
-        said = ""
+        text = ""
         for line in process.stderr:
-            said += line
+            text += line
             if "Robot initialized" in line:
                 os.killpg(process.pid, signal.SIGINT)
-    return said
+    return text

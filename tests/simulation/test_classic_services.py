@@ -158,8 +158,8 @@ async def test_masses_and_joints_are_changed_by_services():
     crate = box("crate", "5 0 1 0 0 0", "1 1 1", 3.0)
     async with served(GROUND, arm(""), crate, PROPERTIES) as (server, graph, log):
         kind = "gazebo_msgs/srv/SetLinkProperties"
-        said = {"mass": 6.0, "ixx": 1.0, "iyy": 1.0, "izz": 1.0, "gravity_mode": False, "link_name": "crate::link"}
-        assert (await ask(graph, server, kind, "/set_link_properties", **said)).success
+        facts = {"mass": 6.0, "ixx": 1.0, "iyy": 1.0, "izz": 1.0, "gravity_mode": False, "link_name": "crate::link"}
+        assert (await ask(graph, server, kind, "/set_link_properties", **facts)).success
         answer = await ask(
             graph, server, "gazebo_msgs/srv/GetLinkProperties", "/get_link_properties", link_name="crate::link"
         )
@@ -167,13 +167,13 @@ async def test_masses_and_joints_are_changed_by_services():
         begin = server.simulation.model_pose("crate")[2]
         server.advance(SECOND // 10)
         assert server.simulation.model_pose("crate")[2] == pytest.approx(begin)
-        refused = await ask(graph, server, kind, "/set_link_properties", **(said | {"ixx": 9.0}))
+        refused = await ask(graph, server, kind, "/set_link_properties", **(facts | {"ixx": 9.0}))
         assert (refused.success, refused.status_message) == (False, "no body has such a mass or inertia")
 
         config = get_message("gazebo_msgs/msg/ODEJointProperties")(damping=[2.0], hi_stop=[0.25])
         kind = "gazebo_msgs/srv/SetJointProperties"
-        said = {"joint_name": "arm::shoulder", "ode_joint_config": config}
-        assert (await ask(graph, server, kind, "/set_joint_properties", **said)).success
+        facts = {"joint_name": "arm::shoulder", "ode_joint_config": config}
+        assert (await ask(graph, server, kind, "/set_joint_properties", **facts)).success
         answer = await ask(
             graph, server, "gazebo_msgs/srv/GetJointProperties", "/get_joint_properties", joint_name="arm::shoulder"
         )

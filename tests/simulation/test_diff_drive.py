@@ -67,9 +67,9 @@ async def test_it_drives_straight_on_and_knows_how_far(plugin):
         await driven.drive(0.5, 0.0, 2.0)
         assert driven.pose[0] - start[0] == pytest.approx(1.0, abs=1e-3)
         assert driven.pose[1] == pytest.approx(0.0, abs=1e-3)
-        told = driven.odometry.last
-        assert told.pose.pose.position.x == pytest.approx(driven.pose[0], abs=1e-2)
-        assert told.twist.twist.linear.x == pytest.approx(0.5, abs=1e-2)
+        odometry = driven.odometry.last
+        assert odometry.pose.pose.position.x == pytest.approx(driven.pose[0], abs=1e-2)
+        assert odometry.twist.twist.linear.x == pytest.approx(0.5, abs=1e-2)
         assert not [each for each in log if each.level > 20]
 
 
@@ -89,13 +89,13 @@ async def test_odometry_of_the_world_says_where_it_is_and_that_it_drives_backwar
         driven = Driven(server, graph)
         transforms = Recording(graph, server.node, "/tf")
         await driven.drive(-0.3, 0.0, 2.0)
-        told = driven.odometry.last
-        assert told.pose.pose.position.x == pytest.approx(driven.pose[0], abs=1e-9)
-        assert told.twist.twist.linear.x == pytest.approx(-0.3, abs=1e-2)
-        assert (told.header.frame_id, told.child_frame_id) == ("odom", "base_footprint")
-        assert told.pose.covariance[0] == 1e-5
+        odometry = driven.odometry.last
+        assert odometry.pose.pose.position.x == pytest.approx(driven.pose[0], abs=1e-9)
+        assert odometry.twist.twist.linear.x == pytest.approx(-0.3, abs=1e-2)
+        assert (odometry.header.frame_id, odometry.child_frame_id) == ("odom", "base_footprint")
+        assert odometry.pose.covariance[0] == 1e-5
         moved = transforms.last.transforms[0]
-        assert moved.transform.translation.x == told.pose.pose.position.x
+        assert moved.transform.translation.x == odometry.pose.pose.position.x
         assert (moved.header.frame_id, moved.child_frame_id) == ("odom", "base_footprint")
 
 

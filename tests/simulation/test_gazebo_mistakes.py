@@ -25,9 +25,9 @@ async def test_the_sign_of_the_velocity_backward(mistaken):
     async with served(GROUND, robot(classic(source=0)), options=options) as (server, graph, _):
         odometry = Recording(graph, server.node, "/odom")
         await drive(server, graph, -0.3, seconds=2.0)
-        told = odometry.last
-        assert told.twist.twist.linear.x == pytest.approx(0.3 if mistaken else -0.3, abs=0.01)
-        assert told.pose.pose.position.x < -0.3
+        message = odometry.last
+        assert message.twist.twist.linear.x == pytest.approx(0.3 if mistaken else -0.3, abs=0.01)
+        assert message.pose.pose.position.x < -0.3
 
 
 @BOTH
@@ -40,9 +40,9 @@ async def test_velocities_in_the_frame_of_another_link(mistaken):
     fixed = '<joint name="held" type="fixed"><parent>world</parent><child>frame</child></joint>'
     text = moving_box(planar() + p3d).replace("</model>", f"{turned}{fixed}</model>")
     async with served(GROUND, text, options=ServerOptions(gazebo_mistakes=mistaken)) as (server, graph, _):
-        told = Recording(graph, server.node, "/told")
+        recording = Recording(graph, server.node, "/told")
         await drive(server, graph, 0.5)
-        velocity = told.last.twist.twist.linear
+        velocity = recording.last.twist.twist.linear
         assert (velocity.x, velocity.y) == pytest.approx((0.0, 0.5 if mistaken else -0.5), abs=0.01)
 
 

@@ -71,11 +71,11 @@ async def test_a_car_drives_the_circle_that_a_command_says_and_knows_where_it_is
         await drive(server, graph, 0.5, turning=0.3, seconds=1.0)
         pose = server.simulation.model_pose("car")
         assert yaw_of(pose) - begin == pytest.approx(0.3, rel=0.05)
-        told = odometry.last
-        assert (told.header.frame_id, told.child_frame_id) == ("car/odom", "car/base")
-        assert (told.pose.pose.position.x, told.pose.pose.position.y) == pytest.approx(pose[:2], abs=0.05)
-        assert told.twist.twist.linear.x == pytest.approx(0.5, abs=0.02)
-        assert told.twist.twist.angular.z == pytest.approx(0.3, rel=0.05)
+        message = odometry.last
+        assert (message.header.frame_id, message.child_frame_id) == ("car/odom", "car/base")
+        assert (message.pose.pose.position.x, message.pose.pose.position.y) == pytest.approx(pose[:2], abs=0.05)
+        assert message.twist.twist.linear.x == pytest.approx(0.5, abs=0.02)
+        assert message.twist.twist.angular.z == pytest.approx(0.3, rel=0.05)
         assert len(odometry) == len(transforms) == 150
         server.reset()
         server.advance(SECOND)
@@ -125,13 +125,13 @@ async def test_mecanum_wheels_go_any_way_and_know_how_far(command, moved):
     async with served(GROUND, mecanum()) as (server, graph, log):
         odometry = Recording(graph, server.node, "/odom")
         await drive(server, graph, *command, seconds=1.0)
-        begin, told = server.simulation.model_pose("robot"), odometry.last.pose.pose.position
+        begin, message = server.simulation.model_pose("robot"), odometry.last.pose.pose.position
         await drive(server, graph, *command, seconds=1.0)
         end, last = server.simulation.model_pose("robot"), odometry.last
         assert end[2] == pytest.approx(0.2, abs=2e-3)
         assert (end[0] - begin[0], end[1] - begin[1], yaw_of(end) - yaw_of(begin)) == pytest.approx(moved, abs=0.01)
         position = last.pose.pose.position
-        assert (position.x - told.x, position.y - told.y) == pytest.approx(moved[:2], abs=0.01)
+        assert (position.x - message.x, position.y - message.y) == pytest.approx(moved[:2], abs=0.01)
         twist = last.twist.twist
         assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx(command, abs=0.01)
         assert not log

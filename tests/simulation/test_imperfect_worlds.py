@@ -31,7 +31,7 @@ def begun(*parts: str, version: str = "1.9") -> Simulation:
     return simulation
 
 
-def told(simulation: Simulation) -> list[str]:
+def codes_of(simulation: Simulation) -> list[str]:
     return [diagnostic.code for diagnostic in simulation.scene.diagnostics]
 
 
@@ -46,7 +46,7 @@ def told(simulation: Simulation) -> list[str]:
 def test_a_model_without_a_place_is_left_out(broken):
     simulation = begun(CRATE, broken)
     assert list(simulation.scene.models) == ["ground", "crate"]
-    assert told(simulation) == ["SIM116"]
+    assert codes_of(simulation) == ["SIM116"]
 
 
 def test_a_model_that_mujoco_cannot_take_is_left_out():
@@ -54,7 +54,7 @@ def test_a_model_that_mujoco_cannot_take_is_left_out():
     shape = f"<geometry><polyline>{points}<height>1</height></polyline></geometry>"
     simulation = begun(CRATE, f'<model name="m"><link name="l"><collision name="c">{shape}</collision></link></model>')
     assert list(simulation.scene.models) == ["ground", "crate"]
-    assert told(simulation) == ["SIM117"]
+    assert codes_of(simulation) == ["SIM117"]
 
 
 def test_a_part_that_stands_relative_to_nothing_stands_in_its_link():
@@ -68,7 +68,7 @@ def test_a_link_as_light_as_dust_moves():
     tensor = "<ixx>1e-20</ixx><iyy>1e-20</iyy><izz>1e-20</izz>"
     inertial = f"<inertial><mass>1e-5</mass><inertia>{tensor}</inertia></inertial>"
     simulation = begun(f'<model name="m"><pose>0 0 5 0 0 0</pose><link name="l">{inertial}</link></model>')
-    assert told(simulation) == []
+    assert codes_of(simulation) == []
     simulation.advance(100_000_000)
     assert simulation.model_pose("m")[2] < 5.0
 
@@ -76,7 +76,7 @@ def test_a_link_as_light_as_dust_moves():
 def test_a_time_step_of_nothing_is_a_millisecond():
     simulation = begun(CRATE, "<physics type='ode'><max_step_size>0</max_step_size></physics>")
     assert simulation.step == 1_000_000
-    assert told(simulation) == ["SIM106"]
+    assert codes_of(simulation) == ["SIM106"]
 
 
 def test_shapes_and_joints_of_one_name_are_all_there():

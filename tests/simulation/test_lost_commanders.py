@@ -72,8 +72,10 @@ async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(model: str) 
             for driver, wanted in zip(drivers, (0.1, 0.3), strict=True):
                 driver.send(forward(wanted))
                 await advance(server, graph, 0.1)
-        (told,) = warnings(log)
-        assert told.startswith("two drivers at once: '/keys', '/planner' send commands on '/cmd_vel', and each message")
+        (logged,) = warnings(log)
+        assert logged.startswith(
+            "two drivers at once: '/keys', '/planner' send commands on '/cmd_vel', and each message"
+        )
 
 
 async def test_a_drive_goes_on_whose_last_command_is_that_of_another() -> None:

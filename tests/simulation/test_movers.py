@@ -43,11 +43,11 @@ async def test_planar_move_goes_any_way_and_tells_it_in_the_axes_of_the_robot():
         await drive(server, graph, 0.5, 0.25)
         x, y, _, *_ = server.simulation.model_pose("mbot")
         assert (x, y) == pytest.approx((-0.25, 0.5), abs=2e-3)
-        told = odometry.last
+        message = odometry.last
         assert len(odometry) == len(transforms) == 20
-        assert (told.header.frame_id, told.child_frame_id) == ("odom", "base_footprint")
-        assert (told.pose.pose.position.x, told.pose.pose.position.y) == pytest.approx((x, y))
-        assert (told.twist.twist.linear.x, told.twist.twist.linear.y) == pytest.approx((0.5, 0.25), abs=1e-3)
+        assert (message.header.frame_id, message.child_frame_id) == ("odom", "base_footprint")
+        assert (message.pose.pose.position.x, message.pose.pose.position.y) == pytest.approx((x, y))
+        assert (message.twist.twist.linear.x, message.twist.twist.linear.y) == pytest.approx((0.5, 0.25), abs=1e-3)
         await drive(server, graph, turning=1.0)
         assert yaw_of(server.simulation.model_pose("mbot")) == pytest.approx(pi / 2 + 1.0, abs=2e-3)
         assert not log
@@ -101,11 +101,11 @@ async def test_p3d_tells_where_a_link_is_in_the_world_or_in_the_frame_of_another
         truth, inside = (Recording(graph, server.node, each) for each in ("/truth", "/inside"))
         await drive(server, graph, 0.5)
         link = server.simulation.link_pose("mbot::left_wheel")
-        told = truth.last
-        assert (told.header.frame_id, told.child_frame_id, len(truth)) == ("world", "left_wheel", 10)
-        position = told.pose.pose.position
+        odometry = truth.last
+        assert (odometry.header.frame_id, odometry.child_frame_id, len(truth)) == ("world", "left_wheel", 10)
+        position = odometry.pose.pose.position
         assert (position.x, position.y, position.z) == pytest.approx((link[0], link[1], link[2] + 1.0), abs=1e-3)
-        assert told.twist.twist.linear.x == pytest.approx(0.5, abs=0.02)
+        assert odometry.twist.twist.linear.x == pytest.approx(0.5, abs=0.02)
         position = inside.last.pose.pose.position
         assert (position.x, position.y, position.z) == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
         assert inside.last.header.frame_id == "base_link"
@@ -127,10 +127,10 @@ async def test_odometry_of_gz_is_where_the_model_is(dimensions):
         topics = ("/model/mbot/odometry", "/model/mbot/odometry_with_covariance", "/model/mbot/pose")
         odometry, uncertain, transforms = (Recording(graph, server.node, topic) for topic in topics)
         await drive(server, graph, 0.5)
-        told = odometry.last
+        message = odometry.last
         assert len(odometry) == len(uncertain) == len(transforms) == 50
-        assert (told.header.frame_id, told.child_frame_id) == ("odom", "mbot/base_footprint")
-        assert told.pose.pose.position.x == pytest.approx(0.5, abs=2e-3)
-        assert told.pose.pose.position.z == pytest.approx(0.1 if dimensions == 3 else 0.0, abs=1e-3)
-        assert told.twist.twist.linear.x == pytest.approx(0.5, abs=1e-3)
+        assert (message.header.frame_id, message.child_frame_id) == ("odom", "mbot/base_footprint")
+        assert message.pose.pose.position.x == pytest.approx(0.5, abs=2e-3)
+        assert message.pose.pose.position.z == pytest.approx(0.1 if dimensions == 3 else 0.0, abs=1e-3)
+        assert message.twist.twist.linear.x == pytest.approx(0.5, abs=1e-3)
         assert not log

@@ -95,8 +95,8 @@ def test_what_is_called_simulated_is():
 async def test_a_system_that_nothing_simulates_is_told_of(name):
     plugin = f'<plugin name="a" filename="gz-sim-{name}-system"/>'
     async with served(robot(plugin)) as (_, __, log):
-        told, *instead = [each.text for each in log]
-        assert told == f"plugins and sensors that are not simulated: gz-sim-{name}-system"
+        logged, *instead = [each.text for each in log]
+        assert logged == f"plugins and sensors that are not simulated: gz-sim-{name}-system"
         assert [each.split(": ")[0] for each in instead] == [f"use instead of gz-sim-{name}-system"] * (
             name not in WITHOUT_ALTERNATIVE
         )
@@ -212,8 +212,8 @@ async def test_what_is_not_simulated_is_listed_once():
     unknown = '<plugin name="a" filename="libvacuum.so"/>'
     known = '<plugin name="b" filename="gz-sim-physics-system"/>'
     async with served(robot(unknown, known), robot(unknown, name="two")) as (_, __, log):
-        told = [each.text for each in log if "not simulated" in each.text]
-        assert told == ["plugins and sensors that are not simulated: libvacuum.so"]
+        logged = [each.text for each in log if "not simulated" in each.text]
+        assert logged == ["plugins and sensors that are not simulated: libvacuum.so"]
 
 
 async def test_a_model_that_goes_takes_its_nodes_along():

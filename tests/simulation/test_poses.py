@@ -54,14 +54,14 @@ async def test_what_no_joint_moves_has_a_topic_of_its_own():
         assert [transform.child_frame_id for transform in moving.last.transforms] == [
             f"mbot/{side}" for side in ("left_wheel", "right_wheel", "front_caster", "back_caster")
         ]
-        told = {transform.child_frame_id: transform for transform in resting.last.transforms}
-        assert set(told) == {"mbot", "mbot/base_link"} | {
+        odometry = {transform.child_frame_id: transform for transform in resting.last.transforms}
+        assert set(odometry) == {"mbot", "mbot/base_link"} | {
             f"mbot/{link}/collision"
             for link in ("base_link", "left_wheel", "right_wheel", "front_caster", "back_caster")
         }
-        assert told["mbot"].header.frame_id == "test"
-        assert told["mbot/left_wheel/collision"].header.frame_id == "mbot/left_wheel"
-        assert _translation(told["mbot"]) == pytest.approx((0.0, 0.0, 0.11), abs=2e-3)
+        assert odometry["mbot"].header.frame_id == "test"
+        assert odometry["mbot/left_wheel/collision"].header.frame_id == "mbot/left_wheel"
+        assert _translation(odometry["mbot"]) == pytest.approx((0.0, 0.0, 0.11), abs=2e-3)
         assert not log
 
 
@@ -78,11 +78,11 @@ async def test_models_in_models_move_with_their_links():
         server.advance(SECOND // 100)
         await graph.settle()
         assert len(recording) == 10
-        told = {
+        logged = {
             transform.child_frame_id: (transform.header.frame_id, _translation(transform))
             for transform in recording.last.transforms
         }
-        assert told == {
+        assert logged == {
             "outer/link": ("outer", pytest.approx((0.0, 0.0, 0.0), abs=1e-9)),
             "outer/inner": ("outer", pytest.approx((0.0, 0.0, 0.5), abs=1e-9)),
             "outer/inner/link": ("outer/inner", pytest.approx((0.0, 0.0, 0.0), abs=1e-9)),

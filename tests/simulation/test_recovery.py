@@ -126,20 +126,20 @@ def test_models_that_begin_in_each_other_are_told_the_deepest_first():
         free("beside", "ball", "5.9 0 0.5 0 0 0"),
         free("fine", "box", "9 0 0.495 0 0 0"),
     )
-    told = [str(overlap.message) for overlap in overlaps(simulation)]
-    assert told == [
+    texts = [str(overlap.message) for overlap in overlaps(simulation)]
+    assert texts == [
         "'lower' begins 0.40 m inside 'ground'",
         "'low' begins 0.30 m inside 'ground'",
         "'beside' begins 0.10 m inside 'lower'",
     ]
-    assert [str(overlap.message) for overlap in overlaps(simulation, {"beside"})] == told[2:]
+    assert [str(overlap.message) for overlap in overlaps(simulation, {"beside"})] == texts[2:]
 
 
 def test_many_overlaps_are_counted():
     simulation = simulated(GROUND, *[free(f"b{each}", "box", f"{2 * each} 0 0.2 0 0 0") for each in range(11)])
-    told = overlaps(simulation)
-    assert len(told) == 9
-    assert str(told[-1].message) == "3 other pairs of models overlap"
+    result = overlaps(simulation)
+    assert len(result) == 9
+    assert str(result[-1].message) == "3 other pairs of models overlap"
 
 
 async def test_overlaps_are_logged_at_the_start_and_when_something_is_put_in():

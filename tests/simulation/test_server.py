@@ -217,15 +217,15 @@ async def test_a_model_is_put_elsewhere_with_a_velocity(tmp_path):
         state.pose.position.x, state.pose.orientation.z, state.pose.orientation.w = 3.0, 1.0, 0.0
         state.twist.linear.x, state.twist.angular.z = 1.0, 2.0
         assert (await it.ask("gazebo_msgs/srv/SetEntityState", "/set_entity_state", state=state)).success
-        told = (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).state
-        assert (told.pose.position.x, told.pose.orientation.z) == (3.0, 1.0)
-        assert (told.twist.linear.x, told.twist.angular.z) == pytest.approx((1.0, 2.0))
-        told = (
+        message = (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).state
+        assert (message.pose.position.x, message.pose.orientation.z) == (3.0, 1.0)
+        assert (message.twist.linear.x, message.twist.angular.z) == pytest.approx((1.0, 2.0))
+        message = (
             await it.ask(
                 "gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="ground_plane", reference_frame="one"
             )
         ).state
-        assert told.pose.position.x == pytest.approx(3.0)
+        assert message.pose.position.x == pytest.approx(3.0)
 
 
 async def test_why_a_service_without_a_text_refuses_is_logged(tmp_path):
@@ -325,14 +325,14 @@ async def test_what_is_wrong_with_a_model_is_among_the_findings_while_that_is_in
     seen = URDF.replace("collision>", "visual>")
     async with simulator(tmp_path, robot_description=seen, robot_name="first", pause=False) as it:
         server = it.simulator.server
-        told: list[list[str]] = []
-        server.on_findings.append(lambda: told.append([finding.code for finding in server.findings]))
+        messages: list[list[str]] = []
+        server.on_findings.append(lambda: messages.append([finding.code for finding in server.findings]))
         [finding] = server.findings
         assert (finding.code, finding.span.line) == ("SIM143", 1)
         it.simulator.services.renew(seen.replace('mass value="1"', 'mass value="2"'), "first")
-        await eventually(lambda: told == [[], ["SIM143"]])
+        await eventually(lambda: messages == [[], ["SIM143"]])
         it.simulator.services.renew(URDF, "first")
-        await eventually(lambda: told[2:] == [[]])
+        await eventually(lambda: messages[2:] == [[]])
         await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="second", xml=seen)
         assert [finding.code for finding in server.findings] == ["SIM143"]
         await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="second")

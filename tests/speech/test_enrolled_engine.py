@@ -82,14 +82,14 @@ def in_a_room(samples, direct, seed):
 
 
 def heard_in_a_room(engine, phones, number):
-    said = say(phones, speed=(0.9, 1.1)[number % 2], level=2000, silence=0.8, seed=20 + number)
-    return finals(engine, in_a_room(said, 8.0, number))
+    samples = say(phones, speed=(0.9, 1.1)[number % 2], level=2000, silence=0.8, seed=20 + number)
+    return finals(engine, in_a_room(samples, 8.0, number))
 
 
 def test_what_was_enrolled_close_is_recognised_two_metres_away_in_a_room(engine):
-    said = [(name, heard_in_a_room(engine, WORDS[name], number)) for name in WORDS for number in range(3)]
-    assert all(set(found) <= {name, ""} for name, found in said)
-    assert sum(found == [name] for name, found in said) >= 13
+    result = [(name, heard_in_a_room(engine, WORDS[name], number)) for name in WORDS for number in range(3)]
+    assert all(set(found) <= {name, ""} for name, found in result)
+    assert sum(found == [name] for name, found in result) >= 13
 
 
 @pytest.mark.parametrize("phones", OTHERS)
@@ -121,9 +121,9 @@ def test_words_are_recognised_while_others_talk(path):
         for seed in range(1, 4):
             engine = EnrolledEngine(EngineOptions(tuple(WORDS), model=path))
             found = heard(engine, in_babble(WORDS[name], seed)) + list(engine.finish())
-            told = {one.text for one in found if one.final} - {""}
-            assert told <= {name}
-            right.append(told == {name})
+            text = {one.text for one in found if one.final} - {""}
+            assert text <= {name}
+            right.append(text == {name})
     assert sum(right) >= 10
 
 
@@ -234,17 +234,17 @@ def test_one_enrolled_word_is_enough(words, tmp_path):
 def test_the_file_is_followed_as_it_comes_changes_and_goes(words, tmp_path):
     path = tmp_path / "words.json"
     engine = EnrolledEngine(EngineOptions(("stop", "back"), model=path))
-    said = say(WORDS["stop"], silence=0.8)
+    samples = say(WORDS["stop"], silence=0.8)
     assert engine.problem.code == "VOICE201"
-    assert finals(engine, said) == [""]
+    assert finals(engine, samples) == [""]
     words.write(path)
-    assert finals(engine, said) == ["stop"]
+    assert finals(engine, samples) == ["stop"]
     assert engine.problem is None
     path.write_text("{", encoding="utf-8")
-    assert finals(engine, said) == ["stop"]
+    assert finals(engine, samples) == ["stop"]
     assert engine.problem.code == "VOICE203"
     path.unlink()
-    assert finals(engine, said) == [""]
+    assert finals(engine, samples) == [""]
     assert engine.problem.code == "VOICE201"
 
 

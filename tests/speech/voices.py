@@ -89,8 +89,8 @@ def babble(seconds: float, rng: np.random.Generator) -> np.ndarray:
     for _ in range(3):
         phones = "".join("".join(rng.choice(sounds, size=3)) + "....." for _ in range(round(2 * seconds)))
         speed, pitch, size = rng.uniform((0.85, 90.0, 0.85), (1.1, 220.0, 1.1))
-        said = say(phones, speed=speed, pitch=pitch, size=size, silence=0.0, noise=0.0, seed=int(rng.integers(1000)))
-        total += np.roll(np.resize(said.astype(np.float64), count), int(rng.integers(count)))
+        samples = say(phones, speed=speed, pitch=pitch, size=size, silence=0.0, noise=0.0, seed=int(rng.integers(1000)))
+        total += np.roll(np.resize(samples.astype(np.float64), count), int(rng.integers(count)))
     return np.asarray(total / np.sqrt(np.mean(total**2)))
 
 

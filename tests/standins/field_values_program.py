@@ -90,15 +90,15 @@ def with_setter(message_class, field, value):
 
 
 def main():
-    told = {}
+    facts = {}
     for (message_class, field), values in CASES.items():
         for name, value in values.items():
             for way, assign in (
                 ("set", lambda: with_setter(message_class, field, value)),  # noqa: B023 - called at once
                 ("made", lambda: message_class(**{field: value})),  # noqa: B023
             ):
-                told[f"{message_class.__name__}.{field} {way} of {name}"] = came_of(assign, field)
-    print(json.dumps(told))
+                facts[f"{message_class.__name__}.{field} {way} of {name}"] = came_of(assign, field)
+    print(json.dumps(facts))
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ PROGRAM = Path(__file__).with_name("field_values_program.py")
 BASE = {"PATH": os.environ["PATH"], "LINKWRIGHT_DDS": "0"}
 
 
-def told(python=sys.executable, command=(PROGRAM,), **variables):
+def outcomes(python=sys.executable, command=(PROGRAM,), **variables):
     """What came of each assignment: the text of an AssertionError, the name of another error, or type and values."""
     environment = {**BASE, **variables} if python == PYTHON else process.environment({**BASE, **variables})
     done = subprocess.run([python, *command], env=environment, check=False, capture_output=True, text=True, timeout=120)
@@ -32,7 +32,7 @@ def refused(came):
 
 class TestHumble:
     def test_numpy_arrays_are_refused_for_sequences_in_its_words(self):
-        humble = told(ROS_DISTRO="humble")
+        humble = outcomes(ROS_DISTRO="humble")
         assert humble["Image.data set of numpy"] == (
             "The 'data' field must be a set or sequence and each value of type 'int' "
             "and each unsigned integer in [0, 255]"
@@ -41,13 +41,13 @@ class TestHumble:
         assert refused(humble["UnboundedSequences.bool_values set of numpy"])
 
     def test_what_it_takes_is_taken(self):
-        humble = told(ROS_DISTRO="humble")
+        humble = outcomes(ROS_DISTRO="humble")
         assert humble["Image.data set of bytes"] == humble["Image.data set of list"] == ["array", list(range(12))]
         assert humble["JointState.position set of list of numpy's"] == ["array", [0.5, 1.5]]
         assert humble["CameraInfo.k set of numpy"] == ["ndarray", list(range(9))]
 
     def test_constructors_convert(self):
-        humble = told(ROS_DISTRO="humble")
+        humble = outcomes(ROS_DISTRO="humble")
         assert humble["Image.data made of numpy"] == ["array", list(range(12))]
         assert humble["Image.data made of numpy of rows"] == "TypeError"
         assert humble["JointState.position made of array of another type"] == ["array", [0.5]]
@@ -57,7 +57,7 @@ class TestHumble:
 
 @pytest.mark.parametrize("variables", [{}, {"ROS_DISTRO": "humble", ASSUMED: "1"}, {"ROS_DISTRO": "jazzy"}])
 def test_without_it_named_numpy_is_taken(variables):
-    came = told(**variables)
+    came = outcomes(**variables)
     assert came["Image.data set of numpy of rows"] == ["array", list(range(12))]
     assert came["JointState.position made of array of another type"] == ["array", [0.5]]
     assert came["UnboundedSequences.bool_values set of numpy"] == ["list", [True, False]]
@@ -70,15 +70,15 @@ def test_our_own_commands_take_what_they_always_do(tmp_path):
     program.write_text(
         f"{imports}\nimage = Image()\nimage.data = numpy.zeros(2, 'B')\nprint(json.dumps(len(image.data)))\n"
     )
-    assert told(command=(program,), ROS_DISTRO="humble") == 2
+    assert outcomes(command=(program,), ROS_DISTRO="humble") == 2
 
 
 @pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 def test_all_comes_to_the_same_as_with_the_real_classes_that_check():
     """Jazzy's do where they are asked to; setters are those of Humble."""
-    real = told(python=PYTHON, ROS_PYTHON_CHECK_FIELDS="1")
-    assert told(ROS_DISTRO="jazzy", ROS_PYTHON_CHECK_FIELDS="1") == real
-    humble = told(ROS_DISTRO="humble")
+    real = outcomes(python=PYTHON, ROS_PYTHON_CHECK_FIELDS="1")
+    assert outcomes(ROS_DISTRO="jazzy", ROS_PYTHON_CHECK_FIELDS="1") == real
+    humble = outcomes(ROS_DISTRO="humble")
     assert {case: came for case, came in humble.items() if " set of " in case} == {
         case: came for case, came in real.items() if " set of " in case
     }

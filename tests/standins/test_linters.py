@@ -59,10 +59,10 @@ def hide(folder: Path, *names: str) -> str:
 
 
 def test_a_new_package_passes_its_own_tests(package: Path) -> None:
-    status, said = plain_pytest(package)
-    assert status == 0, said
-    assert "2 passed, 1 skipped" in said
-    assert "no copyright header yet" in said
+    status, output = plain_pytest(package)
+    assert status == 0, output
+    assert "2 passed, 1 skipped" in output
+    assert "no copyright header yet" in output
 
 
 def test_rclpy_and_messages_are_imported_without_a_variable(package: Path) -> None:
@@ -81,24 +81,24 @@ def test_rclpy_and_messages_are_imported_without_a_variable(package: Path) -> No
             assert LaunchDescription().entities == []
         """)
     )
-    status, said = plain_pytest(package, "test/test_node.py")
-    assert status == 0, said
+    status, output = plain_pytest(package, "test/test_node.py")
+    assert status == 0, output
 
 
 def test_bad_style_fails_and_is_said(package: Path) -> None:
     (package / "my_nodes" / "first.py").write_text(f"{GOOD}    x = {'1 + ' * 40}1\n")
-    status, said = plain_pytest(package, "test/test_flake8.py")
+    status, output = plain_pytest(package, "test/test_flake8.py")
     assert status == 1
-    assert "2 findings about code style" in said
-    assert "first.py:12:100: E501 line too long" in said
-    assert "first.py:12:5: F841" in said
+    assert "2 findings about code style" in output
+    assert "first.py:12:100: E501 line too long" in output
+    assert "first.py:12:5: F841" in output
 
 
 def test_a_docstring_that_does_not_end_fails(package: Path) -> None:
     (package / "my_nodes" / "first.py").write_text(GOOD.replace("Start it.", "Start it"))
-    status, said = plain_pytest(package, "test/test_pep257.py")
+    status, output = plain_pytest(package, "test/test_pep257.py")
     assert status == 1
-    assert "D400" in said
+    assert "D400" in output
 
 
 def test_headers_are_asked_for_once_the_skip_is_gone(package: Path) -> None:
@@ -110,10 +110,10 @@ def test_headers_are_asked_for_once_the_skip_is_gone(package: Path) -> None:
     assert plain_pytest(package, "test/test_copyright.py")[0] == 0
     (package / "my_nodes" / "second.py").write_text("x = 1\n")
     (package / "my_nodes" / "third.py").write_text("# Copyright 2026 Ada\nx = 1\n")
-    status, said = plain_pytest(package, "test/test_copyright.py")
+    status, output = plain_pytest(package, "test/test_copyright.py")
     assert status == 1
-    assert "second.py: could not find copyright notice" in said
-    assert "third.py: could not find a licence that is known" in said
+    assert "second.py: could not find copyright notice" in output
+    assert "third.py: could not find a licence that is known" in output
 
 
 @pytest.mark.parametrize("name", ["generated/AMENT_IGNORE", "_generated/x", ".generated/x"])
@@ -121,14 +121,14 @@ def test_folders_that_ament_leaves_out_are_left_out(package: Path, name: str) ->
     (package / name).parent.mkdir()
     (package / name).touch()
     (package / name).with_name("bad.py").write_text("import os\n")
-    status, said = plain_pytest(package, "test/test_flake8.py")
-    assert status == 0, said
+    status, output = plain_pytest(package, "test/test_flake8.py")
+    assert status == 0, output
 
 
 def test_a_linter_that_is_not_installed_skips_its_test_and_says_what_to_install(package: Path, tmp_path: Path) -> None:
     hidden = hide(tmp_path / "hidden", "flake8", "pydocstyle")
-    status, said = plain_pytest(package, PYTHONPATH=hidden)
-    assert status == 0, said
-    assert "3 skipped" in said
-    assert "flake8 is not installed beside pytest" in said
-    assert "pydocstyle is not installed beside pytest" in said
+    status, output = plain_pytest(package, PYTHONPATH=hidden)
+    assert status == 0, output
+    assert "3 skipped" in output
+    assert "flake8 is not installed beside pytest" in output
+    assert "pydocstyle is not installed beside pytest" in output

@@ -29,7 +29,7 @@ def run(*arguments, cwd=None, env=None, **variables):
     )
 
 
-def said(*arguments, **options):
+def output_of(*arguments, **options):
     ended = run(*arguments, **options)
     assert ended.returncode == 0, ended.stderr
     return ended.stdout.strip()
@@ -55,30 +55,30 @@ if __name__ == "__main__":
 class TestRunning:
     def test_a_file(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
-        assert said("my_node.py", cwd=tmp_path) == "hello"
+        assert output_of("my_node.py", cwd=tmp_path) == "hello"
 
     @pytest.mark.parametrize("module", ["launch", "xacro"])
     def test_a_folder_of_that_name_does_not_hide_a_stand_in(self, tmp_path, module):
         (tmp_path / module).mkdir()
         program = f"import {module}; print({module}.__spec__.origin)"
-        assert said("-c", program, cwd=tmp_path).endswith(f"{module}.txt")
+        assert output_of("-c", program, cwd=tmp_path).endswith(f"{module}.txt")
 
     def test_a_package_of_that_name_goes_before_a_stand_in(self, tmp_path):
         (tmp_path / "launch").mkdir()
         (tmp_path / "launch" / "__init__.py").write_text("mine = 1")
-        assert said("-c", "import launch; print(launch.mine)", cwd=tmp_path) == "1"
+        assert output_of("-c", "import launch; print(launch.mine)", cwd=tmp_path) == "1"
 
     def test_with_nothing_but_the_path_set(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
         variables = {"PATH": os.environ["PATH"], "PYTHONPATH": process.standin_path(), "LINKWRIGHT_DDS": "0"}
-        assert said("my_node.py", cwd=tmp_path, env=variables) == "hello"
+        assert output_of("my_node.py", cwd=tmp_path, env=variables) == "hello"
 
     def test_a_module(self, tmp_path):
         package = tmp_path / "my_package"
         package.mkdir()
         (package / "__init__.py").touch()
         (package / "my_node.py").write_text(NODE)
-        assert said("-m", "my_package.my_node", cwd=tmp_path) == "hello"
+        assert output_of("-m", "my_package.my_node", cwd=tmp_path) == "hello"
 
     def test_an_entry_point(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
@@ -87,12 +87,12 @@ class TestRunning:
         script.write_text(
             f"import sys\nsys.path.insert(0, {str(tmp_path)!r})\nfrom my_node import main\nsys.exit(main())\n"
         )
-        assert said(script) == "hello"
+        assert output_of(script) == "hello"
 
     def test_a_process_of_a_process(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
         parent = "import subprocess, sys; sys.exit(subprocess.call([sys.executable, 'my_node.py']))"
-        assert said("-c", parent, cwd=tmp_path) == "hello"
+        assert output_of("-c", parent, cwd=tmp_path) == "hello"
 
     @pytest.mark.slow
     def test_a_virtual_environment_of_its_own(self, tmp_path):
@@ -117,11 +117,11 @@ class TestRunning:
             names
         )
         imports = "; ".join(f"import {name}; assert {name}.__file__" for name in names)
-        assert said("-c", f"{imports}; print('all')") == "all"
+        assert output_of("-c", f"{imports}; print('all')") == "all"
 
     def test_interfaces(self, tmp_path):
         code = "from sensor_msgs.msg import JointState; from std_srvs.srv import SetBool; print(JointState.__name__)"
-        assert said("-c", code, cwd=tmp_path) == "JointState"
+        assert output_of("-c", code, cwd=tmp_path) == "JointState"
 
     def test_interfaces_of_the_workspace_without_a_build(self, tmp_path):
         package = tmp_path / "src" / "my_robot"
@@ -132,9 +132,9 @@ class TestRunning:
             "<maintainer email='a@example.com'>a</maintainer><license>MIT</license></package>"
         )
         code = "from my_robot.msg import Count; print(Count(number=3, names=['a']))"
-        assert said("-c", code, cwd=tmp_path) == "my_robot.msg.Count(number=3, names=['a'])"
+        assert output_of("-c", code, cwd=tmp_path) == "my_robot.msg.Count(number=3, names=['a'])"
         # Where Python takes the folders for packages.
-        assert said("-c", code, cwd=tmp_path / "src") == "my_robot.msg.Count(number=3, names=['a'])"
+        assert output_of("-c", code, cwd=tmp_path / "src") == "my_robot.msg.Count(number=3, names=['a'])"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT to send")
@@ -165,9 +165,9 @@ class TestInterrupt:
             node.create_timer(0.01, lambda: signal.raise_signal(signal.SIGINT))
             rclpy.spin(node)
             """
-        said = self.interrupted(tmp_path, code)
-        assert "node.py" in said
-        assert said.endswith("KeyboardInterrupt\n")
+        output = self.interrupted(tmp_path, code)
+        assert "node.py" in output
+        assert output.endswith("KeyboardInterrupt\n")
 
 
 class TestManners:
@@ -182,7 +182,7 @@ class TestManners:
             print([name for name in sys.modules if "linkwright" in name or name in ("numpy", "importlib.util")])
             """
         others = find_spec("sitecustomize") is not None  # the machine's own, as Ubuntu has it, which ours runs
-        assert said("-c", textwrap.dedent(code)) == ("['importlib.util']" if others else "[]")
+        assert output_of("-c", textwrap.dedent(code)) == ("['importlib.util']" if others else "[]")
 
     def test_a_module_that_is_missing_is_missing(self):
         ended = run("-c", "import rclpy_of_another_kind")
@@ -216,7 +216,7 @@ class TestManners:
     def test_the_next_sitecustomize_runs(self, tmp_path):
         (tmp_path / "sitecustomize.py").write_text("WAS_RUN = 'yes'\n")
         code = "import sitecustomize; print(sitecustomize.WAS_RUN); import rclpy"
-        assert said("-c", code, PYTHONPATH=str(tmp_path)) == "yes"
+        assert output_of("-c", code, PYTHONPATH=str(tmp_path)) == "yes"
 
     def test_a_real_rclpy_is_used_and_nothing_of_ours_beside_it(self, tmp_path):
         for name in ("rclpy", "std_msgs"):
@@ -232,7 +232,7 @@ class TestManners:
                     print(error)
             import tf_transformations
             """
-        assert said("-c", textwrap.dedent(code), PYTHONPATH=str(tmp_path)).splitlines() == [
+        assert output_of("-c", textwrap.dedent(code), PYTHONPATH=str(tmp_path)).splitlines() == [
             "True True",
             "No module named 'tf2_ros'",
             "No module named 'sensor_msgs'",

@@ -120,14 +120,14 @@ class TestParameters:
         assert [get_parameter_value(text).string_value for text in ("", " ")] == ["", " "]
 
     def test_events_by_the_callbacks_of_a_handler(self, node):
-        handler, told = ParameterEventHandler(node), []
-        first = handler.add_parameter_callback("a", "", lambda each: told.append(("first", each.name)))
-        handler.add_parameter_callback("a", "node", lambda each: told.append(("second", each.name)))
-        everything = handler.add_parameter_event_callback(lambda event: told.append(("event", event.node)))
+        handler, received = ParameterEventHandler(node), []
+        first = handler.add_parameter_callback("a", "", lambda each: received.append(("first", each.name)))
+        handler.add_parameter_callback("a", "node", lambda each: received.append(("second", each.name)))
+        everything = handler.add_parameter_event_callback(lambda event: received.append(("event", event.node)))
         assert set(handler._callbacks.parameter_callbacks) == {("a", "/ns/node")}
         event = ParameterEvent(node="/ns/node", new_parameters=[Parameter("a", value=1).to_parameter_msg()])
         handler._callbacks.event_callback(event)
-        assert told == [("second", "a"), ("first", "a"), ("event", "/ns/node")]
+        assert received == [("second", "a"), ("first", "a"), ("event", "/ns/node")]
         handler.remove_parameter_callback(first)
         handler.remove_parameter_event_callback(everything)
         with pytest.raises(RuntimeError, match="doesn't exist"):
@@ -174,14 +174,14 @@ class TestTime:
 
     @pytest.mark.parametrize("wrapped", [lambda callback: callback, functools.partial])
     def test_a_timer_that_tells(self, node, wrapped):
-        told = []
+        messages = []
 
         def callback(info: TimerInfo) -> None:
-            told.append(info)
+            messages.append(info)
 
         with node.create_timer(0.001, wrapped(callback)) as timer:
             rclpy.spin_once(node, timeout_sec=60)
-            assert told[0].expected_call_time.clock_type == timer.clock.clock_type
+            assert messages[0].expected_call_time.clock_type == timer.clock.clock_type
         assert timer not in node.timers
 
     def test_sleep_needs_a_context_that_is_initialised(self, node):
@@ -354,13 +354,13 @@ class TestServiceIntrospection:
 
 
 def test_exceptions_are_called_as_those_of_rclpy():
-    said = subprocess.run(
+    output = subprocess.run(
         [sys.executable, "-c", "import rclpy\nrclpy.init()\nrclpy.create_node('a b')"],
         env=process.environment() | {"ROS_DOMAIN_ID": "142"},
         capture_output=True,
         text=True,
         check=False,
     )
-    assert said.stderr.splitlines()[-1].startswith("rclpy.exceptions.InvalidNodeNameException: 'a b' is not a valid")
+    assert output.stderr.splitlines()[-1].startswith("rclpy.exceptions.InvalidNodeNameException: 'a b' is not a valid")
     assert repr(rclpy.executors.ExternalShutdownException) == "<class 'rclpy.executors.ExternalShutdownException'>"
     assert repr(rclpy.exceptions.InvalidHandle) == "<class 'rclpy._rclpy_pybind11.InvalidHandle'>"

@@ -135,8 +135,8 @@ def start(folder, name, program, surroundings):
 def test_everything_between_two_processes(tmp_path, surroundings):
     server = start(tmp_path, "server", SERVER, surroundings)
     with server:
-        said = server.stdout.readline()
-        assert said == "ready\n", server.communicate(timeout=60)[1]
+        printed = server.stdout.readline()
+        assert printed == "ready\n", server.communicate(timeout=60)[1]
         client = start(tmp_path, "client", CLIENT, surroundings)
         output, errors = client.communicate(timeout=60)
         server.send_signal(signal.SIGINT)

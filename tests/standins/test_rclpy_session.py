@@ -75,12 +75,12 @@ class TestContexts:
             rclpy.init(args=[], domain_id=-1)
 
     def test_what_wants_to_know_the_end(self):
-        context, told = Context(), []
+        context, text = Context(), []
         rclpy.init(args=[], context=context)
-        context.on_shutdown(lambda: told.append(1))
+        context.on_shutdown(lambda: text.append(1))
         context.shutdown()
-        context.on_shutdown(lambda: told.append(2))
-        assert told == [1, 2]
+        context.on_shutdown(lambda: text.append(2))
+        assert text == [1, 2]
         with pytest.raises(TypeError):
             context.on_shutdown(3)
 

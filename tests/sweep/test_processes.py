@@ -85,12 +85,12 @@ def test_ctrl_c_keeps_what_is_done_and_resume_goes_on(tmp_path):
     try:
         wait_until((tmp_path / "held").exists)
         os.kill(process.pid, signal.SIGINT)
-        printed, said = process.communicate()
+        printed, output = process.communicate()
     finally:
         process.kill()
         process.wait()
     assert process.returncode == 130
-    assert b"2 runs are left; `--resume` continues the sweep" in said
+    assert b"2 runs are left; `--resume` continues the sweep" in output
     assert b"Created file squares.csv" in printed
     assert (tmp_path / "squares.csv").read_text() == "row,n,seed,square,error\n1,1,0,1,\n"
     (tmp_path / "go").write_text("")
@@ -154,7 +154,7 @@ def test_bad_input_is_one_error(tmp_path, monkeypatch, capsys, words, code):
     monkeypatch.chdir(tmp_path)
     write(tmp_path, SQUARES)
     assert main(["sweep", *words]) == 1
-    said = capsys.readouterr().err
-    assert said.count("error[") == 1
-    assert f"error[{code}]" in said
+    output = capsys.readouterr().err
+    assert output.count("error[") == 1
+    assert f"error[{code}]" in output
     assert [path.name for path in tmp_path.iterdir() if path.name != "__pycache__"] == ["squares.py"]

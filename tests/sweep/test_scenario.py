@@ -110,13 +110,13 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("told", "text"), BAD.items(), ids=range(len(BAD)))
-def test_a_bad_scenario_is_one_error(tmp_path, monkeypatch, told, text):
+@pytest.mark.parametrize(("message", "text"), BAD.items(), ids=range(len(BAD)))
+def test_a_bad_scenario_is_one_error(tmp_path, monkeypatch, message, text):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(LinkwrightError) as raised:
         loaded(tmp_path, text)
     (found,) = raised.value.diagnostics
-    assert f"{found.code} {found.span or ''} {found.message}" == told
+    assert f"{found.code} {found.span or ''} {found.message}" == message
 
 
 @pytest.mark.parametrize("name", ["none.py", "drive.yaml", "."])

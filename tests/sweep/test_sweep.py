@@ -43,14 +43,14 @@ def rows_of(path):
 def swept(tmp_path, text=SQUARES, name="out.csv", until=None, resume=False):
     scenario = loaded(tmp_path, text)
     sweep = Sweep(scenario, tmp_path / name, ["linkwright", "sweep", "squares.py"])
-    told = []
-    table = sweep.run(backwards(scenario, until), resume=resume, progress=lambda *state: told.append(state))
-    return table, told
+    messages = []
+    table = sweep.run(backwards(scenario, until), resume=resume, progress=lambda *state: messages.append(state))
+    return table, messages
 
 
 def test_rows_are_in_their_order_whichever_came_first(tmp_path):
-    table, told = swept(tmp_path)
-    assert told[-1] == (6, 6, 0)
+    table, result = swept(tmp_path)
+    assert result[-1] == (6, 6, 0)
     rows = rows_of(tmp_path / "out.csv")
     assert [row["row"] for row in rows] == ["1", "2", "3", "4", "5", "6"]
     assert list(rows[0]) == ["row", "n", "drawn", "seed", "square", "big", "sum", "error"]
@@ -61,8 +61,8 @@ def test_rows_are_in_their_order_whichever_came_first(tmp_path):
 
 
 def test_a_run_that_fails_is_a_row_with_its_error(tmp_path):
-    table, told = swept(tmp_path, MIXED)
-    assert told[-1] == (4, 4, 1)
+    table, result = swept(tmp_path, MIXED)
+    assert result[-1] == (4, 4, 1)
     assert table.failed == [1]
     rows = rows_of(tmp_path / "out.csv")
     assert rows[1]["error"] == "RuntimeError: <no> way (squares.py:6)"
@@ -91,8 +91,8 @@ def test_what_was_interrupted_goes_on_and_ends_with_the_same_bytes(tmp_path):
     journal = interrupted / "out.csv.unfinished"
     with journal.open("a") as file:
         file.write('{"row": 3, "resul')  # the power went
-    table, told = swept(interrupted, resume=True)
-    assert told[0] == (4, 6, 0)
+    table, output = swept(interrupted, resume=True)
+    assert output[0] == (4, 6, 0)
     assert not journal.exists()
     for name in ("out.csv", "out.html"):
         assert (interrupted / name).read_bytes() == (whole / name).read_bytes()

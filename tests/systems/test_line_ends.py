@@ -27,8 +27,8 @@ def packages(request, tmp_path, monkeypatch) -> Path:
 
 def test_packages_are_checked_without_a_finding(packages, capfd):
     assert main(["check", PACKAGE.name, GAZEBO_PACKAGE.name]) == 0
-    said = capfd.readouterr()
-    assert said.out + said.err == "0 errors, 0 warnings\n"
+    output = capfd.readouterr()
+    assert output.out + output.err == "0 errors, 0 warnings\n"
 
 
 def test_xacro_writes_the_same(packages, capfd):
@@ -50,5 +50,5 @@ def test_a_wrong_frame_is_found_and_named(packages, capfd):
     file = packages / PACKAGE.name / "rviz" / "urdf.rviz"
     file.write_bytes(file.read_bytes().replace(b"Fixed Frame: base_link", b"Fixed Frame: base_lnk"))
     main(["check", PACKAGE.name])
-    said = capfd.readouterr()
-    assert "no robot in this package has a link 'base_lnk'" in said.out + said.err
+    output = capfd.readouterr()
+    assert "no robot in this package has a link 'base_lnk'" in output.out + output.err

@@ -65,7 +65,7 @@ def elsewhere(request, tmp_path):
     return start
 
 
-def said(process: subprocess.Popen[str]) -> str:
+def output_of(process: subprocess.Popen[str]) -> str:
     """What a command printed, which has to end well."""
     out, error = process.communicate(timeout=120)
     assert process.returncode == 0, out + error
@@ -74,15 +74,19 @@ def said(process: subprocess.Popen[str]) -> str:
 
 def test_every_module_can_be_imported(elsewhere, tmp_path):
     (tmp_path / "import_all.py").write_text(IMPORT_ALL, encoding="utf-8")
-    assert said(elsewhere(module="import_all")).splitlines()[-1] == "all"
+    assert output_of(elsewhere(module="import_all")).splitlines()[-1] == "all"
 
 
 def test_commands_work(elsewhere, tmp_path):
-    assert "base_link" in said(elsewhere("check", ROBOT))
-    assert said(elsewhere("xacro", PACKAGE / "urdf" / "mbot_gazebo.xacro", "laser:=true")).rstrip().endswith("</robot>")
-    said(elsewhere("pkg", "create", "arm", "--build-type", "ament_python", "--license", "MIT"))
+    assert "base_link" in output_of(elsewhere("check", ROBOT))
+    assert (
+        output_of(elsewhere("xacro", PACKAGE / "urdf" / "mbot_gazebo.xacro", "laser:=true"))
+        .rstrip()
+        .endswith("</robot>")
+    )
+    output_of(elsewhere("pkg", "create", "arm", "--build-type", "ament_python", "--license", "MIT"))
     assert (tmp_path / "arm" / "package.xml").is_file()
-    assert "base_link" in said(elsewhere("inertia", ROBOT))
+    assert "base_link" in output_of(elsewhere("inertia", ROBOT))
 
 
 def test_the_page_answers_and_ctrl_c_ends_it(elsewhere):
@@ -110,7 +114,7 @@ def test_processes_of_a_launch_are_ended_without_complaint(elsewhere, tmp_path, 
 
 def test_a_world_is_simulated(elsewhere):
     pytest.importorskip("mujoco")
-    said(elsewhere("sim", "empty", ROBOT, "--headless", "--seconds", "0.5"))
+    output_of(elsewhere("sim", "empty", ROBOT, "--headless", "--seconds", "0.5"))
 
 
 @pytest.mark.parametrize(

@@ -56,9 +56,9 @@ def test_wheels_that_begin_to_turn_do_not_slip_away_from_their_odometry(linear, 
         test.advance(1.0)
         x, y, _, *rotation = test.robot_pose()
         pose = odometry.last.pose.pose
-        told = [getattr(pose.orientation, name) for name in "xyzw"]
+        result = [getattr(pose.orientation, name) for name in "xyzw"]
         assert [x, y] == pytest.approx([pose.position.x, pose.position.y], abs=1e-3)
-        assert rpy_from_quaternion(rotation)[2] == pytest.approx(rpy_from_quaternion(told)[2], abs=1e-3)
+        assert rpy_from_quaternion(rotation)[2] == pytest.approx(rpy_from_quaternion(result)[2], abs=1e-3)
 
 
 def _driven(seed: int) -> tuple[list[bytes], list[float]]:

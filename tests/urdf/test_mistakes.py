@@ -25,20 +25,20 @@ def test_the_page_was_understood():
     assert len(MISTAKES) == PAGE.count("\n### ") > 80
 
 
-@pytest.mark.parametrize(("text", "said"), MISTAKES)
-def test_mistake(text, said):
-    assert describe(text) == said
+@pytest.mark.parametrize(("text", "message"), MISTAKES)
+def test_mistake(text, message):
+    assert describe(text) == message
 
 
-@pytest.mark.parametrize(("text", "said"), MISTAKES)
-def test_urdfdom_keeps_the_robot_and_complains_where_we_do(text, said, request):
+@pytest.mark.parametrize(("text", "message"), MISTAKES)
+def test_urdfdom_keeps_the_robot_and_complains_where_we_do(text, message, request):
     title = request.node.callspec.id
     urdfdom = VERDICTS[title]
     if title in NO_TREES:
         assert (urdfdom["accepts"], urdfdom["errors"]) == (True, [])
         return
-    assert urdfdom["accepts"] == said.endswith("robot: kept")
-    assert bool(urdfdom["errors"]) == ("error URDF" in said)
+    assert urdfdom["accepts"] == message.endswith("robot: kept")
+    assert bool(urdfdom["errors"]) == ("error URDF" in message)
 
 
 def test_every_code_of_the_reader_is_shown():

@@ -46,7 +46,7 @@ class ManagedPeer(LifecycleNode):
         self._asking[action] = client  # another one would have to be found by the server first, to get feedback
         assert client.wait_for_server(SECONDS)
         sent = client.send_goal_async(
-            Fibonacci.Goal(order=order), feedback_callback=lambda said: feedback.append(list(said.feedback.sequence))
+            Fibonacci.Goal(order=order), feedback_callback=lambda text: feedback.append(list(text.feedback.sequence))
         )
         goal = result_of(sent)
         if not goal.accepted:
@@ -57,10 +57,10 @@ class ManagedPeer(LifecycleNode):
             while len(feedback) < cancel_after and time.monotonic() < until:
                 time.sleep(0.01)
             assert len(result_of(goal.cancel_goal_async()).goals_canceling) == 1
-        told = result_of(result)
+        answer = result_of(result)
         names = {getattr(GoalStatus, f"STATUS_{name}"): name for name in ("SUCCEEDED", "ABORTED", "CANCELED")}
-        sequence = list(told.result.sequence)
-        return {"accepted": True, "status": names[told.status], "sequence": sequence, "feedback": feedback}
+        sequence = list(answer.result.sequence)
+        return {"accepted": True, "status": names[answer.status], "sequence": sequence, "feedback": feedback}
 
     def acts_are_right(self, action: str, count: int) -> int:
         """How many of many goals had the result that was meant for them."""
@@ -75,7 +75,7 @@ class ManagedPeer(LifecycleNode):
         self.create_subscription(
             TransitionEvent,
             f"/{node}/transition_event",
-            lambda said: self.changes.append([node, said.start_state.label, said.goal_state.label]),
+            lambda text: self.changes.append([node, text.start_state.label, text.goal_state.label]),
             10,
         )
 

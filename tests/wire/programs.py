@@ -78,14 +78,14 @@ class Program:
     def answer(self, seconds: float = SECONDS) -> Any:
         """What it says next; at once an error when it has ended."""
         try:
-            said = self._answers.get(timeout=seconds)
+            result = self._answers.get(timeout=seconds)
         except Empty:
-            said = ""
-        if not said:
+            result = ""
+        if not result:
             self.process.kill()
             self._reader.join()
             raise AssertionError(f"silence; its errors: {self.process.communicate()[1]}")
-        return json.loads(said)
+        return json.loads(result)
 
     def kill(self) -> None:
         """End it as ``kill -9`` does."""

@@ -43,7 +43,7 @@ class QosPeer(Node):
         self.create_subscription(
             String,
             topic,
-            lambda said: heard.append(said.data),
+            lambda text: heard.append(text.data),
             profile(qos),
             event_callbacks=self._callbacks(SubscriptionEventCallbacks, topic),
         )
@@ -76,16 +76,16 @@ class QosPeer(Node):
         return self.count_publishers(topic)
 
     def _callbacks(self, kind: Any, topic: str) -> Any:
-        told = self._told.setdefault(topic, [])
+        received = self._told.setdefault(topic, [])
         callbacks = {
-            "incompatible_qos": lambda info: told.append(["incompatible", int(info.last_policy_kind)]),
-            "deadline": lambda info: told.append(["deadline", info.total_count]),
-            "matched": lambda info: told.append(["matched", info.current_count]),
+            "incompatible_qos": lambda info: received.append(["incompatible", int(info.last_policy_kind)]),
+            "deadline": lambda info: received.append(["deadline", info.total_count]),
+            "matched": lambda info: received.append(["matched", info.current_count]),
         }
         if kind is PublisherEventCallbacks:
-            callbacks["liveliness"] = lambda info: told.append(["lost", info.total_count])
+            callbacks["liveliness"] = lambda info: received.append(["lost", info.total_count])
         else:
-            callbacks["liveliness"] = lambda info: told.append(["alive", info.alive_count, info.not_alive_count])
+            callbacks["liveliness"] = lambda info: received.append(["alive", info.alive_count, info.not_alive_count])
         return kind(**callbacks)
 
 

@@ -45,13 +45,13 @@ class SdkPeer:
 
     def call(self, clients: int, each: int) -> list[list[str | None]]:
         """What several clients are told, each of which asks so many times, all at once."""
-        told: list[list[str | None]] = [[] for _ in range(clients)]
+        messages: list[list[str | None]] = [[] for _ in range(clients)]
 
         def ask(which: int) -> None:
             client = ROS2ServiceClient("/flip", node_name=f"{self.name}_{which}", **FLIP)
             for number in range(each):
                 response = client.call(data=number % 2 == 1)
-                told[which].append(None if response is None else f"{response.success} {response.message}")
+                messages[which].append(None if response is None else f"{response.success} {response.message}")
             client.close()
 
         asking = [threading.Thread(target=ask, args=(which,)) for which in range(clients)]
@@ -59,7 +59,7 @@ class SdkPeer:
             thread.start()
         for thread in asking:
             thread.join()
-        return told
+        return messages
 
 
 def main() -> None:

@@ -111,9 +111,9 @@ def test_a_process_of_this_machine_is_known_by_the_name_and_the_id_of_the_machin
     """Fast DDS 3 tells the id, Fast DDS 2 and Cyclone tell the name."""
     here = socket.gethostname()
     monkeypatch.setattr(discovery, "machine_id", lambda: "3d12")
-    for told in ("3d12", f"{here}:0", here):
-        properties = {"fastdds.physical_data.host": told, "fastdds.physical_data.process": "42"}
-        assert next(discovery.announced_processes(lambda name, told=properties: told.get(name, ""))) == (here, "42")
+    for text in ("3d12", f"{here}:0", here):
+        properties = {"fastdds.physical_data.host": text, "fastdds.physical_data.process": "42"}
+        assert next(discovery.announced_processes(lambda name, text=properties: text.get(name, ""))) == (here, "42")
     elsewhere = {"__Hostname": "elsewhere", "__Pid": "42"}
     assert list(discovery.announced_processes(lambda name: elsewhere.get(name, ""))) == [("", ""), ("elsewhere", "42")]
 

@@ -26,7 +26,7 @@ class Once:
         return self.call(*arguments)
 
 
-def told(process, what):
+def warnings_of(process, what):
     return [
         text
         for text in process.warnings()
@@ -50,7 +50,7 @@ def test_a_message_that_fails_on_its_way_in_takes_no_other_with_it(processes):
         publisher.publish(String(data=word))
     b.spin_until(lambda: len(got) == 2)
     assert got == ["two", "three"]
-    assert len(told(b, "callback of topic '/chatter' failed:")) == 1
+    assert len(warnings_of(b, "callback of topic '/chatter' failed:")) == 1
 
 
 def test_who_watches_the_graph_and_fails_keeps_nobody_from_knowing_it(processes):
@@ -65,8 +65,8 @@ def test_who_watches_the_graph_and_fails_keeps_nobody_from_knowing_it(processes)
     client = a.node.create_client(SetBool, "flip")
     assert client.wait_for_service(60)
     wait_until(lambda: "b" in a.node.get_node_names())
-    wait_until(lambda: told(a, "a callback for changes outside failed:"))
-    assert len(told(a, "a callback for changes of the graph failed:")) == 1
+    wait_until(lambda: warnings_of(a, "a callback for changes outside failed:"))
+    assert len(warnings_of(a, "a callback for changes of the graph failed:")) == 1
     assert after.calls > 1
 
 
@@ -86,8 +86,8 @@ def test_a_request_and_a_response_that_fail_on_their_way_in_are_told(processes):
     b.spin_until(both_spin)
     assert futures[2].result().success
     assert not futures[0].done()
-    assert told(b, "callback of service '/flip' failed:")
-    assert told(a, "client of service '/flip' failed:")
+    assert warnings_of(b, "callback of service '/flip' failed:")
+    assert warnings_of(a, "client of service '/flip' failed:")
 
 
 def unfit(message, value):

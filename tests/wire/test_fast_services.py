@@ -12,7 +12,7 @@ from linkwright.messages import get_service, serialize
 from linkwright.wire.dds.fast_services import EarlyRequest, FastClient, FastServer
 from linkwright.wire.dds.rtps.messages import Data
 from linkwright.wire.dds.rtps.values import read_parameters, related_identity
-from tests.wire.test_failures import Once, told
+from tests.wire.test_failures import Once, warnings_of
 
 SetCameraInfo = get_service("sensor_msgs/srv/SetCameraInfo")
 LARGE = "x" * 300_000
@@ -180,7 +180,7 @@ def test_what_fails_in_the_thread_of_the_participant_is_told_and_the_next_is_ans
     client.announce = Once(client.announce)
     futures = [client.call_async(says(text)) for text in ("one", "two")]
     us.spin_until(lambda: all(future.done() for future in futures))
-    assert told(us, "client of service '/fast_echo' failed:")
+    assert warnings_of(us, "client of service '/fast_echo' failed:")
     seen = []
     monkeypatch.setattr(threading, "excepthook", lambda hook: seen.append((hook.thread.name, str(hook.exc_value))))
     participant = us.transport._engine._fast

@@ -73,12 +73,12 @@ def test_a_sample_arrives_under_the_name_of_the_writer():
     packets = [reader.recv(0x1_0000) for _ in range(3)]
     pacer.stop(0.0)
     reader.close()
-    fragments = [said for packet in packets for said in parse(packet, READER[:12])]
-    assert [(said.writer, said.number, said.first, said.size) for said in fragments] == [
+    fragments = [text for packet in packets for text in parse(packet, READER[:12])]
+    assert [(text.writer, text.number, text.first, text.size) for text in fragments] == [
         (WRITER, 7, which, len(LARGE)) for which in (1, 2, 3)
     ]
-    assert {said.time for said in fragments} == {5_000_000_000}
-    assert b"".join(said.payload for said in fragments) == LARGE
+    assert {text.time for text in fragments} == {5_000_000_000}
+    assert b"".join(text.payload for text in fragments) == LARGE
     assert not list(parse(packets[0], WRITER[:12]))  # it is for the participant of the reader alone
 
 
@@ -184,7 +184,7 @@ def test_an_image_goes_packet_by_packet_and_then_by_cyclone(processes, monkeypat
         assert publisher.wait_for_all_acked()
         them.spin_until(lambda: len(got) == 3)
         assert got == images
-    assert [(said.number, said.first) for said in fragments] == [(1, 1), (1, 2), (3, 1), (3, 2)]
-    assert {said.writer for said in fragments} == {publisher.gid}
-    paced = b"".join(said.payload for said in fragments[:2])
+    assert [(text.number, text.first) for text in fragments] == [(1, 1), (1, 2), (3, 1), (3, 2)]
+    assert {text.writer for text in fragments} == {publisher.gid}
+    paced = b"".join(text.payload for text in fragments[:2])
     assert deserialize(paced, Image) == images[0]

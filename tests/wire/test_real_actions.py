@@ -39,8 +39,8 @@ def peers(programs):
 def test_a_goal_is_carried_out_with_its_feedback(peers, asking, asked, server_is_first):
     first, second = (asked, asking) if server_is_first else (asking, asked)
     both = {first: peers(first), second: peers(second)}
-    told = both[asking].ask("act", f"/{asked}/fibonacci", 5)
-    assert (told["accepted"], told["status"], told["sequence"]) == (True, "SUCCEEDED", [0, 1, 1, 2, 3, 5])
+    message = both[asking].ask("act", f"/{asked}/fibonacci", 5)
+    assert (message["accepted"], message["status"], message["sequence"]) == (True, "SUCCEEDED", [0, 1, 1, 2, 3, 5])
 
 
 @pytest.mark.parametrize(("asking", "asked"), SIDES)
@@ -50,10 +50,10 @@ def test_goals_are_refused_aborted_and_cancelled(peers, asking, asked):
     action = f"/{asked}/fibonacci"
     assert asks.ask("act", action, -1) == {"accepted": False}
     assert asks.ask("act", action, 0)["status"] == "ABORTED"
-    told = asks.ask("act", action, 500, 3)
-    assert told["status"] == "CANCELED"
-    assert 4 < len(told["sequence"]) < 500
-    assert told["feedback"][0] == [0, 1, 1]
+    message = asks.ask("act", action, 500, 3)
+    assert message["status"] == "CANCELED"
+    assert 4 < len(message["sequence"]) < 500
+    assert message["feedback"][0] == [0, 1, 1]
 
 
 @pytest.mark.parametrize(("asking", "asked"), SIDES)

@@ -123,13 +123,13 @@ def test_goals_are_carried_out_refused_aborted_and_cancelled(bridge, peer, askin
     bridge()
     asks = both(peer, "managed_peer")[asking]
     action = f"/{asked}/fibonacci"
-    told = asks.ask("act", action, 5)
-    assert (told["accepted"], told["status"], told["sequence"]) == (True, "SUCCEEDED", [0, 1, 1, 2, 3, 5])
+    message = asks.ask("act", action, 5)
+    assert (message["accepted"], message["status"], message["sequence"]) == (True, "SUCCEEDED", [0, 1, 1, 2, 3, 5])
     assert asks.ask("act", action, -1) == {"accepted": False}
     assert asks.ask("act", action, 0)["status"] == "ABORTED"
-    told = asks.ask("act", action, 500, 3)
-    assert told["status"] == "CANCELED"
-    assert told["feedback"]
+    message = asks.ask("act", action, 500, 3)
+    assert message["status"] == "CANCELED"
+    assert message["feedback"]
     assert asks.ask("acts_are_right", action, 20) == 20
 
 
@@ -192,10 +192,10 @@ def test_the_verbs_tell_of_what_is_beyond_the_bridge(bridge, peer, monkeypatch):
     say_until_heard(sides["theirs"], sides["ours"], "we know each other")
     monkeypatch.setenv("RMW_IMPLEMENTATION", RMW["ours"])
     assert {"/ours", "/theirs"} <= set(linkwright("node", "list")[0].splitlines())
-    told = linkwright("topic", "info", "-v", "/images_from_ros")[0]
-    assert "Publisher count: 1" in told
-    assert "Node name: theirs" in told
-    assert "Subscription count: 1" in told
+    output = linkwright("topic", "info", "-v", "/images_from_ros")[0]
+    assert "Publisher count: 1" in output
+    assert "Node name: theirs" in output
+    assert "Subscription count: 1" in output
     assert linkwright("param", "get", "/theirs", "speed")[0] == "Double value is: 1.5\n"
     called = linkwright("service", "call", "/theirs_flip", "std_srvs/srv/SetBool", "{data: false}")[0]
     assert "message='by ROS'" in called

@@ -92,8 +92,8 @@ def test_those_and_only_those_that_fit_hear_each_other(peers, says, hears):
         publishes.ask("keep_saying", topic, 1.0)
     for topic, fit in fits.items():
         for each in (publishes, subscribes):
-            told = each.ask_until(partial(told_that, "matched" if fit else "incompatible"), "told", topic)
-            assert not told_that("incompatible" if fit else "matched", told)
+            answer = each.ask_until(partial(told_that, "matched" if fit else "incompatible"), "told", topic)
+            assert not told_that("incompatible" if fit else "matched", answer)
     for topic, fit in fits.items():
         if fit:
             subscribes.ask_until(bool, "heard", topic)
@@ -135,7 +135,7 @@ def test_a_deadline_that_is_missed_is_told_on_both_sides(peers, says, hears):
         assert missed(each, "/topic") == 0
     publishes.ask("fall_silent", "/topic")
     for each in (publishes, subscribes):
-        each.ask_until(lambda told: [kind for kind, *_ in told].count("deadline") >= 2, "told", "/topic")
+        each.ask_until(lambda text: [kind for kind, *_ in text].count("deadline") >= 2, "told", "/topic")
         assert missed(each, "/silent") == 0
 
 
@@ -153,11 +153,11 @@ def test_liveliness_is_lost_and_found_again(peers, says, hears):
     subscribes.ask("subscription", "/topic", by_hand)
     publishes.ask_until(lambda counts: counts["/topic"] == 1, "listeners")
     publishes.ask("assert_liveliness", "/topic")
-    subscribes.ask_until(lambda told: ["alive", 1, 0] in told, "told", "/topic")
-    subscribes.ask_until(lambda told: ["alive", 0, 1] in told, "told", "/topic")
-    publishes.ask_until(lambda told: "lost" in [kind for kind, *_ in told], "told", "/topic")
+    subscribes.ask_until(lambda text: ["alive", 1, 0] in text, "told", "/topic")
+    subscribes.ask_until(lambda text: ["alive", 0, 1] in text, "told", "/topic")
+    publishes.ask_until(lambda text: "lost" in [kind for kind, *_ in text], "told", "/topic")
     publishes.ask("say", "/topic", "still here")
-    subscribes.ask_until(lambda told: told.count(["alive", 1, 0]) >= 2, "told", "/topic")
+    subscribes.ask_until(lambda text: text.count(["alive", 1, 0]) >= 2, "told", "/topic")
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
@@ -165,10 +165,10 @@ def test_a_publisher_that_is_killed_is_no_longer_alive(peers, says, hears):
     publishes, subscribes = peers(says), peers(hears)
     publishes.ask("publisher", "/topic", LIVELY)
     subscribes.ask("subscription", "/topic", LIVELY)
-    subscribes.ask_until(lambda told: ["alive", 1, 0] in told, "told", "/topic")
+    subscribes.ask_until(lambda text: ["alive", 1, 0] in text, "told", "/topic")
     publishes.kill()
-    subscribes.ask_until(lambda told: told[-1][:2] == ["alive", 0] or ["alive", 0, 1] in told, "told", "/topic")
-    subscribes.ask_until(lambda told: ["matched", 0] in told, "told", "/topic")
+    subscribes.ask_until(lambda text: text[-1][:2] == ["alive", 0] or ["alive", 0, 1] in text, "told", "/topic")
+    subscribes.ask_until(lambda text: ["matched", 0] in text, "told", "/topic")
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)

@@ -203,8 +203,8 @@ def test_our_endpoints_have_their_node_and_their_type_hash(processes, real_node)
     real = real_node()
     published = real.ask_until(lambda found: "/named" in found, "published_by", "ours")
     assert published["/named"] == ["std_msgs/msg/String"]
-    (told,) = real.ask("hashes", "/named")
-    assert type_hash(String).removeprefix("RIHS01_") in told
+    (message,) = real.ask("hashes", "/named")
+    assert type_hash(String).removeprefix("RIHS01_") in message
     # Whose an endpoint is comes in another message than the endpoint itself.
     publishers = us.node.get_publishers_info_by_topic
     us.spin_until(lambda: [info.node_name for info in publishers("/from_ros")] == ["real_node"])
@@ -218,8 +218,8 @@ def test_a_mismatch_of_quality_of_service_is_told_on_both_sides(processes, real_
     us.spin_until(lambda: len([text for text in us.warnings() if "incompatible QoS" in text]) == 2)
     assert any("RELIABILITY" in text and "'/real_node'" in text for text in us.warnings())
     assert any("DURABILITY" in text and "'/real_node'" in text for text in us.warnings())
-    told = real.ask_until(lambda told: len(told) == 2, "mismatches")
-    assert sorted(told) == ["publisher", "subscription"]
+    answer = real.ask_until(lambda answer: len(answer) == 2, "mismatches")
+    assert sorted(answer) == ["publisher", "subscription"]
 
 
 def test_one_that_is_killed_is_gone_long_before_its_lease_is_over(processes, real_node):

@@ -67,7 +67,7 @@ def test_ours_are_heard_there(processes, theirs):
     moving.sendTransform(transform("odom", "base", 0.25))
     assert peer.ask_until(bool, "heard", "/tf") == {"base": ["odom", 0.25]}
     assert all(
-        type_hash("tf2_msgs/msg/TFMessage").removeprefix("RIHS01_") in told for told in peer.ask("hashes", "/tf")
+        type_hash("tf2_msgs/msg/TFMessage").removeprefix("RIHS01_") in text for text in peer.ask("hashes", "/tf")
     )
 
 
@@ -105,5 +105,5 @@ def test_messages_and_services_of_a_package_of_ones_own(programs, tmp_path, says
     assert both[says].ask("ask", "wire_msgs/srv/Judge", SEEDS) == responses
     assert both[hears].ask("asked", "wire_msgs/srv/Judge") == requests
     if says == "ours":
-        (told,) = set(both["theirs"].ask("hashes", "wire_msgs/msg/Whole"))
-        assert told in both["ours"].ask("hashes", "wire_msgs/msg/Whole")
+        (message,) = set(both["theirs"].ask("hashes", "wire_msgs/msg/Whole"))
+        assert message in both["ours"].ask("hashes", "wire_msgs/msg/Whole")

@@ -56,8 +56,10 @@ def test_every_message_is_the_same_there(peers, says, hears):
     both[hears].ask_until(lambda counts: set(counts.values()) == {SEEDS}, "counts")
     for name in types:
         assert both[hears].ask("heard", name) == both["theirs"].ask("meant", name, SEEDS), name
-    told = {name: both["theirs"].ask("hashes", name)[0] for name in types} if says == "ours" else {}
-    assert [name for name, told_hash in told.items() if type_hash(name).removeprefix("RIHS01_") not in told_hash] == []
+    message = {name: both["theirs"].ask("hashes", name)[0] for name in types} if says == "ours" else {}
+    assert [
+        name for name, told_hash in message.items() if type_hash(name).removeprefix("RIHS01_") not in told_hash
+    ] == []
 
 
 @pytest.mark.parametrize(("asks", "answers"), SIDES)

@@ -36,12 +36,12 @@ def test_a_request_of_fast_dds_is_read_as_it_is_on_the_wire():
         + "01000000".replace(" ", "")
         + "00010000 01000000".replace(" ", "")
     )
-    (said,) = parse(packet[:20] + packet[20:], OURS)
-    assert isinstance(said, Data)
-    assert (said.writer, said.reader, said.number) == (THEIRS + b"\0\0\2\3", b"\0\0\1\4", 42)
-    assert said.time == 5_500_000_000
-    assert said.payload == bytes.fromhex("0001000001000000")
-    assert values.read_related_identity(said.inline, said.order) == (THEIRS + b"\0\0\3\4", values.NO_NUMBER)
+    (parsed,) = parse(packet[:20] + packet[20:], OURS)
+    assert isinstance(parsed, Data)
+    assert (parsed.writer, parsed.reader, parsed.number) == (THEIRS + b"\0\0\2\3", b"\0\0\1\4", 42)
+    assert parsed.time == 5_500_000_000
+    assert parsed.payload == bytes.fromhex("0001000001000000")
+    assert values.read_related_identity(parsed.inline, parsed.order) == (THEIRS + b"\0\0\3\4", values.NO_NUMBER)
 
 
 def test_the_identity_of_a_reply_stands_under_both_parameters_of_fast_dds():
@@ -52,15 +52,15 @@ def test_the_identity_of_a_reply_stands_under_both_parameters_of_fast_dds():
 
 def test_an_acknowledgement_names_what_is_missing():
     packet = message(THEIRS, acknack(READER[12:], WRITER[12:], 40, [41, 72], 1), to=OURS)
-    (said,) = parse(packet, OURS)
-    assert said == AckNack(THEIRS, READER, WRITER[12:], 40, [41, 72], final=True)
+    (parsed,) = parse(packet, OURS)
+    assert parsed == AckNack(THEIRS, READER, WRITER[12:], 40, [41, 72], final=True)
 
 
 @pytest.mark.parametrize("cut", range(4, 100, 3))
 def test_what_is_cut_short_is_not_believed(cut):
     packet = message(THEIRS, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.related_identity(READER, 1)))
-    for said in parse(packet[:cut], OURS):
-        assert isinstance(said, Data)
+    for text in parse(packet[:cut], OURS):
+        assert isinstance(text, Data)
 
 
 def test_noise_is_survived():
@@ -79,8 +79,8 @@ def test_messages_for_others_are_passed_over():
 
 
 def test_endpoints_are_told_and_read():
-    told = discovery_data.describe_endpoint(WRITER, "rr/flipReply", "std_srvs::srv::dds_::SetBool_Response_", b"a=b;")
-    read = discovery_data.read_endpoint(told, is_writer=True)
+    result = discovery_data.describe_endpoint(WRITER, "rr/flipReply", "std_srvs::srv::dds_::SetBool_Response_", b"a=b;")
+    read = discovery_data.read_endpoint(result, is_writer=True)
     assert read == discovery_data.EndpointData(
         WRITER, "rr/flipReply", "std_srvs::srv::dds_::SetBool_Response_", True, ()
     )
@@ -103,8 +103,8 @@ class _Line:
             packet, _ = waiting.pop(0)
             if self.random.random() < self.loss:
                 continue
-            for said in parse(packet, THEIRS if packet[8:20] == OURS else OURS):
-                waiting += self._said(said)
+            for text in parse(packet, THEIRS if packet[8:20] == OURS else OURS):
+                waiting += self._said(text)
 
     def _said(self, said):
         if isinstance(said, AckNack):
@@ -161,5 +161,5 @@ def test_a_reader_that_comes_late_gets_nothing_of_before():
     for _ in range(3):
         writer.write(b"\0\1\0\0")
     ((packet, _),) = writer.match(READER, AT)
-    (said,) = parse(packet, THEIRS)
-    assert (said.first, said.last) == (4, 3)
+    (parsed,) = parse(packet, THEIRS)
+    assert (parsed.first, parsed.last) == (4, 3)

@@ -25,17 +25,17 @@ def elements(settings):
 def test_left_to_itself_a_process_stays_inside_the_machine():
     settings = read_settings({})
     assert (settings.domain_id, settings.range) == (0, Range.MACHINE)
-    said = elements(settings)
-    assert said["General/MulticastTimeToLive"] == ["0"]
-    assert said["General/MulticastRecvNetworkInterfaceAddresses"] == ["127.0.0.1"]
-    peers = [each["address"] for each in said["Discovery/Peers/Peer"]]
+    document = elements(settings)
+    assert document["General/MulticastTimeToLive"] == ["0"]
+    assert document["General/MulticastRecvNetworkInterfaceAddresses"] == ["127.0.0.1"]
+    peers = [each["address"] for each in document["Discovery/Peers/Peer"]]
     assert peers == ["127.0.0.1", *own_addresses()[:3]]
 
 
 def test_a_machine_without_a_network_has_loopback_alone(monkeypatch):
     monkeypatch.setattr("linkwright.wire.dds.settings.own_addresses", list)
-    said = elements(read_settings({}))
-    assert said["General/Interfaces/NetworkInterface"] == [{"address": "127.0.0.1", "multicast": "true"}]
+    settings = elements(read_settings({}))
+    assert settings["General/Interfaces/NetworkInterface"] == [{"address": "127.0.0.1", "multicast": "true"}]
 
 
 @pytest.mark.parametrize(
@@ -66,8 +66,10 @@ THIS_MACHINE = for_good("127.0.0.1")
 
 def test_the_subnet_is_as_rmw_cyclonedds_has_it_and_this_machine_is_told_for_good():
     """A node of Fast DDS that keeps to this machine listens for nobody else's announcements."""
-    said = elements(read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_STATIC_PEERS": "192.0.2.7;host"}))
-    assert said == {
+    settings = elements(
+        read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_STATIC_PEERS": "192.0.2.7;host"})
+    )
+    assert settings == {
         "": [{}],
         "Discovery": [{}],
         "Discovery/ParticipantIndex": ["auto"],
@@ -86,9 +88,9 @@ def test_localhost_is_this_machine_on_all_its_ways():
 
 
 def test_localhost_with_peers_is_as_rmw_cyclonedds_has_it():
-    said = elements(read_settings({"ROS_LOCALHOST_ONLY": "1", "ROS_STATIC_PEERS": "192.0.2.7"}))
-    assert said["General/AllowMulticast"] == ["false"]
-    assert said["Discovery/Peers/Peer"] == [THIS_MACHINE, for_good("192.0.2.7")]
+    settings = elements(read_settings({"ROS_LOCALHOST_ONLY": "1", "ROS_STATIC_PEERS": "192.0.2.7"}))
+    assert settings["General/AllowMulticast"] == ["false"]
+    assert settings["Discovery/Peers/Peer"] == [THIS_MACHINE, for_good("192.0.2.7")]
 
 
 def test_the_users_configuration_goes_last():
@@ -99,9 +101,9 @@ def test_the_users_configuration_goes_last():
 
 
 def test_without_discovery_nobody_else_has_the_tag():
-    said = elements(read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}))
-    assert said["Discovery/ParticipantIndex"] == ["none"]
-    assert said["Discovery/Tag"][0].startswith("ros_discovery_off_")
+    settings = elements(read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}))
+    assert settings["Discovery/ParticipantIndex"] == ["none"]
+    assert settings["Discovery/Tag"][0].startswith("ros_discovery_off_")
 
 
 def test_static_peers_that_are_ignored_are_told():

@@ -112,13 +112,13 @@ def test_a_mismatch_of_quality_of_service_is_told_on_both_sides(processes):
     a.node.create_publisher(String, "chatter", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT))
     b.node.create_subscription(String, "chatter", print, QoSProfile(5))
 
-    def said(process):
+    def reported(process):
         """Its warnings of a mismatch: one about a node of an earlier test that has not left yet may come besides."""
         return [text for text in process.warnings() if "incompatible QoS" in text]
 
-    b.spin_until(lambda: said(b))
-    a.spin_until(lambda: said(a))
-    (theirs,), (ours,) = said(b), said(a)
+    b.spin_until(lambda: reported(b))
+    a.spin_until(lambda: reported(a))
+    (theirs,), (ours,) = reported(b), reported(a)
     assert "New publisher discovered on topic '/chatter', offering incompatible QoS" in theirs
     assert "RELIABILITY" in theirs
     assert "'/a'" in theirs

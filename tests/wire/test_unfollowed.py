@@ -26,7 +26,7 @@ def codes(variables):
 
 
 @pytest.mark.parametrize(
-    ("variables", "told"),
+    ("variables", "message"),
     [
         ({}, []),
         (SECURE, ["DDS122"]),
@@ -46,8 +46,8 @@ def codes(variables):
         ({**SECURE, **SERVER}, ["DDS122", "DDS123"]),
     ],
 )
-def test_what_is_not_followed_is_told(variables, told):
-    assert codes(variables) == told
+def test_what_is_not_followed_is_told(variables, message):
+    assert codes(variables) == message
 
 
 @pytest.mark.parametrize(

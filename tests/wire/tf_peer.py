@@ -27,7 +27,7 @@ class TfPeer(Node):
         }
         self._heard: dict[str, dict[str, list[Any]]] = {"/tf": {}, "/tf_static": {}}
         for topic, qos in (("/tf", HEARS), ("/tf_static", HEARS_LASTING)):
-            self.create_subscription(TFMessage, topic, lambda said, topic=topic: self._hear(topic, said), qos)
+            self.create_subscription(TFMessage, topic, lambda text, topic=topic: self._hear(topic, text), qos)
 
     def tell(self, topic: str, parent: str, child: str, x: float) -> None:
         self._tells[topic].publish(TFMessage(transforms=[self._transform(parent, child, x)]))

@@ -118,8 +118,8 @@ class TypedPeer(Node):
         feedback: list[Any] = []
         came = threading.Event()
 
-        def hear(said: Any) -> None:
-            feedback.append(plain(said.feedback))
+        def hear(text: Any) -> None:
+            feedback.append(plain(text.feedback))
             came.set()
 
         goal = result_of(client.send_goal_async(made(kind.Goal, 3), feedback_callback=hear))

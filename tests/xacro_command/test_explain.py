@@ -41,7 +41,7 @@ def only(path, name, *rest, **options):
     return found
 
 
-def told(value):
+def facts(value):
     return value.name, value.kind, value.value, str(value.span) if value.span else None, value.written
 
 
@@ -54,7 +54,7 @@ def test_place_and_calls(robot):
     assert str(found.span) == "wheel.xacro:4:3"
     (call,) = found.calls
     assert (call.macro, str(call.span)) == ("wheel", "a.xacro:6:1")
-    assert [told(value) for value in call.parameters] == [
+    assert [facts(value) for value in call.parameters] == [
         ("side", "parameter", "'left'", "a.xacro:6:20", "left"),
         ("y", "parameter", "0.1", "a.xacro:6:29", "${diameter}"),
         ("tint", "parameter", "'grey'", "wheel.xacro:3:48", "grey"),
@@ -65,7 +65,7 @@ def test_attributes(robot):
     found = attributes(only(robot, "left_wheel"))
     name = found["link.name"]
     assert (name.value, name.written, str(name.span)) == ("left_wheel", "${side}_wheel", "wheel.xacro:4:15")
-    assert [told(value) for value in found["cylinder.radius"].values] == [
+    assert [facts(value) for value in found["cylinder.radius"].values] == [
         ("radius", "property", "0.05", "a.xacro:3:38", "0.05")
     ]
     fixed = found["cylinder.fixed"]
@@ -82,17 +82,17 @@ def test_text(robot):
 def test_a_block_keeps_the_place_and_values_of_the_caller(robot):
     origin, parent = only(robot, "left_joint").children
     assert str(origin.span) == "a.xacro:6:42"
-    assert [told(value) for value in origin.attributes[0].values] == [
+    assert [facts(value) for value in origin.attributes[0].values] == [
         ("diameter", "property", "0.1", "a.xacro:4:40", "${2*radius}")
     ]
     (value,) = parent.attributes[0].values
-    assert told(value) == ("$(arg prefix)", "argument", "'my_'", "a.xacro:2:35", "my_")
+    assert facts(value) == ("$(arg prefix)", "argument", "'my_'", "a.xacro:2:35", "my_")
 
 
 def test_an_argument_that_was_given_has_no_place(robot):
     parent = only(robot, "left_joint", {"prefix": "his_"}).children[1]
     (value,) = parent.attributes[0].values
-    assert told(value) == ("$(arg prefix)", "argument", "'his_'", None, None)
+    assert facts(value) == ("$(arg prefix)", "argument", "'his_'", None, None)
 
 
 def test_an_attribute_that_a_tag_set(robot):
@@ -133,8 +133,8 @@ def test_nested_calls_and_includes(write):
         ("in", "a.xacro:3:41"),
         ("out", "a.xacro:4:1"),
     ]
-    assert [told(value) for value in found.calls[1].parameters] == [("x", "parameter", "2", "a.xacro:3:69", "${y+1}")]
-    assert [told(value) for value in found.calls[2].parameters] == [("y", "parameter", "1", "a.xacro:3:38", "1")]
+    assert [facts(value) for value in found.calls[1].parameters] == [("x", "parameter", "2", "a.xacro:3:69", "${y+1}")]
+    assert [facts(value) for value in found.calls[2].parameters] == [("y", "parameter", "1", "a.xacro:3:38", "1")]
 
 
 def test_values_are_those_of_the_moment(write):
@@ -174,9 +174,9 @@ def test_packages_and_variables(write, tmp_path, monkeypatch):
     monkeypatch.setenv("LENGTH", "3")
     path = write("a.xacro", '<link name="l" a="$(find p)/x" b="$(env LENGTH)" c="$(optenv NONE 4)"/>')
     found = attributes(only(path, "l", packages={"p": "/share/p"}))
-    assert told(found["link.a"].values[0]) == ("$(find p)", "package", "'/share/p'", None, None)
-    assert told(found["link.b"].values[0]) == ("$(env LENGTH)", "variable", "'3'", None, None)
-    assert told(found["link.c"].values[0])[2] == "'4'"
+    assert facts(found["link.a"].values[0]) == ("$(find p)", "package", "'/share/p'", None, None)
+    assert facts(found["link.b"].values[0]) == ("$(env LENGTH)", "variable", "'3'", None, None)
+    assert facts(found["link.c"].values[0])[2] == "'4'"
 
 
 def test_properties_of_outer_scopes(write):
@@ -188,7 +188,7 @@ def test_properties_of_outer_scopes(write):
     )
     found = attributes(only(path, "l"))
     assert str(found["link.g"].values[0].span) == "a.xacro:2:55"
-    assert told(found["link.p"].values[0]) == ("p", "property", "2", "a.xacro:3:33", "${g+1}")
+    assert facts(found["link.p"].values[0]) == ("p", "property", "2", "a.xacro:3:33", "${g+1}")
 
 
 def test_elements_whose_tag_is_evaluated(write):

@@ -10,7 +10,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.xmltree import Overlay, parse, parse_file, reader
 
 
-def told(text: str | bytes) -> tuple[str, str, int, int, str | None]:
+def finding_of(text: str | bytes) -> tuple[str, str, int, int, str | None]:
     with pytest.raises(LinkwrightError) as caught:
         parse(text, "robot.urdf")
     (found,) = caught.value.diagnostics
@@ -65,7 +65,7 @@ CASES = [
 
 @pytest.mark.parametrize(("text", "code", "message", "line", "column", "hint"), CASES, ids=[case[2] for case in CASES])
 def test_mistakes(text: str, code: str, message: str, line: int, column: int, hint: str | None) -> None:
-    found = told(text)
+    found = finding_of(text)
     assert found[:4] == (code, message, line, column)
     if hint is not None:
         assert found[4] == hint
@@ -80,7 +80,7 @@ def test_a_mismatched_tag_says_where_it_was_opened() -> None:
 
 
 def test_an_attribute_whose_quote_is_missing() -> None:
-    code, _, line, _, hint = told('<a>\n<b x="1 y="2">\n</b></a>')
+    code, _, line, _, hint = finding_of('<a>\n<b x="1 y="2">\n</b></a>')
     assert code == "XML206"
     assert line == 2
     assert hint is not None
@@ -88,12 +88,12 @@ def test_an_attribute_whose_quote_is_missing() -> None:
 
 @pytest.mark.parametrize("text", ["", "  \n "])
 def test_empty_files(text: str) -> None:
-    code, message, *_ = told(text)
+    code, message, *_ = finding_of(text)
     assert (code, message) == ("XML105", "'robot.urdf' is empty")
 
 
 def test_bytes_that_are_no_text() -> None:
-    code, message, line, column, hint = told(b"<a>\n\xc3\xa9<b n='\xff'/></a>")
+    code, message, line, column, hint = finding_of(b"<a>\n\xc3\xa9<b n='\xff'/></a>")
     assert (code, message, line, column) == ("XML104", "byte 0xff is not valid UTF-8", 2, 8)
     assert hint is not None
 
@@ -103,20 +103,20 @@ def test_bytes_that_are_no_text() -> None:
     [b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", b"PK\x03\x04\0\0\0", b"\x7fELF\x02\x01\x01\0", b"\0" * 80 + b"\x0c\0\0\0"],
 )
 def test_files_that_are_no_text(data: bytes) -> None:
-    code, message, *_, hint = told(data)
+    code, message, *_, hint = finding_of(data)
     assert (code, message) == ("XML104", "'robot.urdf' is not a text")
     assert "is it the file you meant?" in str(hint)
 
 
 @pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
 def test_utf_16_without_a_byte_order_mark(encoding: str) -> None:
-    code, message, *_, hint = told("<a b='车'/>".encode(encoding))
+    code, message, *_, hint = finding_of("<a b='车'/>".encode(encoding))
     assert (code, message) == ("XML104", "'robot.urdf' is in UTF-16 and has no byte order mark")
     assert hint == "save the file as UTF-8"
 
 
 def test_a_zero_byte_in_a_text_is_shown_at_its_place() -> None:
-    assert told(b"<a>\n <b n='\0'/></a>")[:4] == ("XML206", "the character U+0000 is not allowed in XML", 2, 8)
+    assert finding_of(b"<a>\n <b n='\0'/></a>")[:4] == ("XML206", "the character U+0000 is not allowed in XML", 2, 8)
 
 
 @pytest.mark.parametrize(
@@ -127,17 +127,17 @@ def test_a_zero_byte_in_a_text_is_shown_at_its_place() -> None:
     ],
 )
 def test_an_unfinished_merge(text: str) -> None:
-    code, message, line, column, hint = told(text)
+    code, message, line, column, hint = finding_of(text)
     assert (code, message) == ("XML206", "a merge of two versions was left unfinished here")
     assert (line, column) == (2, 1)
     assert "keep one of the two" in str(hint)
 
 
 def test_a_text_in_gbk_is_known_by_its_pairs() -> None:
-    code, message, line, column, hint = told('<a>\n <b n="机器人底盘"/></a>'.encode("gbk"))
+    code, message, line, column, hint = finding_of('<a>\n <b n="机器人底盘"/></a>'.encode("gbk"))
     assert (code, message, line, column) == ("XML104", "byte 0xbb is not valid UTF-8", 2, 8)
     assert "it looks like GBK; save it as UTF-8" in str(hint)
-    assert "GBK" not in str(told("<a n='rübe'/>".encode("latin-1"))[-1])
+    assert "GBK" not in str(finding_of("<a n='rübe'/>".encode("latin-1"))[-1])
 
 
 @pytest.mark.parametrize(
@@ -151,14 +151,14 @@ def test_a_text_in_gbk_is_known_by_its_pairs() -> None:
     ],
 )
 def test_a_template_is_named_for_what_it_is(text: str, language: str, column: int) -> None:
-    code, message, _, at, hint = told(text)
+    code, message, _, at, hint = finding_of(text)
     assert (code, at) == ("XML206", column)
     assert message == f"this is a {language} template, not XML"
     assert "pass that file" in str(hint)
 
 
 def test_what_is_wrong_before_a_template_begins_is_told_first() -> None:
-    assert told("<a>1 < 2 <% %></a>")[1] == "'<' does not begin a tag"
+    assert finding_of("<a>1 < 2 <% %></a>")[1] == "'<' does not begin a tag"
 
 
 def test_an_unknown_encoding() -> None:

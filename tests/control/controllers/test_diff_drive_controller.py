@@ -32,7 +32,7 @@ def speeds(stand) -> list[float]:
     return [stand.commands[f"{joint}/velocity"].value for joint in ("left", "right")]
 
 
-def told(stand, *velocity: float, at: int = 0) -> None:
+def command(stand, *velocity: float, at: int = 0) -> None:
     stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(at, *velocity))
 
 
@@ -44,7 +44,7 @@ async def test_a_command_turns_the_wheels(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]
-    told(wheels, 1.0, 0.5)
+    command(wheels, 1.0, 0.5)
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([9.0, 11.0])
 
@@ -56,7 +56,7 @@ async def test_multipliers_correct_the_sizes_of_wheels(wheels):
         "right_wheel_radius_multiplier": 2.0,
     }
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, **more)
-    told(wheels, 1.0, 0.5)
+    command(wheels, 1.0, 0.5)
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([0.8 / 0.05, 1.2 / 0.2])
 
@@ -72,7 +72,7 @@ async def test_all_wheels_of_a_side_turn_alike_and_their_mean_is_measured(stand)
         stand.states[f"{joint}/position"].value = angle
     await stand.step(controller)
     assert heard[-1].pose.pose.position.x == pytest.approx(0.2)
-    told(stand, 1.0)
+    command(stand, 1.0)
     await stand.step(controller)
     assert [command.value for command in stand.commands.values()] == pytest.approx([10.0] * 4)
 
@@ -82,7 +82,7 @@ async def test_odometry_is_the_arc_that_was_driven(wheels, feedback):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, position_feedback=feedback, cmd_vel_timeout=60.0)
     heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     transforms = wheels.heard("tf2_msgs/msg/TFMessage", "/tf")
-    told(wheels, 0.5, 0.4)
+    command(wheels, 0.5, 0.4)
     await roll(wheels, controller, 501)
     place, velocity = heard[-1].pose.pose, heard[-1].twist.twist
     turn = 0.4 * 5.0
@@ -108,7 +108,7 @@ async def test_odometry_in_open_loop_is_that_of_the_command_within_its_limits(wh
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, open_loop=True, cmd_vel_timeout=60.0, **limits)
     assert controller.states == []
     heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
-    told(wheels, 1.0)
+    command(wheels, 1.0)
     await wheels.step(controller, count=201)
     assert heard[-1].pose.pose.position.x == pytest.approx(0.505 + 1.01, abs=1e-9)
     assert heard[-1].twist.twist.linear.x == 1.0
@@ -118,7 +118,7 @@ async def test_odometry_in_open_loop_is_that_of_the_command_within_its_limits(wh
 async def test_a_command_holds_for_its_time_and_no_update_longer(wheels, zero):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, cmd_vel_timeout=0.25)
     await wheels.step(controller, 0.001)
-    told(wheels, 1.0, at=0 if zero else wheels.time_ns + 1_000_000)
+    command(wheels, 1.0, at=0 if zero else wheels.time_ns + 1_000_000)
     await wheels.step(controller, 0.001, count=251)
     assert speeds(wheels) == pytest.approx([10.0, 10.0])
     await wheels.step(controller, 0.001)
@@ -127,7 +127,7 @@ async def test_a_command_holds_for_its_time_and_no_update_longer(wheels, zero):
 
 async def test_a_command_of_another_clock_does_not_hold_for_ever(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
-    told(wheels, 1.0, at=1_700_000_000_000_000_000)
+    command(wheels, 1.0, at=1_700_000_000_000_000_000)
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([10.0, 10.0])
     await wheels.step(controller, count=51)
@@ -137,7 +137,7 @@ async def test_a_command_of_another_clock_does_not_hold_for_ever(wheels):
 async def test_a_command_that_is_too_old_when_it_comes_is_ignored_and_told(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     await wheels.step(controller, count=100)
-    told(wheels, 1.0, at=100_000_000)
+    command(wheels, 1.0, at=100_000_000)
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]
     (text,) = warnings(wheels)
@@ -150,7 +150,7 @@ async def test_a_command_that_is_too_old_when_it_comes_is_ignored_and_told(wheel
 async def test_a_command_from_before_time_began_anew_is_forgotten(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     await wheels.step(controller, count=100)
-    told(wheels, 1.0)
+    command(wheels, 1.0)
     await wheels.step(controller)
     wheels.time_ns = 0
     await wheels.step(controller)
@@ -160,9 +160,9 @@ async def test_a_command_from_before_time_began_anew_is_forgotten(wheels):
 @pytest.mark.parametrize("value", [nan, inf])
 async def test_a_command_that_is_no_number_stops_the_robot(wheels, value):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
-    told(wheels, 1.0, at=1)
+    command(wheels, 1.0, at=1)
     await wheels.step(controller)
-    told(wheels, 1.0, value, at=2)
+    command(wheels, 1.0, value, at=2)
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]
     assert warnings(wheels) == ["a command that is not a finite number is refused: the drive stops"]
@@ -173,7 +173,7 @@ async def test_commands_of_humble_may_have_no_header(wheels):
     wheels.say("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel_unstamped", twist(1.0))
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([10.0, 10.0])
-    told(wheels, 0.5, at=wheels.time_ns)
+    command(wheels, 0.5, at=wheels.time_ns)
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([5.0, 5.0])
     assert not warnings(wheels)
@@ -189,7 +189,7 @@ async def test_limits_are_never_exceeded_and_published(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, **LIMITS, publish_limited_velocity=True)
     heard = wheels.heard("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel_out")
     for number in range(200):
-        told(wheels, *((9.0, -9.0), (-9.0, 9.0), (0.3, 0.1))[number // 15 % 3])
+        command(wheels, *((9.0, -9.0), (-9.0, 9.0), (0.3, 0.1))[number // 15 % 3])
         await wheels.step(controller, STEP)
     forward = [0.0, *(each.twist.linear.x for each in heard)]
     turning = [0.0, *(each.twist.angular.z for each in heard)]
@@ -204,7 +204,7 @@ async def test_limits_are_never_exceeded_and_published(wheels):
 async def test_limits_of_humble_that_are_off_are_off(wheels):
     off = {"has_velocity_limits": False, "max_velocity": 0.1, "has_jerk_limits": False, "max_jerk": 0.0}
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, linear={"x": off | {"max_acceleration": 0.0}})
-    told(wheels, 1.0)
+    command(wheels, 1.0)
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([10.0, 10.0])
 
@@ -218,7 +218,7 @@ async def test_the_limits_of_jazzy_have_two_directions(wheels):
     }
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, linear={"x": limits}, cmd_vel_timeout=9.0)
     for wanted, reached in ((9.0, 0.2), (-9.0, -0.2), (-9.0, -1.0), (9.0, 0.0), (9.0, 0.2)):
-        told(wheels, wanted)
+        command(wheels, wanted)
         await wheels.step(controller, 0.1)
         assert speeds(wheels)[0] * 0.1 == pytest.approx(reached, abs=1e-9)
 
@@ -236,11 +236,11 @@ async def test_another_controller_may_command_it(wheels):
 
 async def test_it_stops_when_it_is_deactivated(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
-    told(wheels, 1.0, at=1)
+    command(wheels, 1.0, at=1)
     await wheels.step(controller)
     controller.on_deactivate()
     assert speeds(wheels) == [0.0, 0.0]
-    told(wheels, 1.0)
+    command(wheels, 1.0)
     await wheels.graph.settle()
     wheels.exchange.work()
     assert warnings(wheels) == ["Can't accept new commands. subscriber is inactive"]
@@ -323,7 +323,7 @@ async def test_a_wheel_that_tells_no_number_is_named(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     wheels.states["right/position"].value = nan
     await wheels.step(controller)
-    told(wheels, 1.0)
+    command(wheels, 1.0)
     with pytest.raises(LinkwrightError, match="Either the left or right wheel position is invalid for index"):
         await wheels.step(controller)
 

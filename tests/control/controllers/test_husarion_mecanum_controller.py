@@ -27,7 +27,7 @@ def wheels(stand):
     return stand
 
 
-def told(stand, forward: float, sideways: float, turning: float) -> None:
+def command(stand, forward: float, sideways: float, turning: float) -> None:
     stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(0, forward, turning, sideways))
 
 
@@ -51,7 +51,7 @@ def test_it_is_the_controller_of_that_type_where_its_parameters_are_given():
 )
 async def test_each_wheel_turns_as_the_motion_needs_with_and_without_header(wheels, velocity, wheels_turn):
     controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, use_stamped_vel=False)
-    told(wheels, *velocity)
+    command(wheels, *velocity)
     await wheels.step(controller)
     assert commanded(wheels) == pytest.approx(wheels_turn)
     forward, sideways, turning = velocity
@@ -63,7 +63,7 @@ async def test_each_wheel_turns_as_the_motion_needs_with_and_without_header(whee
 
 async def test_a_command_holds_for_its_time(wheels):
     controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, cmd_vel_timeout=0.1)
-    told(wheels, 1.0, 0.0, 0.0)
+    command(wheels, 1.0, 0.0, 0.0)
     await wheels.step(controller, 0.05)
     assert commanded(wheels) == [10.0] * 4
     await wheels.step(controller, 0.05, count=3)
@@ -74,7 +74,7 @@ async def test_limits_hold_for_every_axis_and_what_they_leave_is_published(wheel
     limits = {"linear": {"y": {"has_velocity_limits": True, "max_velocity": 0.5}}}
     controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, **limits, publish_limited_velocity=True)
     heard = wheels.heard("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel_out")
-    told(wheels, 0.2, 2.0, 0.0)
+    command(wheels, 0.2, 2.0, 0.0)
     await wheels.step(controller)
     assert (heard[-1].twist.linear.x, heard[-1].twist.linear.y) == pytest.approx((0.2, 0.5))
 
@@ -83,7 +83,7 @@ async def test_limits_hold_for_every_axis_and_what_they_leave_is_published(wheel
 async def test_odometry_is_the_arc_that_was_driven(wheels, source):
     controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, **source, cmd_vel_timeout=60.0)
     heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
-    told(wheels, 0.3, 0.4, 0.5)
+    command(wheels, 0.3, 0.4, 0.5)
     await roll(wheels, controller, 501)
     place, velocity = heard[-1].pose.pose, heard[-1].twist.twist
     turn = 2.5

@@ -68,5 +68,5 @@ async def test_interfaces_may_have_other_names(stand):
 
 async def test_what_is_no_parameter_is_named(stand):
     stand.start(JointStateBroadcaster, joint=["hip"])
-    (told,) = [each.text for each in stand.log if "not a parameter" in each.text]
-    assert told == "'joint' is not a parameter of this controller; did you mean 'joints'?"
+    (logged,) = [each.text for each in stand.log if "not a parameter" in each.text]
+    assert logged == "'joint' is not a parameter of this controller; did you mean 'joints'?"

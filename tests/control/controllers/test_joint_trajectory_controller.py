@@ -25,11 +25,11 @@ class Arm:
 
     def __init__(self, stand: Any, **parameters: Any) -> None:
         self.stand = stand
-        said = {**BY_POSITION, **parameters}
+        facts = {**BY_POSITION, **parameters}
         for joint in JOINTS:
-            stand.joint(joint, commands=tuple(said["command_interfaces"]), position=0.0, velocity=0.0)
+            stand.joint(joint, commands=tuple(facts["command_interfaces"]), position=0.0, velocity=0.0)
         self.stuck: set[str] = set()
-        self.controller = stand.start(JointTrajectoryController, **said)
+        self.controller = stand.start(JointTrajectoryController, **facts)
 
     def command(self, joint: str, kind: str = "position") -> float:
         return self.stand.commands[f"{joint}/{kind}"].value
@@ -50,7 +50,7 @@ class Arm:
         goal = get_action(ACTION).Goal(trajectory=message, **more)
         return Asked(self.stand, ACTION, "/controller/follow_joint_trajectory", goal)
 
-    def told(self) -> list[str]:
+    def logged(self) -> list[str]:
         return [str(each.text) for each in self.stand.log]
 
 
@@ -151,7 +151,7 @@ async def test_a_goal_is_reached_with_feedback_on_the_way(stand):
     assert asked.feedback[5].joint_names == list(JOINTS)
     assert asked.feedback[5].desired.positions[0] == pytest.approx(0.5)
     assert asked.feedback[5].error.positions[0] == pytest.approx(0.0)
-    assert "Goal reached, success!" in arm.told()
+    assert "Goal reached, success!" in arm.logged()
 
 
 async def test_joints_may_come_in_another_order(stand):
@@ -175,7 +175,7 @@ GOOD = (1.0, [1.0, 1.0])
 
 
 @pytest.mark.parametrize(
-    ("message", "told"),
+    ("message", "expected"),
     [
         (trajectory(GOOD, names=("shoulder",)), "Joints on incoming trajectory don't match the controller joints."),
         (trajectory(names=JOINTS), "Empty trajectory received."),
@@ -209,14 +209,14 @@ GOOD = (1.0, [1.0, 1.0])
         ),
     ],
 )
-async def test_what_no_trajectory_can_be_is_refused_with_its_reason(stand, message, told):
+async def test_what_no_trajectory_can_be_is_refused_with_its_reason(stand, message, expected):
     arm = Arm(stand)
     await arm.run(1.0)
     asked = arm.ask(message)
     arm.say(message)
     await arm.run(1.5)
     assert asked.accepted is False
-    assert arm.told().count(told) == 2
+    assert arm.logged().count(expected) == 2
     assert arm.command("shoulder") == 0.0
 
 
@@ -225,7 +225,7 @@ async def test_names_must_be_there_even_where_some_joints_are_enough(stand):
     asked = arm.ask(trajectory(names=()))
     await arm.run(0.05)
     assert asked.accepted is False
-    assert "Empty joint names on incoming trajectory." in arm.told()
+    assert "Empty joint names on incoming trajectory." in arm.logged()
 
 
 async def test_a_last_velocity_may_be_forbidden(stand):
@@ -233,7 +233,7 @@ async def test_a_last_velocity_may_be_forbidden(stand):
     asked = arm.ask(trajectory((1.0, [1.0, 1.0], [0.0, 0.1])))
     await arm.run(0.05)
     assert asked.accepted is False
-    assert "Velocity of last trajectory point of joint elbow is not zero: 0.100000000000000" in arm.told()
+    assert "Velocity of last trajectory point of joint elbow is not zero: 0.100000000000000" in arm.logged()
 
 
 async def test_points_without_positions_are_integrated_where_that_is_allowed(stand):
@@ -276,7 +276,7 @@ async def test_a_path_tolerance_that_is_violated_aborts_and_holds(stand):
     assert arm.command("shoulder") == 0.0
     assert arm.command("elbow") == pytest.approx(0.11)
     assert "State tolerances failed for joint 'shoulder': Position Error: 0.110000, Position Tolerance: 0.100000" in (
-        arm.told()
+        arm.logged()
     )
 
 
@@ -323,7 +323,7 @@ async def test_a_goal_brings_tolerances_of_its_own(stand):
 
 
 @pytest.mark.parametrize(
-    ("wrong", "told"),
+    ("wrong", "message"),
     [
         (
             tolerance("knee", 1.0),
@@ -335,13 +335,13 @@ async def test_a_goal_brings_tolerances_of_its_own(stand):
         ),
     ],
 )
-async def test_wrong_tolerances_of_a_goal_leave_those_of_the_controller(stand, wrong, told):
+async def test_wrong_tolerances_of_a_goal_leave_those_of_the_controller(stand, wrong, message):
     arm = Arm(stand, constraints={"shoulder": {"trajectory": 0.1}})
     arm.stuck.add("shoulder")
     asked = arm.ask(trajectory((0.5, [1.0, 1.0])), path_tolerance=[tolerance("shoulder", -1.0), wrong])
     await arm.run(0.5)
     assert asked.status == ABORTED
-    assert told in arm.told()
+    assert message in arm.logged()
 
 
 async def test_a_canceled_goal_leaves_the_joints_where_they_are(stand):
@@ -396,7 +396,7 @@ async def test_an_inactive_controller_takes_no_goals_and_ends_the_one_that_it_ha
     await stand.graph.settle()
     assert (running.status, late.accepted) == (CANCELED, False)
     assert running.result.error_string == "Current goal cancelled during deactivate transition."
-    assert "Can't accept new action goals. Controller is not running." in arm.told()
+    assert "Can't accept new action goals. Controller is not running." in arm.logged()
     assert arm.command("shoulder") == pytest.approx(0.5, abs=0.01)
     assert arm.command("shoulder", "velocity") == 0.0
 
@@ -451,13 +451,13 @@ async def test_a_trajectory_that_ended_long_ago_is_given_up_where_a_timeout_is_s
     await arm.run(0.9)
     assert arm.command("shoulder") == 1.0
     await arm.run(0.2)
-    assert "Aborted due to command timeout" in arm.told()
+    assert "Aborted due to command timeout" in arm.logged()
     assert arm.command("shoulder") == 0.0
 
 
 async def test_a_timeout_within_the_goal_time_is_none(stand):
     arm = Arm(stand, cmd_timeout=0.5, constraints={"goal_time": 0.6})
-    assert "Command timeout must be higher than goal_time tolerance (0.500000 vs. 0.600000)" in arm.told()
+    assert "Command timeout must be higher than goal_time tolerance (0.500000 vs. 0.600000)" in arm.logged()
 
 
 async def test_states_come_at_each_update_or_as_often_as_said(stand):
@@ -507,16 +507,16 @@ async def test_the_state_at_a_time_can_be_asked_for(stand):
     assert (answer.success, answer.name) == (True, list(JOINTS))
     assert answer.position[0] == pytest.approx(0.5)
     assert answer.velocity[0] == pytest.approx(1.0)
-    for seconds, told in (
+    for seconds, text in (
         (0.001, "Requested sample time is earlier than the current trajectory start time."),
         (9.0, "Requested sample time precedes the current trajectory end time."),
     ):
         answer = await ask(seconds)
-        assert (answer.success, answer.message) == (False, told)
+        assert (answer.success, answer.message) == (False, text)
 
 
 @pytest.mark.parametrize(
-    ("parameters", "told"),
+    ("parameters", "message"),
     [
         ({"joints": []}, "Parameter 'joints' cannot be empty"),
         ({"command_interfaces": ["torque"]}, "'torque' is not one of"),
@@ -528,8 +528,8 @@ async def test_the_state_at_a_time_can_be_asked_for(stand):
         ({"interpolation_method": "linear"}, "'linear' is not one of"),
     ],
 )
-async def test_parameters_that_cannot_be_are_refused(stand, parameters, told):
-    with pytest.raises(LinkwrightError, match=told):
+async def test_parameters_that_cannot_be_are_refused(stand, parameters, message):
+    with pytest.raises(LinkwrightError, match=message):
         stand.make(JointTrajectoryController, **{**BY_POSITION, **parameters})
 
 

@@ -34,8 +34,8 @@ async def test_velocities_end_and_positions_and_efforts_are_held(stand, kind, in
     driver.be_lost()
     await stand.step(controller)
     assert stand.commands[f"hip/{interface}"].value == after
-    told = [each.text for each in stand.log if "was lost" in each.text]
-    assert len(told) == (after == 0.0)
+    logged = [each.text for each in stand.log if "was lost" in each.text]
+    assert len(logged) == (after == 0.0)
 
 
 async def test_a_drive_stops_before_its_time_out(stand):
@@ -52,8 +52,8 @@ async def test_a_drive_stops_before_its_time_out(stand):
     driver.be_lost()
     await stand.step(controller)
     assert [command.value for command in stand.commands.values()] == [0.0, 0.0]
-    (told,) = [each.text for each in stand.log if "was lost" in each.text]
-    assert told.startswith("'/driver', which sent the commands on '/base/cmd_vel', was lost")
+    (logged,) = [each.text for each in stand.log if "was lost" in each.text]
+    assert logged.startswith("'/driver', which sent the commands on '/base/cmd_vel', was lost")
 
 
 async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(stand, clock):
@@ -71,8 +71,8 @@ async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(stand, clock
         drivers[speed % 2].send(message)
         await clock.advance(0.1)
     await stand.step(controller)
-    (told,) = [each.text for each in stand.log if each.level >= LogLevel.WARN]
-    assert told.startswith("two drivers at once: '/keys', '/planner' send commands on '/base/cmd_vel'")
+    (logged,) = [each.text for each in stand.log if each.level >= LogLevel.WARN]
+    assert logged.startswith("two drivers at once: '/keys', '/planner' send commands on '/base/cmd_vel'")
 
 
 async def test_nothing_is_said_of_a_command_that_has_ended(stand):

@@ -24,7 +24,7 @@ def wheels(stand):
     return stand
 
 
-def told(stand, forward: float, sideways: float, turning: float) -> None:
+def command(stand, forward: float, sideways: float, turning: float) -> None:
     stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped(0, forward, turning, sideways))
 
 
@@ -46,7 +46,7 @@ def test_it_is_found_by_its_type():
 )
 async def test_each_wheel_turns_as_the_motion_needs(wheels, velocity, wheels_turn):
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT, reference_timeout=1.0)
-    told(wheels, *velocity)
+    command(wheels, *velocity)
     await wheels.step(controller)
     assert commanded(wheels) == pytest.approx(wheels_turn)
 
@@ -55,7 +55,7 @@ async def test_odometry_is_the_arc_that_was_driven(wheels):
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT, reference_timeout=60.0)
     heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
     transforms = wheels.heard("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
-    told(wheels, 0.3, 0.4, 0.5)
+    command(wheels, 0.3, 0.4, 0.5)
     await roll(wheels, controller, 501)
     place, velocity, turn = heard[-1].pose.pose, heard[-1].twist.twist, 2.5
     x = (0.3 * sin(turn) + 0.4 * (cos(turn) - 1.0)) / 0.5
@@ -70,10 +70,10 @@ async def test_the_base_may_be_elsewhere_than_the_middle_of_the_wheels(wheels):
     sizes = {"kinematics": SIZES | {"base_frame_offset": offset}}
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT | sizes, reference_timeout=60.0)
     heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
-    told(wheels, 1.0, 0.0, 0.0)
+    command(wheels, 1.0, 0.0, 0.0)
     await wheels.step(controller)
     assert commanded(wheels) == pytest.approx([-10.0, 10.0, -10.0, 10.0])
-    told(wheels, 0.3, 0.4, 0.5)
+    command(wheels, 0.3, 0.4, 0.5)
     await roll(wheels, controller, 3)
     velocity = heard[-1].twist.twist
     assert (velocity.linear.x, velocity.linear.y, velocity.angular.z) == pytest.approx((0.3, 0.4, 0.5))
@@ -81,12 +81,12 @@ async def test_the_base_may_be_elsewhere_than_the_middle_of_the_wheels(wheels):
 
 async def test_a_command_holds_for_its_time_or_for_one_update(wheels):
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT)
-    told(wheels, 1.0, 0.0, 0.0)
+    command(wheels, 1.0, 0.0, 0.0)
     await wheels.step(controller, 0.001)
     assert commanded(wheels) == pytest.approx([10.0] * 4)
     await wheels.step(controller, 0.001)
     assert commanded(wheels) == [0.0] * 4
-    told(wheels, nan, 0.0, 0.0)
+    command(wheels, nan, 0.0, 0.0)
     await wheels.step(controller, 0.001)
     assert commanded(wheels) == [0.0] * 4
 

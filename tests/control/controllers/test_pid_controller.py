@@ -59,8 +59,8 @@ async def test_feed_forward_is_switched_on_by_a_service(stand):
 
 
 async def test_angles_may_wrap_around(stand):
-    said = {**WHEEL, "reference_and_state_interfaces": ["position"]}
-    controller = wheel(stand, position=3.0, **said, gains={"wheel": {"p": 1.0, "angle_wraparound": True}})
+    facts = {**WHEEL, "reference_and_state_interfaces": ["position"]}
+    controller = wheel(stand, position=3.0, **facts, gains={"wheel": {"p": 1.0, "angle_wraparound": True}})
     ask(stand, -3.0)
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(2.0 * pi - 6.0)
@@ -94,9 +94,9 @@ async def test_a_reference_of_other_sizes_or_names_is_told_of(stand):
     await stand.step(controller)
     ask(stand, 1.0, names=("arm",))
     await stand.step(controller)
-    told = [str(each.text) for each in stand.log]
-    assert "Size of input data names (1) and/or values (2) is not matching the expected size (1)." in told
-    assert "DoF name 'wheel' is not in the message: it has arm." in told
+    logged = [str(each.text) for each in stand.log]
+    assert "Size of input data names (1) and/or values (2) is not matching the expected size (1)." in logged
+    assert "DoF name 'wheel' is not in the message: it has arm." in logged
     assert isnan(stand.commands["wheel/effort"].value)
 
 

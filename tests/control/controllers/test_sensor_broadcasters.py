@@ -125,7 +125,7 @@ async def test_either_the_sensor_or_its_interfaces_are_named(stand, kind, name):
 
 
 @pytest.mark.parametrize(
-    ("kind", "parameters", "told"),
+    ("kind", "parameters", "message"),
     [
         (ImuBroadcaster, {"sensor_name": "imu"}, "Parameter 'frame_id' cannot be empty"),
         (RangeBroadcaster, {"frame_id": "base"}, "Parameter 'sensor_name' cannot be empty"),
@@ -136,8 +136,8 @@ async def test_either_the_sensor_or_its_interfaces_are_named(stand, kind, name):
         ),
     ],
 )
-async def test_what_must_be_given(stand, kind, parameters, told):
-    with pytest.raises(LinkwrightError, match=told):
+async def test_what_must_be_given(stand, kind, parameters, message):
+    with pytest.raises(LinkwrightError, match=message):
         stand.make(kind, **parameters)
 
 

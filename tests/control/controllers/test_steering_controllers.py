@@ -43,7 +43,7 @@ def vehicle(stand, kind, sizes, **more) -> Any:
     return stand.start(kind, NAME, **sizes | more)
 
 
-def told(stand, *velocity: float, at: int = 0) -> None:
+def command(stand, *velocity: float, at: int = 0) -> None:
     stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped(at, *velocity))
 
 
@@ -62,7 +62,7 @@ def test_they_are_found_by_their_types():
 async def test_the_wheels_of_a_car_roll_about_one_point(stand):
     controller = vehicle(stand, AckermannSteeringController, ACKERMANN)
     for _ in range(3):
-        told(stand, 1.0, 0.5)
+        command(stand, 1.0, 0.5)
         await roll(stand, controller)
     circle = 1.0 / 0.5
     left, right = commanded(stand, "steer_left", "steer_right")
@@ -73,21 +73,21 @@ async def test_the_wheels_of_a_car_roll_about_one_point(stand):
 
 async def test_steered_wheels_may_have_another_track(stand):
     controller = vehicle(stand, AckermannSteeringController, ACKERMANN, steering_track_width=0.4)
-    told(stand, 1.0, 0.5)
+    command(stand, 1.0, 0.5)
     await stand.step(controller)
     assert commanded(stand, "steer_left") == pytest.approx([atan(BASE / (2.0 - 0.2))])
 
 
 async def test_the_wheels_of_a_tricycle_and_of_a_bicycle(stand):
     controller = vehicle(stand, TricycleSteeringController, TRICYCLE, open_loop=True)
-    told(stand, 1.0, 0.5)
+    command(stand, 1.0, 0.5)
     await stand.step(controller)
     assert commanded(stand, "right", "left", "steer") == pytest.approx([12.0, 8.0, atan(0.6)])
 
 
 async def test_a_bicycle_has_one_wheel_of_each(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE)
-    told(stand, 1.0, 0.5)
+    command(stand, 1.0, 0.5)
     await stand.step(controller)
     assert commanded(stand, "wheel", "steer") == pytest.approx([10.0, atan(0.6)])
 
@@ -100,7 +100,7 @@ async def test_odometry_is_the_arc_that_was_driven(stand, kind, sizes, how):
     controller = vehicle(stand, kind, sizes, reference_timeout=60.0, **how)
     heard = stand.heard("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
     transforms = stand.heard("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
-    told(stand, 0.5, 0.2)
+    command(stand, 0.5, 0.2)
     await roll(stand, controller, 20)
     begin = heard[-1].pose.pose
     await roll(stand, controller, 500)
@@ -116,7 +116,7 @@ async def test_odometry_is_the_arc_that_was_driven(stand, kind, sizes, how):
 @EACH
 async def test_a_command_holds_for_its_time_and_no_update_longer(stand, kind, sizes):
     controller = vehicle(stand, kind, sizes, reference_timeout=0.1)
-    told(stand, 1.0, 0.5)
+    command(stand, 1.0, 0.5)
     await stand.step(controller, 0.001, count=101)
     angle = commanded(stand, sizes["steering_joints_names"][0])
     assert commanded(stand, sizes["traction_joints_names"][0])[0] > 0.0
@@ -127,7 +127,7 @@ async def test_a_command_holds_for_its_time_and_no_update_longer(stand, kind, si
 
 async def test_without_a_time_out_a_command_holds_for_one_update(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE, reference_timeout=0.0)
-    told(stand, 1.0)
+    command(stand, 1.0)
     await stand.step(controller)
     assert commanded(stand, "wheel") == [10.0]
     await stand.step(controller)
@@ -156,7 +156,7 @@ async def test_the_older_names_of_parameters_are_those_of_humble(stand):
         stand.joint(joint, commands=("velocity",), velocity=0.0)
         stand.joint(f"steer_{joint}", commands=("position",), position=0.0)
     controller = stand.start(AckermannSteeringController, NAME, **older)
-    told(stand, 1.0, 0.5)
+    command(stand, 1.0, 0.5)
     await stand.step(controller)
     assert commanded(stand, "left", "steer_left") == pytest.approx([10.0, atan(BASE / 1.8)])
     assert not [warning for warning in warnings(stand) if "not a parameter" in warning]
@@ -164,7 +164,7 @@ async def test_the_older_names_of_parameters_are_those_of_humble(stand):
 
 async def test_wheels_are_slow_until_they_are_steered_where_that_is_asked_for(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE, reduce_wheel_speed_until_steering_reached=True)
-    told(stand, 1.0, tan(1.0) / BASE)
+    command(stand, 1.0, tan(1.0) / BASE)
     await stand.step(controller)
     assert commanded(stand, "wheel") == pytest.approx([10.0 * cos(1.0) / cos(0.5235987755982988)])
     stand.states["steer/position"].value = 1.0
@@ -187,7 +187,7 @@ async def test_another_controller_may_command_it(stand):
 async def test_its_state_is_published(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE)
     heard = stand.heard("control_msgs/msg/SteeringControllerStatus", f"/{NAME}/controller_state")
-    told(stand, 1.0, 0.5)
+    command(stand, 1.0, 0.5)
     await roll(stand, controller, 2)
     last = heard[-1]
     assert (list(last.traction_wheels_velocity), list(last.linear_velocity_command)) == ([10.0], [10.0])
@@ -196,12 +196,12 @@ async def test_its_state_is_published(stand):
 
 async def test_it_stops_when_it_is_deactivated_or_told_no_number(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE)
-    told(stand, 1.0)
+    command(stand, 1.0)
     await stand.step(controller)
-    told(stand, nan)
+    command(stand, nan)
     await stand.step(controller)
     assert commanded(stand, "wheel") == [0.0]
-    told(stand, 1.0)
+    command(stand, 1.0)
     await stand.step(controller)
     controller.on_deactivate()
     assert commanded(stand, "wheel") == [0.0]

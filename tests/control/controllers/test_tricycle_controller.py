@@ -22,7 +22,7 @@ def wheel(stand):
     return stand
 
 
-def told(stand, *velocity: float) -> None:
+def command(stand, *velocity: float) -> None:
     stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(0, *velocity))
 
 
@@ -36,7 +36,7 @@ def test_it_is_found_by_its_type():
 
 async def test_the_wheel_is_as_fast_as_it_has_to_be_once_it_is_steered(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT)
-    told(wheel, 1.0, 0.8)
+    command(wheel, 1.0, 0.8)
     await roll(wheel, controller, 2)
     angle = atan(0.96)
     assert commanded(wheel) == pytest.approx([10.0 / cos(angle), angle])
@@ -45,7 +45,7 @@ async def test_the_wheel_is_as_fast_as_it_has_to_be_once_it_is_steered(wheel):
 async def test_the_wheel_is_slow_while_it_is_far_from_its_angle(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT)
     wheel.states["steer/position"].value = -0.2
-    told(wheel, 0.0, 1.0)
+    command(wheel, 0.0, 1.0)
     await wheel.step(controller)
     assert commanded(wheel) == pytest.approx([12.0 * 0.01, pi / 2.0])
     wheel.states["steer/position"].value = pi / 2.0 - 1.0
@@ -60,7 +60,7 @@ async def test_odometry_is_the_arc_that_was_driven(wheel, open_loop):
     )
     heard = wheel.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     transforms = wheel.heard("tf2_msgs/msg/TFMessage", "/tf")
-    told(wheel, 0.5, 0.2)
+    command(wheel, 0.5, 0.2)
     await roll(wheel, controller, 20)
     begin = heard[-1].pose.pose
     yaw = 2.0 * atan(begin.orientation.z / begin.orientation.w)
@@ -74,7 +74,7 @@ async def test_odometry_is_the_arc_that_was_driven(wheel, open_loop):
 async def test_odometry_may_have_velocities_only(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT, odom_only_twist=True)
     heard = wheel.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
-    told(wheel, 0.5)
+    command(wheel, 0.5)
     await roll(wheel, controller, 30)
     assert heard[-1].twist.twist.linear.x == pytest.approx(0.5)
     assert (heard[-1].pose.pose.position.x, heard[-1].pose.pose.orientation.w) == (0.0, 1.0)
@@ -83,7 +83,7 @@ async def test_odometry_may_have_velocities_only(wheel):
 async def test_odometry_begins_anew_on_request(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT)
     heard = wheel.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
-    told(wheel, 0.5)
+    command(wheel, 0.5)
     await roll(wheel, controller, 30)
     client = wheel.node.create_client("std_srvs/srv/Empty", f"/{NAME}/reset_odometry")
     client.call_async(client.srv_type.Request())
@@ -94,7 +94,7 @@ async def test_odometry_begins_anew_on_request(wheel):
 
 async def test_a_command_holds_for_its_time_in_milliseconds(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT, cmd_vel_timeout=100)
-    told(wheel, 1.0)
+    command(wheel, 1.0)
     await wheel.step(controller, 0.001, count=101)
     assert commanded(wheel)[0] == pytest.approx(10.0)
     await wheel.step(controller, 0.001)
@@ -117,7 +117,7 @@ async def test_limits_are_never_exceeded_and_commands_published(wheel):
     heard = wheel.heard("ackermann_msgs/msg/AckermannDrive", f"/{NAME}/cmd_ackermann")
     speeds, angles = [0.0], [0.0]
     for number in range(300):
-        told(wheel, *((1.0, 2.0), (-1.0, 1.0), (0.2, 0.0))[number // 50 % 3])
+        command(wheel, *((1.0, 2.0), (-1.0, 1.0), (0.2, 0.0))[number // 50 % 3])
         await roll(wheel, controller)
         speed, angle = commanded(wheel)
         speeds.append(speed)
@@ -133,7 +133,7 @@ async def test_limits_are_never_exceeded_and_commands_published(wheel):
 
 async def test_it_stops_when_it_is_deactivated(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT)
-    told(wheel, 1.0, 0.2)
+    command(wheel, 1.0, 0.2)
     await roll(wheel, controller)
     controller.on_deactivate()
     assert commanded(wheel) == [0.0, 0.0]

@@ -101,12 +101,12 @@ CONTROL = robot(
 
 
 @pytest.mark.parametrize(
-    ("distribution", "said", "limited"),
+    ("distribution", "message", "limited"),
     [("jazzy", None, False), ("jazzy", True, True), ("kilted", None, True), ("kilted", False, False)],
 )
-async def test_the_manager_enforces_them_where_it_is_asked_to(graph, log, monkeypatch, distribution, said, limited):
+async def test_the_manager_enforces_them_where_it_is_asked_to(graph, log, monkeypatch, distribution, message, limited):
     monkeypatch.setenv("ROS_DISTRO", distribution)
-    parameters = {} if said is None else {"enforce_command_limits": said}
+    parameters = {} if message is None else {"enforce_command_limits": message}
     made = manager(
         graph,
         CONTROL,
@@ -121,5 +121,5 @@ async def test_the_manager_enforces_them_where_it_is_asked_to(graph, log, monkey
         made.cycle(cycle * 10_000_000, 0.01)
     hip, knee = made.resources.commands(["hip/position", "knee/position"])
     assert (hip.value, knee.value) == ((3.0 if limited else 9.0), 9.0)
-    told = [each.text for each in log if "is outside its limits" in each.text]
-    assert len(told) == limited
+    logged = [each.text for each in log if "is outside its limits" in each.text]
+    assert len(logged) == limited

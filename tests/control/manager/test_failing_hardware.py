@@ -74,7 +74,7 @@ def arm(tmp_path, monkeypatch) -> Iterator[type[Arm]]:
 
 @pytest.mark.parametrize("wrong", [HardwareError("the cable is out"), OSError("the cable is out")])
 async def test_its_controllers_stop_the_others_go_on_and_it_can_be_activated_again(
-    graph, clock, tmp_path, said, arm, wrong
+    graph, clock, tmp_path, logged, arm, wrong
 ):
     path = tmp_path / "controllers.yaml"
     path.write_text(FILE)
@@ -103,7 +103,7 @@ async def test_its_controllers_stop_the_others_go_on_and_it_can_be_activated_aga
         "leg": "active",
     }
     assert arm.life == ("on", "error")
-    first, second = said("ERROR")
+    first, second = logged("ERROR")
     assert first.startswith("Error while reading hardware 'arm': ")
     assert first.endswith("the cable is out")
     assert second == ("Deactivating controllers : [ hips ] as their hardware components failed: [ arm ]")

@@ -84,7 +84,7 @@ def value(made, name):
     return {command.name: command.value for command in made.resources.commands([name])}[name]
 
 
-async def test_a_controller_is_loaded_configured_switched_and_unloaded(made, said):
+async def test_a_controller_is_loaded_configured_switched_and_unloaded(made, logged):
     it = made({"forward": FORWARD}, forward={"joints": ["hip"], "interface_name": "position"})
     started(it, "forward")
     assert it.switch(["forward"], [], STRICT) == (True, "Successfully switched controllers!")
@@ -94,21 +94,21 @@ async def test_a_controller_is_loaded_configured_switched_and_unloaded(made, sai
     it.cycle(20, 0.01)
     assert it.resources.states(["hip/position"])[0].value == 0.7
     assert not it.unload("forward")
-    assert said("ERROR") == ["Could not unload controller with name 'forward' because it is still active"]
+    assert logged("ERROR") == ["Could not unload controller with name 'forward' because it is still active"]
     assert it.switch([], ["forward"], STRICT)[0]
     assert it.resources.claims == {}
     assert it.unload("forward")
     assert it.controllers == {}
 
 
-async def test_what_cannot_be_loaded(made, said):
+async def test_what_cannot_be_loaded(made, logged):
     it = made({"a": "t/Unknown", "broken": "t/Broken", "low": "t/Low"})
     assert not it.load("none")
     assert not it.load("a")
     assert not it.load("broken")
     assert it.load("low")
     assert not it.load("low")
-    errors = said("ERROR")
+    errors = logged("ERROR")
     assert errors[0] == "The 'type' param was not defined for 'none'."
     assert errors[1] == "Loader for controller 'a' (type 't/Unknown') not found."
     assert "ZeroDivisionError: in the beginning" in errors[3]
@@ -116,37 +116,37 @@ async def test_what_cannot_be_loaded(made, said):
     assert errors[5] == "A controller named 'low' was already loaded inside the controller manager"
 
 
-async def test_a_controller_may_refuse(made, said):
+async def test_a_controller_may_refuse(made, logged):
     it = made({"reluctant": "t/Reluctant"})
     it.load("reluctant")
     assert not it.configure("reluctant")
-    assert said("ERROR") == [
+    assert logged("ERROR") == [
         "it does not like it here",
         "After configuring, controller 'reluctant' is in state 'unconfigured' , expected inactive.",
     ]
 
 
-async def test_interfaces_have_one_owner(made, said):
+async def test_interfaces_have_one_owner(made, logged):
     it = made({"one": FORWARD, "two": FORWARD}, one=POSITIONS, two=POSITIONS)
     started(it, "one", "two")
     assert it.switch(["one"], [], STRICT)[0]
-    told = "Resource conflict for controller 'two'. Command interface 'hip/position' is already claimed."
-    assert it.switch(["two"], [], STRICT) == (False, told)
+    text = "Resource conflict for controller 'two'. Command interface 'hip/position' is already claimed."
+    assert it.switch(["two"], [], STRICT) == (False, text)
     assert it.controllers["two"].controller.state is INACTIVE
     assert it.switch(["two"], ["one"], STRICT)[0]
     assert it.switch(["one"], [], FORCE_AUTO)[0]
     assert set(it.resources.claims.values()) == {"one"}
-    assert said("ERROR") == [told]
+    assert logged("ERROR") == [text]
 
 
-async def test_unknown_interfaces_are_told(made, said):
+async def test_unknown_interfaces_are_told(made, logged):
     it = made({"one": FORWARD}, one={**POSITIONS, "interface_name": "effort"})
     started(it, "one")
-    told = "Can't activate controller 'one': Command interface with key 'hip/effort' does not exist"
-    assert it.switch(["one"], [], STRICT) == (False, told)
+    text = "Can't activate controller 'one': Command interface with key 'hip/effort' does not exist"
+    assert it.switch(["one"], [], STRICT) == (False, text)
 
 
-async def test_strictness(made, said):
+async def test_strictness(made, logged):
     it = made()
     started(it, "low")
     assert not it.switch(["low", "nobody"], [], STRICT)[0]
@@ -157,7 +157,7 @@ async def test_strictness(made, said):
         True,
         "Empty activate and deactivate list, not requesting switch",
     )
-    assert said("ERROR") == ["Aborting, no controller is switched! ('STRICT' switch)"]
+    assert logged("ERROR") == ["Aborting, no controller is switched! ('STRICT' switch)"]
 
 
 async def test_a_chain(made):
@@ -189,7 +189,7 @@ async def test_a_chain_is_activated_together_or_by_itself(made):
     assert all(controller.controller.state is ACTIVE for controller in it.controllers.values())
 
 
-async def test_a_controller_that_throws_is_deactivated_and_what_it_moved_stands(made, said):
+async def test_a_controller_that_throws_is_deactivated_and_what_it_moved_stands(made, logged):
     it = made()
     started(it, "low", "high")
     it.switch(["high", "low"], [], STRICT)
@@ -199,13 +199,13 @@ async def test_a_controller_that_throws_is_deactivated_and_what_it_moved_stands(
     it.cycle(2, 0.01)
     assert command.value == 0.0
     assert [controller.is_active for controller in it.controllers.values()] == [False, False]
-    errors = said("ERROR")
+    errors = logged("ERROR")
     assert errors[0].startswith("Caught exception while updating: RuntimeError: out of luck\nTraceback")
     assert errors[1] == "Deactivating controllers : [ low high ] as their update resulted in an error!"
 
 
 @pytest.mark.parametrize("wrong", [nan, inf])
-async def test_what_is_no_number_does_not_reach_the_hardware(made, said, wrong):
+async def test_what_is_no_number_does_not_reach_the_hardware(made, logged, wrong):
     it = made()
     started(it, "low")
     it.switch(["low"], [], STRICT)
@@ -213,10 +213,10 @@ async def test_what_is_no_number_does_not_reach_the_hardware(made, said, wrong):
     it.controllers["low"].controller.value = wrong
     it.cycle(2, 0.01)
     assert value(it, "hip/velocity") == 0.0
-    assert "'hip/velocity' is not a number" in said("ERROR")[0]
+    assert "'hip/velocity' is not a number" in logged("ERROR")[0]
 
 
-async def test_numbers_reach_the_hardware_whatever_their_sum_is(made, said):
+async def test_numbers_reach_the_hardware_whatever_their_sum_is(made, logged):
     it = made()
     started(it, "low")
     it.switch(["low"], [], STRICT)
@@ -225,10 +225,10 @@ async def test_numbers_reach_the_hardware_whatever_their_sum_is(made, said):
     loaded.controller.value = 1.5e308
     it.cycle(1, 0.01)
     assert value(it, "hip/velocity") == 1.5e308
-    assert said("ERROR") == []
+    assert logged("ERROR") == []
 
 
-async def test_hardware_that_fails_stops_its_controllers(made, said):
+async def test_hardware_that_fails_stops_its_controllers(made, logged):
     it = made()
     started(it, "low", "high")
     it.switch(["high", "low"], [], STRICT)
@@ -242,7 +242,7 @@ async def test_hardware_that_fails_stops_its_controllers(made, said):
     it.cycle(2, 0.01)
     assert command.value == 0.0
     assert it.resources.components["arm"].state.label == "unconfigured"
-    assert said("ERROR") == [
+    assert logged("ERROR") == [
         "Error while writing hardware 'arm': OSError: the cable is out",
         "Deactivating controllers : [ low high ] as their hardware components failed: [ arm ]",
     ]
@@ -269,21 +269,21 @@ async def test_a_slower_controller_is_updated_at_its_own_rate(made):
     assert times == [(10_000_000, 0.02), (30_000_000, 0.02), (50_000_000, 0.02)]
 
 
-async def test_initial_states_of_hardware(graph, said):
+async def test_initial_states_of_hardware(graph, logged):
     states = {"hardware_components_initial_state": {"inactive": ["arm"], "unconfigured": ["leg"]}}
     it = manager(graph, CONTROL, states)
     assert it.resources.components["arm"].state is INACTIVE
-    assert said("WARN") == ["Hardware component 'leg' is unknown, therefore not set in 'unconfigured' state."]
+    assert logged("WARN") == ["Hardware component 'leg' is unknown, therefore not set in 'unconfigured' state."]
 
 
-async def test_hardware_of_others_is_stood_in_for(graph, said):
+async def test_hardware_of_others_is_stood_in_for(graph, logged):
     it = manager(graph, CONTROL.replace("mock_components/GenericSystem", "acme/Driver"))
     assert it.resources.components["arm"].state is ACTIVE
-    assert said("WARN")[0].startswith("hardware 'arm': Linkwright does not support 'acme/Driver'; mock_components")
+    assert logged("WARN")[0].startswith("hardware 'arm': Linkwright does not support 'acme/Driver'; mock_components")
 
 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy"])
-async def test_what_is_asynchronous_in_ros_runs_in_the_loop_which_is_said(made, said, monkeypatch, distribution):
+async def test_what_is_asynchronous_in_ros_runs_in_the_loop_which_is_said(made, logged, monkeypatch, distribution):
     monkeypatch.setenv("ROS_DISTRO", distribution)
     text = CONTROL.replace("type='system'", "type='system' is_async='true'")
     it = made({"low": "t/Low"}, text, low={"is_async": True})
@@ -291,6 +291,6 @@ async def test_what_is_asynchronous_in_ros_runs_in_the_loop_which_is_said(made, 
     assert it.switch(["low"], [], STRICT)[0]
     it.cycle(1, 0.01)
     assert value(it, "hip/velocity") == 0.5
-    told = [each for each in said("INFO") if "is_async" in each]
-    assert told[0] == "hardware 'arm' asks for is_async: it is read and written in the loop, as all are"
-    assert len(told) == (1 if distribution == "humble" else 2)
+    logged = [each for each in logged("INFO") if "is_async" in each]
+    assert logged[0] == "hardware 'arm' asks for is_async: it is read and written in the loop, as all are"
+    assert len(logged) == (1 if distribution == "humble" else 2)

@@ -47,7 +47,7 @@ async def advance(graph, clock, count):
         await graph.settle()
 
 
-async def test_controllers_run_by_services_and_topics(graph, clock, tmp_path, said):
+async def test_controllers_run_by_services_and_topics(graph, clock, tmp_path, logged):
     running = start(graph, tmp_path, CONTROL)
     node = graph.create_node("audience")
     states, activity = [], []
@@ -108,7 +108,7 @@ async def test_remappings_of_the_process_reach_controllers(graph, clock, tmp_pat
     running.close()
 
 
-async def test_the_description_comes_by_its_topic(graph, clock, tmp_path, said):
+async def test_the_description_comes_by_its_topic(graph, clock, tmp_path, logged):
     running = start(graph, tmp_path)
     node = graph.create_node("audience")
     node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(CONTROL))
@@ -117,16 +117,16 @@ async def test_the_description_comes_by_its_topic(graph, clock, tmp_path, said):
     assert [component.name for component in components] == ["arm"]
     set_state = await ask(graph, node, "set_hardware_component_state", name="nobody")
     assert not set_state.ok
-    assert said("ERROR") == ["hardware component with name 'nobody' does not exist"]
+    assert logged("ERROR") == ["hardware component with name 'nobody' does not exist"]
     running.close()
 
 
-async def test_a_description_that_cannot_be_read_is_told_and_the_next_one_taken(graph, clock, tmp_path, said):
+async def test_a_description_that_cannot_be_read_is_told_and_the_next_one_taken(graph, clock, tmp_path, logged):
     running = start(graph, tmp_path)
     publisher = graph.create_node("audience").create_publisher(String, "/robot_description", DESCRIPTION_QOS)
     publisher.publish(String("<robot"))
     await graph.settle()
-    assert said("ERROR")[0].startswith("The published robot description file (urdf) seems not to be genuine")
+    assert logged("ERROR")[0].startswith("The published robot description file (urdf) seems not to be genuine")
     publisher.publish(String(CONTROL))
     await graph.settle()
     assert list(running._manager.resources.components) == ["arm"]
@@ -153,7 +153,7 @@ OVERRUN = (
 
 
 @pytest.mark.parametrize(
-    ("parameters", "then", "told"),
+    ("parameters", "then", "message"),
     [
         ({}, [0.025, 0.005, 0.01], [OVERRUN]),
         ({"overruns.print_warnings": False}, [0.025, 0.005, 0.01], []),
@@ -161,32 +161,32 @@ OVERRUN = (
     ],
 )
 async def test_updates_that_were_missed_are_left_out_and_told_or_made_up_for(
-    graph, clock, tmp_path, said, parameters, then, told
+    graph, clock, tmp_path, logged, parameters, then, message
 ):
     running = start(graph, tmp_path, CONTROL, **parameters)
     await graph.settle()
-    before = said("WARN")
+    before = logged("WARN")
     slow = iter([0.0, 0.025])
     periods = cycles_of(running, lambda: clock._move_to(clock.steady_ns() + round(next(slow, 0.0) * 1e9)))
     await clock.advance(0.06)
     assert periods == [0.01, 0.01, *then]
-    assert said("WARN") == before + told
+    assert logged("WARN") == before + message
     running.close()
 
 
-async def test_simulated_time_that_jumps_is_no_overrun_and_none_goes_back(graph, clock, tmp_path, said):
+async def test_simulated_time_that_jumps_is_no_overrun_and_none_goes_back(graph, clock, tmp_path, logged):
     running = start(graph, tmp_path, CONTROL, use_sim_time=True)
     await graph.settle()
     time = running._node.get_clock()
     time.override(1_000_000_000)
     await graph.settle()
     periods = cycles_of(running)
-    told = len(said("WARN"))
+    logged = len(logged("WARN"))
     for now_ns in (1_010_000_000, 1_050_000_000, 20_000_000, 30_000_000, 40_000_000):
         time.override(now_ns)
         await graph.settle()
     assert periods == [0.01, 0.04, 0.01, 0.01]
-    assert said("WARN")[told:] == []
+    assert logged("WARN")[logged:] == []
     time.set_ros_time_is_active(False)
     await clock.advance(0.01)
     assert periods[4:] == [0.01]
@@ -196,9 +196,9 @@ async def test_simulated_time_that_jumps_is_no_overrun_and_none_goes_back(graph,
 @pytest.mark.parametrize(
     "plugin", ["gazebo_ros2_control/GazeboSystem", "gz_ros2_control/GazeboSimSystem", "ign_ros2_control/IgnitionSystem"]
 )
-async def test_the_hardware_of_a_simulator_is_left_to_the_simulators_manager(graph, tmp_path, said, plugin):
+async def test_the_hardware_of_a_simulator_is_left_to_the_simulators_manager(graph, tmp_path, logged, plugin):
     start(graph, tmp_path, CONTROL.replace("mock_components/GenericSystem", plugin))
     await graph.settle()
-    assert [each for each in said("ERROR") if plugin in each]
+    assert [each for each in logged("ERROR") if plugin in each]
     services = graph.create_node("audience").get_service_names_and_types()
     assert not [name for name, _ in services if name.endswith("/list_controllers")]

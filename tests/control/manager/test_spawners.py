@@ -30,12 +30,12 @@ def states(running):
     return {name: each.controller.state.label for name, each in running._manager.controllers.items()}
 
 
-async def test_controllers_are_spawned_and_unspawned(graph, tmp_path, said):
+async def test_controllers_are_spawned_and_unspawned(graph, tmp_path, logged):
     running = start(graph, tmp_path, CONTROL)
     assert await run(graph, Spawner, "broadcaster", "positions", "-c", "controller_manager") == 0
     assert states(running) == {"broadcaster": "active", "positions": "active"}
-    told = [each for each in said("INFO") if each.startswith(("Loaded", "Configured and"))]
-    assert told == [
+    logged = [each for each in logged("INFO") if each.startswith(("Loaded", "Configured and"))]
+    assert logged == [
         "Loaded broadcaster",
         "Configured and activated broadcaster",
         "Loaded positions",
@@ -58,7 +58,7 @@ async def test_how_far_they_are_led(graph, tmp_path, option, state):
     running.close()
 
 
-async def test_a_parameter_file_of_its_own_and_other_names_of_topics(graph, tmp_path, said):
+async def test_a_parameter_file_of_its_own_and_other_names_of_topics(graph, tmp_path, logged):
     running = start(graph, tmp_path, CONTROL)
     path = tmp_path / "own.yaml"
     path.write_text(OWN)
@@ -77,10 +77,10 @@ async def test_words_that_a_launch_file_leaves_empty(graph, tmp_path, words):
     running.close()
 
 
-async def test_what_fails_is_told(graph, tmp_path, said):
+async def test_what_fails_is_told(graph, tmp_path, logged):
     running = start(graph, tmp_path, CONTROL)
     assert await run(graph, Spawner, "nobody") == 1
-    assert said("FATAL") == ["Failed loading controller nobody"]
+    assert logged("FATAL") == ["Failed loading controller nobody"]
     with pytest.raises(LinkwrightError, match=r"'/no/file\.yaml' does not exist"):
         Spawner(graph, NodeOptions(arguments=["broadcaster", "-p", "/no/file.yaml"]))
     with pytest.raises(LinkwrightError, match="--no-option"):
@@ -88,12 +88,12 @@ async def test_what_fails_is_told(graph, tmp_path, said):
     running.close()
 
 
-async def test_a_spawner_waits_for_its_manager(graph, clock, tmp_path, said):
+async def test_a_spawner_waits_for_its_manager(graph, clock, tmp_path, logged):
     spawner = Spawner(graph, NodeOptions(arguments=["broadcaster"]))
     await graph.settle()
-    assert said("INFO") == ["waiting for service /controller_manager/list_controllers to become available..."]
+    assert logged("INFO") == ["waiting for service /controller_manager/list_controllers to become available..."]
     await clock.advance(11.0)
-    assert said("WARN") == ["Could not contact service /controller_manager/list_controllers"]
+    assert logged("WARN") == ["Could not contact service /controller_manager/list_controllers"]
     running = start(graph, tmp_path, CONTROL)
     await graph.settle()
     assert spawner.finished.result() == 0
@@ -101,12 +101,12 @@ async def test_a_spawner_waits_for_its_manager(graph, clock, tmp_path, said):
     running.close()
 
 
-async def test_it_does_not_wait_for_ever_if_it_is_said(graph, clock, said):
+async def test_it_does_not_wait_for_ever_if_it_is_said(graph, clock, logged):
     spawner = Spawner(graph, NodeOptions(arguments=["broadcaster", "--controller-manager-timeout", "5"]))
     await graph.settle()
     await clock.advance(5.1)
     assert spawner.finished.result() == 1
-    assert said("FATAL") == ["Could not contact service /controller_manager/list_controllers"]
+    assert logged("FATAL") == ["Could not contact service /controller_manager/list_controllers"]
     spawner.close()
 
 
@@ -121,11 +121,11 @@ async def test_controllers_go_with_their_spawner(graph, tmp_path):
     running.close()
 
 
-async def test_hardware_is_spawned(graph, tmp_path, said):
+async def test_hardware_is_spawned(graph, tmp_path, logged):
     running = start(graph, tmp_path, CONTROL, hardware_components_initial_state={"unconfigured": ["arm"]})
     assert await run(graph, HardwareSpawner, "arm", "--configure") == 0
     assert running._manager.resources.components["arm"].state.label == "inactive"
     assert await run(graph, HardwareSpawner, "arm", "leg", "--activate") == 1
     assert running._manager.resources.components["arm"].state.label == "active"
-    assert said("WARN")[1:] == ["Hardware Component is not loaded - state can not be changed."]
+    assert logged("WARN")[1:] == ["Hardware Component is not loaded - state can not be changed."]
     running.close()

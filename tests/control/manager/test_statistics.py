@@ -17,14 +17,14 @@ def test_the_statistics_of_what_is_done_regularly():
     timing = Timing()
     for time_ns in (0, 10_000_000, 20_000_000, 40_000_000):
         timing.measure(lambda *_: None, time_ns, 0.01)
-    told = dict(timing.items())
-    assert told["periodicity/sample_count"] == 2.0
-    assert (told["periodicity/min"], told["periodicity/max"]) == pytest.approx((50.0, 100.0))
-    assert told["periodicity/average"] == pytest.approx(75.0)
-    assert told["periodicity/standard_deviation"] == pytest.approx(sqrt(625.0))
-    assert told["periodicity/current_value"] == pytest.approx(50.0)
-    assert told["execution_time/sample_count"] == 4.0
-    assert told["execution_time/min"] >= 0.0
+    facts = dict(timing.items())
+    assert facts["periodicity/sample_count"] == 2.0
+    assert (facts["periodicity/min"], facts["periodicity/max"]) == pytest.approx((50.0, 100.0))
+    assert facts["periodicity/average"] == pytest.approx(75.0)
+    assert facts["periodicity/standard_deviation"] == pytest.approx(sqrt(625.0))
+    assert facts["periodicity/current_value"] == pytest.approx(50.0)
+    assert facts["execution_time/sample_count"] == 4.0
+    assert facts["execution_time/min"] >= 0.0
 
 
 async def test_they_are_published_each_second_while_somebody_listens(graph, clock, tmp_path, monkeypatch):
@@ -47,11 +47,11 @@ async def test_they_are_published_each_second_while_somebody_listens(graph, cloc
     assert len(names) == 1
     assert len(names[0].names) == len(values[-1].values)
     assert names[0].names_version == values[-1].names_version == 1
-    told = {statistic.name: statistic.value for statistic in full[-1].statistics}
-    assert told["broadcaster.stats/periodicity/average"] == pytest.approx(100.0)
-    assert told["broadcaster.stats/execution_time/sample_count"] >= 99.0
-    assert told["arm.stats/read_cycle/periodicity/average"] == pytest.approx(100.0)
-    assert told["arm.stats/write_cycle/execution_time/min"] >= 0.0
+    facts = {statistic.name: statistic.value for statistic in full[-1].statistics}
+    assert facts["broadcaster.stats/periodicity/average"] == pytest.approx(100.0)
+    assert facts["broadcaster.stats/execution_time/sample_count"] >= 99.0
+    assert facts["arm.stats/read_cycle/periodicity/average"] == pytest.approx(100.0)
+    assert facts["arm.stats/write_cycle/execution_time/min"] >= 0.0
     for each in (subscription, listening):
         node.destroy_subscription(each)
     await advance(graph, clock, 150)

@@ -21,11 +21,11 @@ def test_an_arc_is_exact_however_many_steps_it_takes():
 
 def test_velocities_are_the_mean_of_the_last_ones():
     odometer = Odometer(4)
-    told = []
+    messages = []
     for speed in (1.0, 1.0, 3.0, 3.0, 3.0):
         odometer.measure((speed, -speed, 0.0), 0.1)
-        told.append(odometer.velocity[0])
-    assert told == pytest.approx([1.0, 1.0, 5 / 3, 2.0, 2.5])
+        messages.append(odometer.velocity[0])
+    assert messages == pytest.approx([1.0, 1.0, 5 / 3, 2.0, 2.5])
     assert odometer.velocity[1] == pytest.approx(-2.5)
 
 

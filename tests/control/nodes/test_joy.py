@@ -121,10 +121,10 @@ async def test_sticky_buttons_stay(joystick, stage, heard, start):
     assert [list(each.buttons) for each in heard] == [[1], [0]]
 
 
-async def test_it_waits_for_a_joystick_and_says_so_once(joystick, stage, heard, start, said):
+async def test_it_waits_for_a_joystick_and_says_so_once(joystick, stage, heard, start, logged):
     node = start(autorepeat_rate=0.0)
     await stage.clock.advance(5.0)
-    assert said("WARN") == ["there is no joystick /dev/input/js0; waiting for it"]
+    assert logged("WARN") == ["there is no joystick /dev/input/js0; waiting for it"]
     joystick.plug_in()
     joystick.say((BUTTON | INITIAL, 0, 1))
     await stage.clock.advance(1.0)
@@ -133,13 +133,13 @@ async def test_it_waits_for_a_joystick_and_says_so_once(joystick, stage, heard, 
     assert list(heard[-1].buttons) == [1]
 
 
-async def test_a_joystick_that_is_pulled_out_lets_go_of_everything(joystick, stage, heard, start, said):
+async def test_a_joystick_that_is_pulled_out_lets_go_of_everything(joystick, stage, heard, start, logged):
     joystick.plug_in()
     start(autorepeat_rate=0.0)
     joystick.say((BUTTON, 0, 1), (AXIS, 0, 32767))
     await eventually(lambda: heard and list(heard[-1].axes))
     joystick.pull_out()
-    await eventually(lambda: "the joystick is gone; waiting for it" in said("WARN"))
+    await eventually(lambda: "the joystick is gone; waiting for it" in logged("WARN"))
     await stage.graph.settle()
     assert (list(heard[-1].axes), list(heard[-1].buttons)) == ([0.0], [0])
     joystick.plug_in()
@@ -148,9 +148,9 @@ async def test_a_joystick_that_is_pulled_out_lets_go_of_everything(joystick, sta
     await eventually(lambda: list(heard[-1].buttons) == [0, 0, 1])
 
 
-async def test_a_joystick_that_may_not_be_read_is_told_of(tmp_path, stage, start, said):
+async def test_a_joystick_that_may_not_be_read_is_told_of(tmp_path, stage, start, logged):
     start(JoyLinuxNode, dev=str(tmp_path))  # a folder
-    (text,) = said("WARN")
+    (text,) = logged("WARN")
     assert text.startswith(f"joystick {tmp_path} cannot be read: ")
 
 
@@ -239,7 +239,7 @@ async def test_the_type_is_that_of_who_listens(stage, start):
     assert pilot.velocities[0].header.frame_id == "base_link"
 
 
-async def test_a_joystick_nobody_speaks_for_stops_the_robot(stage, start, said):
+async def test_a_joystick_nobody_speaks_for_stops_the_robot(stage, start, logged):
     pilot = Pilot(stage)
     start(TeleopTwistJoy)
     await pilot.hold(AXES, 5)
@@ -247,7 +247,7 @@ async def test_a_joystick_nobody_speaks_for_stops_the_robot(stage, start, said):
     pilot.node.destroy_node()
     await stage.clock.advance(1.0)
     assert [each.linear.x for each in pilot.velocities] == [0.0]
-    assert said("WARN") == ["no node publishes '/joy' any more: the robot is stopped"]
+    assert logged("WARN") == ["no node publishes '/joy' any more: the robot is stopped"]
 
 
 async def test_its_end_stops_the_robot(stage):

@@ -155,12 +155,12 @@ async def test_velocities_are_repeated_on_request(start, stage):
     assert driver.last() == (0.5, 0, 0, 1)
 
 
-async def test_nobody_listening_is_told_once(start, stage, said):
+async def test_nobody_listening_is_told_once(start, stage, logged):
     driver = start(kind=None)
     os.write(driver.typing, b"i")
     await eventually(lambda: driver.node._direction.x == 1.0)
     await stage.clock.advance(3.0)
-    assert said("WARN") == ["no node subscribes to /cmd_vel; `linkwright doctor` shows more"]
+    assert logged("WARN") == ["no node subscribes to /cmd_vel; `linkwright doctor` shows more"]
 
 
 @pytest.mark.parametrize("end", ["\x03", "closed"])

@@ -45,7 +45,7 @@ class Traffic:
         await self.stage.graph.settle()
         return [getattr(each, "twist", each).linear.x for each in self.out]
 
-    async def said(self):
+    async def status_values(self):
         await self.stage.clock.advance(1.0)
         (status,) = self.diagnostics[-1].status
         assert (status.name, status.message) == ("twist_mux: Twist mux status", "ok")
@@ -107,11 +107,11 @@ async def test_diagnostics_tell_who_is_shut_out(stage, traffic):
     mux(stage)
     await traffic.send("pause", True)
     await traffic.send("joy_vel", 2.0)
-    said = await traffic.said()
-    assert said["velocity joystick"] == " masked (listening to joy_vel @ 0.500000s with priority #100)"
-    assert said["velocity navigation"].startswith(" masked (listening to nav_vel")
-    assert said["lock pause"] == " locked (listening to pause @ 0.000000s with priority #50)"
-    assert said["current priority"] == "50"
+    logged = await traffic.status_values()
+    assert logged["velocity joystick"] == " masked (listening to joy_vel @ 0.500000s with priority #100)"
+    assert logged["velocity navigation"].startswith(" masked (listening to nav_vel")
+    assert logged["lock pause"] == " locked (listening to pause @ 0.000000s with priority #50)"
+    assert logged["current priority"] == "50"
 
 
 @pytest.mark.parametrize(
@@ -130,9 +130,9 @@ async def test_what_is_not_whole_is_refused(stage, topics, named):
     assert f"'{named}'" in found.message
 
 
-async def test_without_topics_it_says_so_and_runs(stage, said):
+async def test_without_topics_it_says_so_and_runs(stage, logged):
     TwistMux(stage.graph, NodeOptions())
-    assert said("WARN") == ["no topics.NAME.topic is given, so nothing is forwarded"]
+    assert logged("WARN") == ["no topics.NAME.topic is given, so nothing is forwarded"]
 
 
 async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between(traffic):
@@ -149,13 +149,13 @@ async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between
                 source.send(message)
                 await traffic.stage.clock.advance(0.1)
 
-    def told():
+    def logged():
         return [each.text for each in traffic.stage.log if "two drivers" in each.text]
 
     await drive(tablet, joystick)
-    assert not told()
+    assert not logged()
     await drive(tablet, joystick, other)
-    (text,) = told()
+    (text,) = logged()
     assert "'/joy', '/pad' send commands on '/joy_vel'" in text
 
 
@@ -174,5 +174,5 @@ async def test_a_stop_goes_out_when_who_sent_the_last_velocity_is_lost(traffic):
     joystick.be_lost()
     await traffic.stage.graph.settle()
     assert [each.linear.x for each in traffic.out] == [0.1, 0.3, 0.0]
-    (told,) = [each.text for each in traffic.stage.log if "was lost" in each.text]
-    assert told.endswith("a stop is sent to '/cmd_vel_out'")
+    (logged,) = [each.text for each in traffic.stage.log if "was lost" in each.text]
+    assert logged.endswith("a stop is sent to '/cmd_vel_out'")

@@ -22,7 +22,7 @@ def stream(who: str, begin: float, end: float, rate: float, speed: float) -> lis
     return [(begin + number / rate, who, speed) for number in range(round((end - begin) * rate))]
 
 
-def told(*streams: Iterable[Sent], dispute: Dispute | None = None) -> list[tuple[float, set[object]]]:
+def disputes(*streams: Iterable[Sent], dispute: Dispute | None = None) -> list[tuple[float, set[object]]]:
     """When a dispute is told of, and who disputes."""
     dispute = dispute or Dispute()
     heard = []
@@ -52,22 +52,22 @@ def told(*streams: Iterable[Sent], dispute: Dispute | None = None) -> list[tuple
     ids=["one", "handover", "alike", "both still", "stops", "a smoother that runs out", "taps", "recoveries"],
 )
 def test_ordinary_practice_is_no_dispute(streams):
-    assert told(*streams) == []
+    assert disputes(*streams) == []
 
 
 @pytest.mark.parametrize(("first", "second"), [(10.0, 10.0), (1.0, 1.0), (50.0, 1.0), (100.0, 20.0)])
 def test_two_that_go_on_contradicting_each_other_are_told_once(first, second):
-    ((when, who),) = told(stream("keys", 5, 60, first, 0.3), stream("planner", 10.003, 60, second, -0.1))
+    ((when, who),) = disputes(stream("keys", 5, 60, first, 0.3), stream("planner", 10.003, 60, second, -0.1))
     assert who == {"keys", "planner"}
     assert 12.9 <= when <= 14.1
 
 
 def test_one_that_is_still_is_a_driver_too_while_it_says_so():
-    assert told(stream("joystick", 0, 9, 10, 0.0), stream("planner", 0.03, 9, 20, 0.5))
+    assert disputes(stream("joystick", 0, 9, 10, 0.0), stream("planner", 0.03, 9, 20, 0.5))
 
 
 def test_a_third_is_told_when_it_joins_and_all_again_after_a_rest():
-    heard = told(
+    heard = disputes(
         stream("a", 0, 20, 10, 0.1),
         stream("b", 0.01, 20, 10, 0.2),
         stream("c", 10.02, 20, 10, 0.3),
@@ -84,14 +84,14 @@ def test_a_short_pause_is_no_news():
         for who, shift in (("a", 0), ("b", 0.01))
         for begin, end in bursts
     ]
-    assert len(told(*streams)) == 1
+    assert len(disputes(*streams)) == 1
 
 
 def test_time_that_jumps_back_begins_anew():
     dispute = Dispute()
-    assert told(stream("a", 100, 102, 10, 0.1), stream("b", 100.01, 102, 10, 0.2), dispute=dispute) == []
-    assert told(stream("a", 0, 2, 10, 0.1), stream("b", 0.01, 2, 10, 0.2), dispute=dispute) == []
-    assert told(stream("a", 2, 4, 10, 0.1), stream("b", 2.01, 4, 10, 0.2), dispute=dispute)
+    assert disputes(stream("a", 100, 102, 10, 0.1), stream("b", 100.01, 102, 10, 0.2), dispute=dispute) == []
+    assert disputes(stream("a", 0, 2, 10, 0.1), stream("b", 0.01, 2, 10, 0.2), dispute=dispute) == []
+    assert disputes(stream("a", 2, 4, 10, 0.1), stream("b", 2.01, 4, 10, 0.2), dispute=dispute)
 
 
 class Known:

@@ -167,8 +167,8 @@ async def test_the_liveliness_of_publishers_of_other_processes(graph, node):
         subscription.set_outside_count(alive + not_alive)
         subscription.set_outside_liveliness(alive, not_alive)
     await graph.settle()
-    told = [(each.alive_count, each.not_alive_count, each.alive_count_change) for each in changed]
-    assert told == [(2, 0, 2), (1, 1, -1), (0, 1, -1), (0, 0, 0)]
+    result = [(each.alive_count, each.not_alive_count, each.alive_count_change) for each in changed]
+    assert result == [(2, 0, 2), (1, 1, -1), (0, 1, -1), (0, 0, 0)]
 
 
 async def test_lost_messages(graph, node):

@@ -32,7 +32,7 @@ def client(nodes, service):
 
 
 @pytest.fixture
-def told(graph, service):
+def events(graph, service):
     events = []
     graph.create_node("watcher").create_subscription(AddTwoInts.Event, "add/_service_event", events.append, 10)
     return events
@@ -42,69 +42,69 @@ def configure(endpoint, state):
     endpoint.configure_introspection(ROSClock(timebase=endpoint.node.timebase), SERVICES_QOS, state)
 
 
-async def test_nothing_is_told_before_it_is_asked_for(graph, client, told):
+async def test_nothing_is_told_before_it_is_asked_for(graph, client, events):
     await client.call_async(AddTwoInts.Request(a=1, b=2))
     await graph.settle()
-    assert told == []
+    assert events == []
     assert dict(graph.topics()).get("/add/_service_event") == ["example_interfaces/srv/AddTwoInts_Event"]
 
 
-async def test_metadata_tell_what_happened_without_what_was_said(graph, service, client, told):
+async def test_metadata_tell_what_happened_without_what_was_said(graph, service, client, events):
     for endpoint in (service, client):
         configure(endpoint, METADATA)
     await client.call_async(AddTwoInts.Request(a=1, b=2))
     await graph.settle()
-    kinds = [event.info.event_type for event in told]
+    kinds = [event.info.event_type for event in events]
     assert kinds == [Info.REQUEST_SENT, Info.REQUEST_RECEIVED, Info.RESPONSE_SENT, Info.RESPONSE_RECEIVED]
-    assert all(event.request == [] and event.response == [] for event in told)
+    assert all(event.request == [] and event.response == [] for event in events)
 
 
-async def test_all_events_of_a_request_carry_its_client_and_its_number(graph, service, client, told):
+async def test_all_events_of_a_request_carry_its_client_and_its_number(graph, service, client, events):
     for endpoint in (service, client):
         configure(endpoint, METADATA)
     for _ in range(2):
         await client.call_async(AddTwoInts.Request())
     await graph.settle()
-    assert [event.info.sequence_number for event in told] == [1] * 4 + [2] * 4
-    assert {bytes(event.info.client_gid) for event in told} == {client.gid}
+    assert [event.info.sequence_number for event in events] == [1] * 4 + [2] * 4
+    assert {bytes(event.info.client_gid) for event in events} == {client.gid}
 
 
-async def test_contents_are_told_in_the_events_that_they_belong_to(graph, service, client, told):
+async def test_contents_are_told_in_the_events_that_they_belong_to(graph, service, client, events):
     for endpoint in (service, client):
         configure(endpoint, CONTENTS)
     await client.call_async(AddTwoInts.Request(a=1, b=2))
     await graph.settle()
-    sent, received, answered, got = told
+    sent, received, answered, got = events
     assert [(each.request[0].a, each.request[0].b, each.response) for each in (sent, received)] == [(1, 2, [])] * 2
     assert [(each.request, each.response[0].sum) for each in (answered, got)] == [([], 3)] * 2
 
 
-async def test_one_side_can_be_watched_alone(graph, service, client, told):
+async def test_one_side_can_be_watched_alone(graph, service, client, events):
     configure(service, METADATA)
     await client.call_async(AddTwoInts.Request())
     await graph.settle()
-    assert [event.info.event_type for event in told] == [Info.REQUEST_RECEIVED, Info.RESPONSE_SENT]
+    assert [event.info.event_type for event in events] == [Info.REQUEST_RECEIVED, Info.RESPONSE_SENT]
 
 
-async def test_events_are_stamped_by_the_clock_that_was_given(graph, clock, service, client, told):
+async def test_events_are_stamped_by_the_clock_that_was_given(graph, clock, service, client, events):
     own = Clock(timebase=graph.timebase)
     service.configure_introspection(own, SERVICES_QOS, METADATA)
     await client.call_async(AddTwoInts.Request())
     await graph.settle()
-    assert told[0].info.stamp == own.now().to_msg()
+    assert events[0].info.stamp == own.now().to_msg()
 
 
-async def test_the_state_can_be_changed_and_turned_off(graph, service, client, told):
+async def test_the_state_can_be_changed_and_turned_off(graph, service, client, events):
     configure(service, METADATA)
     configure(service, CONTENTS)
     await client.call_async(AddTwoInts.Request(a=4, b=0))
     await graph.settle()
-    assert told[0].request[0].a == 4
+    assert events[0].request[0].a == 4
     configure(service, OFF)
     assert not list(graph.bus.publishers("/add/_service_event"))
     await client.call_async(AddTwoInts.Request())
     await graph.settle()
-    assert len(told) == 2
+    assert len(events) == 2
 
 
 async def test_an_endpoint_that_is_destroyed_takes_its_events_with_it(graph, service, client):

@@ -193,11 +193,11 @@ async def test_acknowledgements_are_waited_for(graph):
 
 async def test_bytes_that_come_in_are_read_when_their_turn_comes(graph, log):
     node = graph.create_node("node")
-    messages, raw, told = [], [], []
+    messages, raw, received = [], [], []
     readers = [
         node.create_subscription(String, "topic", messages.append, 10),
         node.create_subscription(String, "topic", raw.append, 10, raw=True),
-        node.create_subscription(String, "topic", lambda message, info: told.append((message, info)), 10),
+        node.create_subscription(String, "topic", lambda message, info: received.append((message, info)), 10),
     ]
     data = serialize(String("hello"))
     info = MessageInfo(1, 2, b"g" * 16, from_outside=True)
@@ -206,7 +206,7 @@ async def test_bytes_that_come_in_are_read_when_their_turn_comes(graph, log):
     await graph.settle()
     assert messages == [String("hello")]
     assert raw == [data]
-    assert told == [(String("hello"), info)]
+    assert received == [(String("hello"), info)]
     assert (info["source_timestamp"], dict(info)["received_timestamp"]) == (1, 2)
     assert "source_timestamp" in info
     assert info.get("sender") is None
@@ -244,14 +244,14 @@ async def test_raw_subscriptions_and_publications_inside_the_process(graph):
 
 async def test_the_sender_is_told_to_callbacks_that_ask(graph, clock):
     node = graph.create_node("node")
-    told = []
-    node.create_subscription(String, "topic", lambda _message, info: told.append(info), 10)
+    messages = []
+    node.create_subscription(String, "topic", lambda _message, info: messages.append(info), 10)
     publisher = node.create_publisher(String, "topic", 10)
     publisher.publish(String())
     await graph.settle()
-    assert told[0].publisher_gid == publisher.gid
-    assert told[0].source_timestamp == clock.now_ns()
-    assert not told[0].from_outside
+    assert messages[0].publisher_gid == publisher.gid
+    assert messages[0].source_timestamp == clock.now_ns()
+    assert not messages[0].from_outside
 
 
 async def test_requests_go_out_where_this_process_has_no_server(graph):
@@ -356,10 +356,10 @@ async def test_what_is_waited_for_comes_from_outside(graph, transport):
 
 
 async def test_who_watches_is_told_of_changes(graph):
-    told = []
-    graph.watch(lambda: told.append(len(graph.endpoints())))
+    messages = []
+    graph.watch(lambda: messages.append(len(graph.endpoints())))
     node = graph.create_node("node", start_parameter_services=False, enable_rosout=False)
-    before = len(told)
+    before = len(messages)
     node.create_publisher(String, "topic", 1)
-    assert len(told) == before + 1
-    assert told[-1] > told[before - 1]
+    assert len(messages) == before + 1
+    assert messages[-1] > messages[before - 1]

@@ -37,15 +37,15 @@ def test_names_of_the_root_have_one_slash():
 
 def test_who_asks_to_be_told_hears_of_each_change_and_nothing_is_logged():
     log: list[LogRecord] = []
-    told: list[frozenset[str]] = []
+    messages: list[frozenset[str]] = []
     graph = Graph(threads=True, on_log=log.append)
     graph.create_node("talker")
     graph.create_node("listener")
-    namesakes = Namesakes(told.append)
+    namesakes = Namesakes(messages.append)
     talker, listener = NodeIdentity("talker", "/", "/"), NodeIdentity("listener", "/", "/")
     for there in ([], [talker], [talker, NodeIdentity("other", "/", "/")], [talker, listener], [listener], []):
         namesakes.review(graph.nodes(), there)
-    assert told == [
+    assert messages == [
         frozenset({"/talker"}),
         frozenset({"/talker", "/listener"}),
         frozenset({"/listener"}),

@@ -8,16 +8,16 @@ from linkwright.graph.loop.future import StepsByExecutor
 
 
 def test_a_result():
-    future, told = Future(), []
-    future.add_done_callback(told.append)
+    future, received = Future(), []
+    future.add_done_callback(received.append)
     assert not future.done()
     assert future.result() is None
     future.set_result(3)
     assert (future.done(), future.cancelled(), future.ended()) == (True, False, True)
     assert future.result() == 3
     assert future.exception() is None
-    future.add_done_callback(told.append)
-    assert told == [future, future]
+    future.add_done_callback(received.append)
+    assert received == [future, future]
 
 
 def test_an_exception():
@@ -37,12 +37,12 @@ def test_an_exception_that_nobody_asks_for_is_told(capsys):
 
 
 def test_cancelling():
-    future, told = Future(), []
-    future.add_done_callback(told.append)
+    future, received = Future(), []
+    future.add_done_callback(received.append)
     future.cancel()
     future.cancel()
     assert (future.done(), future.cancelled(), future.ended()) == (False, True, True)
-    assert told == [future]
+    assert received == [future]
     done = Future()
     done.set_result(1)
     done.cancel()
@@ -50,12 +50,12 @@ def test_cancelling():
 
 
 def test_callbacks_are_taken_back():
-    future, told = Future(), []
-    future.add_done_callback(told.append)
-    assert future.remove_done_callback(told.append) == 1
-    assert future.remove_done_callback(told.append) == 0
+    future, received = Future(), []
+    future.add_done_callback(received.append)
+    assert future.remove_done_callback(received.append) == 1
+    assert future.remove_done_callback(received.append) == 0
     future.set_result(1)
-    assert told == []
+    assert received == []
 
 
 def test_an_executor_runs_the_callbacks():

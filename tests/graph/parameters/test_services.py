@@ -77,16 +77,16 @@ async def test_setting_from_outside(graph, server, client):
     server.add_on_set_parameters_callback(
         lambda given: SetParametersResult(all(each.value != 13 for each in given), "unlucky")
     )
-    told = []
+    messages = []
     future = client.set_parameters(
         [Parameter("rate", value=1), Parameter("rate", value=13), Parameter("gone", value=1)],
-        callback=lambda done: told.append(done.result()),
+        callback=lambda done: messages.append(done.result()),
     )
     results = (await answer(graph, future)).results
     assert [result.successful for result in results] == [True, False, False]
     assert results[1].reason == "unlucky"
     assert results[2].reason == "Invalid access to undeclared parameter(s): ['gone']"
-    assert len(told) == 1
+    assert len(messages) == 1
     response = await answer(
         graph, client.set_parameters_atomically([Parameter("rate", value=2), Parameter("rate", value="x")])
     )
@@ -150,15 +150,15 @@ async def test_changes_are_published_and_refusals_are_not(graph, server, clock):
 async def test_the_event_handler_tells_of_single_parameters(graph, server):
     watcher = graph.create_node("watcher", namespace="/robot")
     handler = ParameterEventHandler(watcher)
-    told = []
-    rate = handler.add_parameter_callback("rate", "server", lambda p: told.append(("rate", p.value.integer_value)))
-    handler.add_parameter_callback("rate", "/other", lambda p: told.append(("other", p)))
-    own = handler.add_parameter_callback("mine", "", lambda p: told.append(("mine", p.value.bool_value)))
-    event = handler.add_parameter_event_callback(lambda e: told.append(e.node))
+    messages = []
+    rate = handler.add_parameter_callback("rate", "server", lambda p: messages.append(("rate", p.value.integer_value)))
+    handler.add_parameter_callback("rate", "/other", lambda p: messages.append(("other", p)))
+    own = handler.add_parameter_callback("mine", "", lambda p: messages.append(("mine", p.value.bool_value)))
+    event = handler.add_parameter_event_callback(lambda e: messages.append(e.node))
     server.set_parameters([Parameter("rate", value=3)])
     watcher.declare_parameter("mine", True)
     await graph.settle()
-    assert told == [("rate", 3), "/robot/server", ("mine", True), "/robot/watcher"]
+    assert messages == [("rate", 3), "/robot/server", ("mine", True), "/robot/watcher"]
     handler.remove_parameter_callback(rate)
     handler.remove_parameter_callback(own)
     handler.remove_parameter_event_callback(event)
@@ -167,5 +167,5 @@ async def test_the_event_handler_tells_of_single_parameters(graph, server):
             remove(handle)
     server.set_parameters([Parameter("rate", value=4)])
     await graph.settle()
-    assert len(told) == 4
+    assert len(messages) == 4
     handler.destroy()

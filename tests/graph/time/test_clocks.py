@@ -104,24 +104,24 @@ class TestClocks:
 
     def test_jumps_are_told(self):
         clock = ROSClock()
-        told = []
+        messages = []
         clock.create_jump_callback(
             JumpThreshold(min_forward=Duration(seconds=1), min_backward=Duration(seconds=-0.5)),
-            pre_callback=lambda: told.append("before"),
-            post_callback=told.append,
+            pre_callback=lambda: messages.append("before"),
+            post_callback=messages.append,
         )
         other = clock.create_jump_callback(
-            JumpThreshold(min_forward=None, min_backward=None), post_callback=lambda jump: told.append("other")
+            JumpThreshold(min_forward=None, min_backward=None), post_callback=lambda jump: messages.append("other")
         )
         clock.set_ros_time_override(Time(seconds=10, clock_type=ClockType.ROS_TIME))
         clock.set_ros_time_is_active(True)
-        assert told[0] == "before"
-        assert told[1].clock_change is ClockChange.ROS_TIME_ACTIVATED
-        assert told[2] == "other"
-        told.clear()
+        assert messages[0] == "before"
+        assert messages[1].clock_change is ClockChange.ROS_TIME_ACTIVATED
+        assert messages[2] == "other"
+        messages.clear()
         for seconds in (10.5, 12.0, 11.8, 11.0):
             clock.set_ros_time_override(Time(seconds=seconds, clock_type=ClockType.ROS_TIME))
-        assert told == [
+        assert messages == [
             "before",
             TimeJump(ClockChange.ROS_TIME_NO_CHANGE, Duration(seconds=1.5)),
             "before",
@@ -129,7 +129,7 @@ class TestClocks:
         ]
         other.unregister()
         clock.set_ros_time_is_active(False)
-        assert told[-1].clock_change is ClockChange.ROS_TIME_DEACTIVATED
+        assert messages[-1].clock_change is ClockChange.ROS_TIME_DEACTIVATED
 
     def test_thresholds_have_signs(self):
         with pytest.raises(ValueError, match="min_forward must be a positive"):

@@ -40,13 +40,13 @@ LATEST = Time()
 
 
 @pytest.fixture
-def said():
+def logged():
     return []
 
 
 @pytest.fixture
-def buffer(said):
-    logger = Logger("tf2", lambda record: said.append((record.level.name, record.text)), lambda: 0)
+def buffer(logged):
+    logger = Logger("tf2", lambda record: logged.append((record.level.name, record.text)), lambda: 0)
     return BufferCore(logger=logger)
 
 
@@ -248,36 +248,36 @@ def test_a_loop_is_told(buffer):
         ),
     ],
 )
-def test_bad_transforms_are_left_out_and_told(buffer, said, transform, text):
+def test_bad_transforms_are_left_out_and_told(buffer, logged, transform, text):
     fill(buffer, transform)
-    assert said == [("ERROR", text)]
+    assert logged == [("ERROR", text)]
     assert buffer.all_frames_as_string() == ""
 
 
-def test_a_quaternion_must_be_of_unit_length(buffer, said):
+def test_a_quaternion_must_be_of_unit_length(buffer, logged):
     bad = stamped("a", "b")
     bad.transform.rotation.w = 0.9
     fill(buffer, bad)
     bad.transform.rotation.w = inf
     fill(buffer, bad)
-    assert said[0] == (
+    assert logged[0] == (
         "ERROR",
         (
             'TF_DENORMALIZED_QUATERNION: Ignoring transform for child_frame_id "b" from authority "me" because of an '
             "invalid quaternion in the transform (0.000000 0.000000 0.000000 0.900000)"
         ),
     )
-    assert len(said) == 2
+    assert len(logged) == 2
 
 
-def test_old_data_is_refused_and_the_rest_put_in_order(buffer, said):
+def test_old_data_is_refused_and_the_rest_put_in_order(buffer, logged):
     fill(buffer, stamped("a", "b", 100, x=1.0), stamped("a", "b", 95, x=2.0), stamped("a", "b", 98, x=3.0))
     assert [x_of(buffer, "a", "b", at(time)) for time in (95, 98, 100)] == [2.0, 3.0, 1.0]
     assert x_of(buffer, "a", "b", at(99)) == pytest.approx(2.0)
     fill(buffer, stamped("a", "b", 98, x=3.0))
-    assert said == []
+    assert logged == []
     fill(buffer, *(stamped("a", "b", 89, x=4.0) for _ in range(9)))
-    assert said == [
+    assert logged == [
         (
             "WARN",
             (
@@ -288,7 +288,7 @@ def test_old_data_is_refused_and_the_rest_put_in_order(buffer, said):
     ]
 
 
-def test_what_is_older_than_the_cache_time_goes(said):
+def test_what_is_older_than_the_cache_time_goes(logged):
     buffer = BufferCore(Duration(seconds=2))
     for tick in range(3000):
         buffer.set_transform(stamped("a", "b", 1 + tick * 0.01, x=float(tick)), "me")

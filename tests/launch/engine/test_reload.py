@@ -70,15 +70,15 @@ class Bench:
         await self.until(lambda: self.session.reload._watch is not None)
         watch = self.session.reload._watch
         assert watch is not None
-        probes, told, pass_on = {Path(folder) / ".probe" for folder, _ in watch._folders}, set(), watch._on_change
+        probes, result, pass_on = {Path(folder) / ".probe" for folder, _ in watch._folders}, set(), watch._on_change
 
         def on_change(paths: set[Path]) -> None:
-            told.update(paths & probes)
+            result.update(paths & probes)
             if paths - probes:
                 pass_on(paths - probes)
 
         watch._on_change = on_change
-        while told != probes:
+        while result != probes:
             for probe in probes:
                 probe.write_text("")
             await asyncio.sleep(0.05)

@@ -132,24 +132,24 @@ def test_a_timer_may_outlast_the_shutdown() -> None:
 def test_a_coroutine_is_waited_for_and_cancelled() -> None:
     import asyncio
 
-    said: list[str] = []
+    messages: list[str] = []
 
     async def work(context: LaunchContext, word: str) -> None:
         await asyncio.sleep(0.05)
-        said.append(word)
+        messages.append(word)
 
     async def for_ever() -> None:
         try:
             await asyncio.sleep(60)
         finally:
-            said.append("cancelled")
+            messages.append("cancelled")
 
     assert run(OpaqueCoroutine(coroutine=work, args=["done"])) == 0
     assert (
         run(OpaqueCoroutine(coroutine=for_ever, ignore_context=True), TimerAction(period=0.1, actions=[Shutdown()]))
         == 0
     )
-    assert said == ["done", "cancelled"]
+    assert messages == ["done", "cancelled"]
     with pytest.raises(TypeError):
         OpaqueCoroutine(coroutine=print)
 

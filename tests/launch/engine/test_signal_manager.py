@@ -26,19 +26,19 @@ def before():
 
 
 async def test_handlers_are_called_by_the_loop_while_it_is_entered(before):
-    manager, told = AsyncSafeSignalManager(asyncio.get_running_loop()), []
-    assert manager.handle(signal.SIGUSR1, told.append) is None
+    manager, received = AsyncSafeSignalManager(asyncio.get_running_loop()), []
+    assert manager.handle(signal.SIGUSR1, received.append) is None
     signal.raise_signal(signal.SIGUSR1)
     assert before == [signal.SIGUSR1]
     with manager:
-        manager.handle(signal.SIGUSR2, told.append)
+        manager.handle(signal.SIGUSR2, received.append)
         signal.raise_signal(signal.SIGUSR1)
-        assert told == []
+        assert received == []
         await asyncio.sleep(0)
         signal.raise_signal(signal.SIGUSR2)
         await asyncio.sleep(0)
-        assert told == [signal.SIGUSR1, signal.SIGUSR2]
-        assert manager.handle(signal.SIGUSR1, None) == told.append
+        assert received == [signal.SIGUSR1, signal.SIGUSR2]
+        assert manager.handle(signal.SIGUSR1, None) == received.append
         signal.raise_signal(signal.SIGUSR1)
         assert before == [signal.SIGUSR1] * 2
     signal.raise_signal(signal.SIGUSR2)
@@ -46,7 +46,7 @@ async def test_handlers_are_called_by_the_loop_while_it_is_entered(before):
     with manager:
         signal.raise_signal(signal.SIGUSR2)
         await asyncio.sleep(0)
-    assert told == [signal.SIGUSR1, signal.SIGUSR2, signal.SIGUSR2]
+    assert received == [signal.SIGUSR1, signal.SIGUSR2, signal.SIGUSR2]
 
 
 async def test_a_number_that_is_no_signal():

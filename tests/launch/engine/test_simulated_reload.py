@@ -58,7 +58,7 @@ class Launched:
 async def launched(folder: Path) -> AsyncIterator[Launched]:
     err = io.StringIO()
     description = ParameterValue(Command(["xacro ", str(folder / "arm.xacro")]), value_type=str)
-    said = {"robot_description": description}
+    facts = {"robot_description": description}
     entities = [
         Node(
             package="gazebo_ros",
@@ -66,7 +66,7 @@ async def launched(folder: Path) -> AsyncIterator[Launched]:
             arguments=[str(folder / "a.world")],
             parameters=[{"pause": True}],
         ),
-        Node(package="robot_state_publisher", executable="robot_state_publisher", parameters=[said]),
+        Node(package="robot_state_publisher", executable="robot_state_publisher", parameters=[facts]),
         Node(
             package="gazebo_ros",
             executable="spawn_entity.py",

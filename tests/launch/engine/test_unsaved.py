@@ -55,8 +55,8 @@ def test_they_are_kept_and_the_terminal_says_where(
     assert running.end(number)[0] == 128 + number
     (file,) = kept.iterdir()
     assert [display.name for display in RvizConfig.load(file).walk()] == ["Grid", "Added"]
-    said = f"unsaved changes of '{config}' are stored in '{file}': open that file in the page, or with 'rviz2"
-    assert said in running.err
+    text = f"unsaved changes of '{config}' are stored in '{file}': open that file in the page, or with 'rviz2"
+    assert text in running.err
     again = start(tmp_path / "a.launch.py")
     again.until("Robot initialized")
     assert "info[RVIZ302]" in again.err

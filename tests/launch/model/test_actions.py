@@ -289,8 +289,8 @@ class TestIncludeLaunchDescription:
     async def test_a_missing_argument_is_told_before_anything_runs(self, launch, write: Write) -> None:
         inner = write("inner.launch.py", INNER.replace("{default}", ""))
         done = await launch(IncludeLaunchDescription(str(inner), launch_arguments=[("sped", "1")]))
-        told = f"the included launch file '{inner}' requires argument 'speed', which is not given"
-        assert f"error[LAUNCH114]: {told}" in done.err
+        text = f"the included launch file '{inner}' requires argument 'speed', which is not given"
+        assert f"error[LAUNCH114]: {text}" in done.err
         assert "it is given 'sped'; did you mean that?" in done.err
         assert done.messages == []
 

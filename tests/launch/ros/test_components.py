@@ -95,7 +95,7 @@ class TestRequests:
         assert "'/***' is not a node name" in caught.value.diagnostics[0].message
 
     @pytest.mark.parametrize(
-        ("section", "names", "told"),
+        ("section", "names", "message"),
         [
             ("/tkr", {"name": "tk"}, "no section of "),
             ("/tk", {"name": "tk", "namespace": "ns"}, "is for node '/ns/tk'"),
@@ -105,14 +105,14 @@ class TestRequests:
         ],
     )
     def test_a_file_with_nothing_for_the_node(
-        self, write: Write, capsys: pytest.CaptureFixture[str], section: str, names: dict[str, str], told: str
+        self, write: Write, capsys: pytest.CaptureFixture[str], section: str, names: dict[str, str], message: str
     ) -> None:
         path = write("p.yaml", f"{section}: {{ros__parameters: {{a: 1}}}}")
         asked(talker(parameters=[str(path)], **names))
-        said = capsys.readouterr().err
-        assert ("warning[LAUNCH149]" in said) is bool(told)
-        assert told in said
-        assert not told or "test_components.py" in said
+        output = capsys.readouterr().err
+        assert ("warning[LAUNCH149]" in output) is bool(message)
+        assert message in output
+        assert not message or "test_components.py" in output
 
 
 class TestContainers:

@@ -48,7 +48,7 @@ def managed(name: str = "one", **options: Any) -> LifecycleNode:
     return LifecycleNode(package="life", executable="node", name=name, namespace="", **options)
 
 
-def said(text: str, **what: Any) -> RegisterEventHandler:
+def log_on_transition(text: str, **what: Any) -> RegisterEventHandler:
     return RegisterEventHandler(OnStateTransition(entities=[LogInfo(msg=text)], **what))
 
 
@@ -58,8 +58,8 @@ async def test_a_wish_for_a_transition_and_the_news_of_it(launch) -> None:
     done = await launch(
         node,
         managed("two"),
-        said("configured", target_lifecycle_node=node, transition="on_configure_success"),
-        said("inactive", goal_state="inactive", start_state="configuring"),
+        log_on_transition("configured", target_lifecycle_node=node, transition="on_configure_success"),
+        log_on_transition("inactive", goal_state="inactive", start_state="configuring"),
         EmitEvent(event=wish),
         ends_when(printed("[launch.user]: inactive")),
     )
@@ -69,7 +69,7 @@ async def test_a_wish_for_a_transition_and_the_news_of_it(launch) -> None:
 
 async def test_autostart(launch) -> None:
     node = managed(autostart=True)
-    active = said("active", target_lifecycle_node=node, goal_state="active")
+    active = log_on_transition("active", target_lifecycle_node=node, goal_state="active")
     done = await launch(node, active, ends_when(printed("[launch.user]: active")))
     assert done.messages == ["active"]
 
@@ -77,7 +77,7 @@ async def test_autostart(launch) -> None:
 async def test_a_row_of_transitions(launch) -> None:
     nodes = [managed("one"), managed("two")]
     row = LifecycleTransition(lifecycle_node_names=["one", "/two"], transition_ids=[CONFIGURE, "3", DEACTIVATE])
-    off = said("off", start_state="deactivating", goal_state="inactive")
+    off = log_on_transition("off", start_state="deactivating", goal_state="inactive")
     done = await launch(*nodes, row, off, ends_when(printed("[launch.user]: off", times=2)))
     assert done.messages == ["off", "off"]
 

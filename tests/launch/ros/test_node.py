@@ -148,7 +148,7 @@ class TestProcessNodes:
         assert not done.succeeded
 
     @pytest.mark.parametrize(
-        ("section", "node", "told"),
+        ("section", "node", "message"),
         [
             ("tller", {"name": "teller"}, "did you mean '/tller'?"),
             ("teller", {"name": "teller", "namespace": "left"}, "is for node '/left/teller'"),
@@ -158,12 +158,12 @@ class TestProcessNodes:
         ],
     )
     async def test_a_parameter_file_with_nothing_for_the_node(
-        self, launch, ros: PackageFinder, write: Write, section: str, node: dict[str, str], told: str
+        self, launch, ros: PackageFinder, write: Write, section: str, node: dict[str, str], message: str
     ) -> None:
         path = write("p.yaml", f"{section}: {{ros__parameters: {{a: 1}}}}" + "}" * section.count("{"))
         done = await launch(Node(package="arm", executable="tell", parameters=[str(path)], **node), finder=ros)
-        assert ("warning[LAUNCH149]: no section of" in done.err) is bool(told)
-        assert told in done.err
+        assert ("warning[LAUNCH149]: no section of" in done.err) is bool(message)
+        assert message in done.err
         assert done.succeeded
 
     @pytest.mark.parametrize(

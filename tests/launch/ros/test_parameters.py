@@ -32,7 +32,7 @@ def values(context: LaunchContext, *parameters: Any, node: str = "/talker") -> d
     return own_parameters(normalize_parameters(list(parameters)), context).values(context, node)
 
 
-def told(error: BaseException) -> str:
+def message_of(error: BaseException) -> str:
     assert isinstance(error, LinkwrightError)
     (diagnostic,) = error.diagnostics
     return diagnostic.message
@@ -77,7 +77,7 @@ class TestParameters:
     def test_a_value_of_another_type(self, context: LaunchContext) -> None:
         with pytest.raises(ValueError) as caught:
             values(context, {"p": ParameterValue(LaunchConfiguration("word"), value_type=int)})
-        assert "parameter 'p' is not of the requested type int" in told(caught.value)
+        assert "parameter 'p' is not of the requested type int" in message_of(caught.value)
 
     def test_nested_dictionaries_and_substituted_names(self, context: LaunchContext) -> None:
         found = values(context, {"zeros": {"joint": 1.0, ("n", LaunchConfiguration("number")): 2.0}, "a.b": 1})
@@ -114,7 +114,7 @@ class TestParameters:
         context.launch_configurations["odd"] = value
         with pytest.raises(TypeError) as caught:
             values(context, {"p": LaunchConfiguration("odd")})
-        assert message in told(caught.value)
+        assert message in message_of(caught.value)
 
     def test_nothing_is_an_empty_text(self, context: LaunchContext) -> None:
         context.launch_configurations["nothing"] = ""
@@ -135,7 +135,7 @@ class TestParameters:
     def test_forms_that_are_refused_when_the_node_is_made(self, parameters: Any, message: str) -> None:
         with pytest.raises(TypeError) as caught:
             normalize_parameters(parameters)
-        assert message in told(caught.value)
+        assert message in message_of(caught.value)
 
     def test_plain_texts_are_not_read_as_yaml(self, context: LaunchContext) -> None:
         given = {"a": "1", "b": ["true", "2"], "c": "{x: y}"}
@@ -222,7 +222,7 @@ listener:
     def test_a_missing_file(self, context: LaunchContext, tmp_path: Path) -> None:
         with pytest.raises(FileNotFoundError) as caught:
             values(context, str(tmp_path / "none.yaml"))
-        assert "none.yaml' does not exist" in told(caught.value)
+        assert "none.yaml' does not exist" in message_of(caught.value)
 
     def test_an_empty_file(self, context: LaunchContext, write: Write) -> None:
         assert values(context, str(write("p.yaml", ""))) == {}

@@ -188,16 +188,18 @@ def test_a_marked_file_is_one_test_of_pytest(run, text: str, words: tuple[str, .
 
 
 @pytest.mark.parametrize(
-    ("text", "words", "told"),
+    ("text", "words", "message"),
     [
         ("", (), "has no function generate_test_description"),
         (TALKER, ("fast",), "malformed launch argument 'fast'"),
         ("def generate_test_description(speed):\n    pass\n", (), "has unexpected extra argument 'speed'"),
     ],
 )
-def test_what_is_wrong_with_a_file_or_its_arguments_is_told(run, text: str, words: tuple[str, ...], told: str) -> None:
+def test_what_is_wrong_with_a_file_or_its_arguments_is_told(
+    run, text: str, words: tuple[str, ...], message: str
+) -> None:
     done = run(text, *words)
-    assert (done.returncode, told in done.stderr) == (2, True), done.stderr
+    assert (done.returncode, message in done.stderr) == (2, True), done.stderr
     assert "Traceback" not in done.stderr
 
 

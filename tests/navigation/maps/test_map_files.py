@@ -62,8 +62,8 @@ def test_opacity_is_a_fourth_colour_with_trinary_and_unknown_with_scale() -> Non
 
 
 def test_equal_thresholds_leave_no_scale() -> None:
-    said = _said(MapMode.SCALE, occupied=0.5, free=0.5)
-    assert cells_of_image(MapImage(np.array([[0.0, 0.5, 1.0]])), said).tolist() == [[100, 0, 0]]
+    logged = _said(MapMode.SCALE, occupied=0.5, free=0.5)
+    assert cells_of_image(MapImage(np.array([[0.0, 0.5, 1.0]])), logged).tolist() == [[100, 0, 0]]
 
 
 def test_cells_become_the_pixels_of_nav2() -> None:
@@ -118,18 +118,18 @@ def test_nav2_s_own_words_for_a_map(tmp_path: Path) -> None:
 
 
 def test_who_saves_is_told_what_will_be_read_otherwise(tmp_path: Path) -> None:
-    said: list[str] = []
+    messages: list[str] = []
     grid = Grid(cells=np.array([[0, -1]], np.int8), resolution=0.05)
-    save_map(grid, SavedAs(name=str(tmp_path / "a")), said.append)
-    assert len(said) == 1
-    assert "Unknown cells are read back as free with a free threshold of 0.25" in said[0]
+    save_map(grid, SavedAs(name=str(tmp_path / "a")), messages.append)
+    assert len(messages) == 1
+    assert "Unknown cells are read back as free with a free threshold of 0.25" in messages[0]
     assert load_map(tmp_path / "a.yaml").cells.tolist() == [[0, 0]]
-    said.clear()
-    save_map(grid, SavedAs(name=str(tmp_path / "b"), free_thresh=0.196), said.append)
-    assert said == []
-    save_map(grid, SavedAs(name=str(tmp_path / "c"), image_format="xyz", mode=MapMode.RAW), said.append)
-    assert "'xyz' is not one of the recommended formats" in said[0]
-    assert "Using 'png' instead" in said[1]
+    messages.clear()
+    save_map(grid, SavedAs(name=str(tmp_path / "b"), free_thresh=0.196), messages.append)
+    assert messages == []
+    save_map(grid, SavedAs(name=str(tmp_path / "c"), image_format="xyz", mode=MapMode.RAW), messages.append)
+    assert "'xyz' is not one of the recommended formats" in messages[0]
+    assert "Using 'png' instead" in messages[1]
     assert (tmp_path / "c.png").is_file()
 
 

@@ -26,10 +26,10 @@ def _file(folder: Path, text: str) -> Path:
 
 
 def test_a_map_is_read(tmp_path: Path) -> None:
-    said = read_map_yaml(_file(tmp_path, _GOOD))
-    assert said.image == tmp_path / "house.pgm"
-    assert (said.resolution, said.origin, said.negate) == (0.05, (-1.5, 2.0, 0.0), False)
-    assert (said.occupied_thresh, said.free_thresh, said.mode) == (0.65, 0.196, MapMode.TRINARY)
+    result = read_map_yaml(_file(tmp_path, _GOOD))
+    assert result.image == tmp_path / "house.pgm"
+    assert (result.resolution, result.origin, result.negate) == (0.05, (-1.5, 2.0, 0.0), False)
+    assert (result.occupied_thresh, result.free_thresh, result.mode) == (0.65, 0.196, MapMode.TRINARY)
 
 
 @pytest.mark.parametrize(("text", "value"), [("1", True), ("true", True), ("false", False), ("No", False), ("2", True)])
@@ -39,9 +39,9 @@ def test_negate_is_a_number_or_a_word(tmp_path: Path, text: str, value: bool) ->
 
 def test_without_a_mode_it_is_trinary_and_other_keys_do_not_matter(tmp_path: Path) -> None:
     text = _GOOD.replace("mode: trinary", "comment: {who: me}").replace("house.pgm", "/maps/house.png")
-    said = read_map_yaml(_file(tmp_path, text))
-    assert said.mode is MapMode.TRINARY
-    assert said.image == Path("/maps/house.png")
+    shown = read_map_yaml(_file(tmp_path, text))
+    assert shown.mode is MapMode.TRINARY
+    assert shown.image == Path("/maps/house.png")
 
 
 @pytest.mark.parametrize(

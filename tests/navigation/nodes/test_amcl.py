@@ -100,7 +100,7 @@ class House:
         test.drive(0.0)
         test.advance(0.5)
 
-    def said(self, level: LogLevel) -> list[str]:
+    def logged(self, level: LogLevel) -> list[str]:
         return [record.text for record in self.test.log if record.level is level and record.node.endswith("amcl")]
 
 
@@ -141,7 +141,7 @@ def test_it_tracks_a_drive_through_the_house(begin: Begin) -> None:
     assert max(house.errors) < 0.2
     assert sum(house.errors) / len(house.errors) < 0.08
     assert house.error()[1] < 0.05
-    assert house.said(LogLevel.WARN) == house.said(LogLevel.ERROR) == []
+    assert house.logged(LogLevel.WARN) == house.logged(LogLevel.ERROR) == []
 
 
 def test_a_pose_that_is_wrong_is_put_right(begin: Begin) -> None:
@@ -149,7 +149,7 @@ def test_a_pose_that_is_wrong_is_put_right(begin: Begin) -> None:
     house.test.advance(1.0)
     with pytest.raises(TransformException):
         house.error()
-    assert "Please set the initial pose" in house.said(LogLevel.WARN)[0]
+    assert "Please set the initial pose" in house.logged(LogLevel.WARN)[0]
     house.tell(-1.6, 0.3, 0.2)  # 0.5 m and 0.3 rad off
     house.test.advance(0.5)
     house.drive([(-2.2, -0.4), (-2.2, -2.0), (-0.2, -2.4)])
@@ -205,20 +205,20 @@ def test_scans_that_fit_nowhere_near_are_told(begin: Begin) -> None:
     house.test.advance(0.5)
     house.drive([(-2.2, -0.4), (-2.2, -2.0), (-0.2, -2.4), (0.0, 0.0)])
     assert house.error()[0] > 0.5
-    assert any("of the beams end near something on the map" in text for text in house.said(LogLevel.WARN))
+    assert any("of the beams end near something on the map" in text for text in house.logged(LogLevel.WARN))
 
 
 def test_it_says_what_it_waits_for(begin: Begin) -> None:
     house = begin(map_topic="nowhere", set_initial_pose=True)
-    assert house.said(LogLevel.WARN) == ["Waiting for map.... No node publishes on '/nowhere'."]
+    assert house.logged(LogLevel.WARN) == ["Waiting for map.... No node publishes on '/nowhere'."]
     assert len(house.poses) == 0
 
 
 def test_without_transforms_it_says_which_is_missing(begin: Begin) -> None:
     house = begin(odom_frame_id="odometry", set_initial_pose=True)
     house.test.advance(3.0)
-    assert "Couldn't determine robot's pose associated with laser scan" in house.said(LogLevel.ERROR)[0]
-    assert "odometry" in house.said(LogLevel.ERROR)[0]
+    assert "Couldn't determine robot's pose associated with laser scan" in house.logged(LogLevel.ERROR)[0]
+    assert "odometry" in house.logged(LogLevel.ERROR)[0]
 
 
 def test_poses_particles_and_transforms_are_those_of_nav2(begin: Begin) -> None:
@@ -246,10 +246,10 @@ def test_poses_in_other_frames_or_of_no_numbers_are_refused(begin: Begin) -> Non
         request.pose.header.frame_id = frame
         request.pose.pose.pose.position.x = x
         house.test.call("/set_initial_pose", request)
-    warnings = house.said(LogLevel.WARN)
+    warnings = house.logged(LogLevel.WARN)
     assert sum("empty frame_id" in text for text in warnings) == 1
     assert sum('Ignoring initial pose in frame "odom"' in text for text in warnings) == 1
-    assert house.said(LogLevel.ERROR) == ["Received initial pose contains NaNs or Infs! Ignoring as invalid!"]
+    assert house.logged(LogLevel.ERROR) == ["Received initial pose contains NaNs or Infs! Ignoring as invalid!"]
     house.test.advance(0.5)
     assert house.poses.last.pose.pose.position.x == pytest.approx(1.5, abs=0.2)
 
@@ -260,6 +260,6 @@ def test_poses_in_other_frames_or_of_no_numbers_are_refused(begin: Begin) -> Non
 )
 def test_parameters_that_mean_nothing_are_refused(begin: Begin, name: str, value: object) -> None:
     house = begin(**{name: value})
-    assert any(f"parameter '{name}' of 'amcl' cannot be" in text for text in house.said(LogLevel.ERROR))
+    assert any(f"parameter '{name}' of 'amcl' cannot be" in text for text in house.logged(LogLevel.ERROR))
     node: Any = house.amcl.node
     assert not node.is_active

@@ -121,8 +121,8 @@ async def test_it_recovers_in_the_order_of_nav2(scene, log):
     goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(2.0, 1.0))
     assert await goal.ends(120.0) == GoalStatus.SUCCEEDED
-    said = [record.text for record in log]
-    order = [said.index(text) for text in ("Running spin", "Running wait", "Running backup")]
+    logged = [record.text for record in log]
+    order = [logged.index(text) for text in ("Running spin", "Running wait", "Running backup")]
     assert order == sorted(order)
     assert goal.feedback[-1].number_of_recoveries >= 4
 

@@ -185,8 +185,8 @@ async def test_others_hear_of_it(scene, start):
     scene.tell_map(walls(columns=300))
     scene.tell_pose()
     await scene.run(0.5)
-    told = np.array(maps[-1].data, np.int8).reshape(60, 300)
-    assert (told[30, 0], told[30, 3], told[30, 40]) == (100, 99, 0)
+    result = np.array(maps[-1].data, np.int8).reshape(60, 300)
+    assert (result[30, 0], result[30, 3], result[30, 40]) == (100, 99, 0)
     assert np.array_equal(np.array(raw[-1].data, np.uint8).reshape(60, 300), node.costmap.grid.cells)
     assert len(outlines[-1].polygon.points) == 16
     count = len(maps)
@@ -218,8 +218,8 @@ async def test_it_can_be_cleared(scene, start):
     await call(scene, "/global_costmap/clear_entirely_global_costmap", "ClearEntireCostmap")
     assert node.costmap.cost_at(far) == FREE
     assert node.costmap.grid.cells[30, 0] == LETHAL
-    told = await call(scene, "/global_costmap/get_costmap", "GetCostmap")
-    assert told.map.metadata.size_x == 80
+    answer = await call(scene, "/global_costmap/get_costmap", "GetCostmap")
+    assert answer.map.metadata.size_x == 80
 
 
 async def test_a_footprint_instead_of_a_radius(scene, start):
@@ -254,11 +254,11 @@ async def test_what_is_not_had_is_left_out_with_a_line(scene, start, log):
             "keepout_filter.enabled": True,
         },
     )
-    told = [each.text for each in log]
-    assert "there is no layer my_package::Sonar here: the costmap ignores 'sonar'" in told
-    assert "costmap filters are not supported: the costmap ignores keepout_filter" in told
-    assert "layers that 'plugins' does not name are ignored: obstacle_layer" in told
-    assert not [each for each in told if "is not a parameter" in each or "are not read" in each]
+    logged = [each.text for each in log]
+    assert "there is no layer my_package::Sonar here: the costmap ignores 'sonar'" in logged
+    assert "costmap filters are not supported: the costmap ignores keepout_filter" in logged
+    assert "layers that 'plugins' does not name are ignored: obstacle_layer" in logged
+    assert not [each for each in logged if "is not a parameter" in each or "are not read" in each]
 
 
 @pytest.mark.parametrize(

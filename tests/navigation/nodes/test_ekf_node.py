@@ -31,7 +31,7 @@ def start(test, kind=EkfNode, **parameters):
     return kind(test.graph, NodeOptions(parameters={"frequency": 10.0, "two_d_mode": True, **parameters}))
 
 
-def said(test, level):
+def logged(test, level):
     return [record.text for record in test.log if record.level.name == level]
 
 
@@ -153,7 +153,7 @@ async def test_a_frame_that_is_not_there_is_told(test):
         test.publish("/imu", imu(test, frame="nowhere"))
         await test.advance(0.1)
     assert len(filtered) == 0
-    (text,) = said(test, "WARN")
+    (text,) = logged(test, "WARN")
     assert text.startswith('Could not obtain transform: "base_link"')
 
 
@@ -208,7 +208,7 @@ async def test_toggle_and_enable(test):
     test.publish("/wheels", odometry(test, x=1.0))
     await test.advance(0.5)
     assert len(filtered) == 0
-    assert said(test, "INFO") == ["Filter is disabled. To enable it call the /enable service"]
+    assert logged(test, "INFO") == ["Filter is disabled. To enable it call the /enable service"]
     await test.call("/enable", get_service("std_srvs/srv/Empty").Request())
     await test.advance(0.2)
     assert planar(filtered.last)[0] == pytest.approx(1.0)
@@ -237,7 +237,7 @@ async def test_where_simulated_time_jumps_back_the_filter_begins_anew(test):
     await run(1, 20, 0.0)
     assert planar(filtered.last)[0] == pytest.approx(0.0)
     assert filtered.last.header.stamp.nanoseconds < 2e9
-    assert said(test, "WARN") == ["Time has jumped: the filter restarts."]
+    assert logged(test, "WARN") == ["Time has jumped: the filter restarts."]
 
 
 async def test_an_old_message_is_left_aside(test):
@@ -248,7 +248,7 @@ async def test_an_old_message_is_left_aside(test):
     test.publish("/wheels", odometry(test, x=9.0, at=START - 5.0))
     await test.advance(0.2)
     assert planar(filtered.last)[0] == pytest.approx(1.0)
-    assert len(said(test, "WARN")) == 1
+    assert len(logged(test, "WARN")) == 1
 
 
 async def test_commands_move_the_estimate(test):
@@ -300,13 +300,13 @@ async def test_parameters_that_mean_nothing(test, parameters, text):
 
 async def test_parameters_of_sensors_that_are_not_there_are_named(test):
     start(test, odom0="wheels", odom0_config=config(X), odom0_diferential=True, odom2_config=config(X))
-    (misspelt,) = said(test, "WARN")
+    (misspelt,) = logged(test, "WARN")
     assert misspelt.startswith("'odom0_diferential' is not a parameter of this node; did you mean 'odom0_differential'")
-    assert "parameters that this node does not have are not read: odom2_config" in said(test, "INFO")
+    assert "parameters that this node does not have are not read: odom2_config" in logged(test, "INFO")
 
 
 async def test_a_sensor_that_gives_nothing_is_named(test):
     start(test, odom0="wheels")
-    assert said(test, "WARN") == [
+    assert logged(test, "WARN") == [
         "wheels is listed as an input topic (odom0), but nothing that it gives is true in odom0_config"
     ]

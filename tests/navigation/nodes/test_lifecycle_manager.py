@@ -57,17 +57,17 @@ class Stack:
 
     async def manage(self, *names: str, until: str, **parameters: object) -> None:
         """Start the manager, and wait until it has said something."""
-        said = {"node_names": list(names), "autostart": True, **parameters}
-        self.manager = LifecycleManager(self.graph, NodeOptions(parameters=said))
+        facts = {"node_names": list(names), "autostart": True, **parameters}
+        self.manager = LifecycleManager(self.graph, NodeOptions(parameters=facts))
         await self.until(until)
 
     async def until(self, line: str) -> None:
-        def said() -> bool:
+        def logged() -> bool:
             return any(line in record.text for record in self.log)
 
         for _ in range(200):
             await self.graph.settle()
-            if said():
+            if logged():
                 return
             await self.clock.advance(0.1)
         raise AssertionError([record.text for record in self.log])
@@ -99,14 +99,14 @@ class Stack:
 
     async def health(self) -> tuple[str, int, str]:
         """What the next message on ``/diagnostics`` says."""
-        told: list[Any] = []
+        messages: list[Any] = []
         node = self.graph.create_node("hears")
-        node.create_subscription("diagnostic_msgs/msg/DiagnosticArray", "/diagnostics", told.append, 10)
-        while not told:
+        node.create_subscription("diagnostic_msgs/msg/DiagnosticArray", "/diagnostics", messages.append, 10)
+        while not messages:
             await self.clock.advance(0.5)
             await self.graph.settle()
         node.destroy_node()
-        (status,) = told[-1].status
+        (status,) = messages[-1].status
         assert status.hardware_id == "Nav2"
         return status.name, status.level[0], status.message
 

@@ -158,11 +158,11 @@ async def test_why_there_is_no_plan(jazzy, scene, server, goal, code, why):
     assert not len(result.path.poses)
 
 
-async def test_the_log_says_why_too(scene, server, said):
+async def test_the_log_says_why_too(scene, server, logged):
     await server(grid=divided())
     status, _ = await to_pose(scene, pose(2.1, 1.5)).ended()
     assert status == ABORTED
-    assert said("WARN")[-1] == (
+    assert logged("WARN")[-1] == (
         "GridBased plugin failed to plan from (1.00, 1.00) to (2.10, 1.50): "
         '"Goal Coordinates of(2.100000, 1.500000) was in lethal cost"'
     )
@@ -213,13 +213,13 @@ async def test_planners_are_chosen_by_name(jazzy, scene, server, log):
     smac = {"Smac.plugin": "nav2_smac_planner/SmacPlannerHybrid", "Smac.minimum_turning_radius": 0.4}
     near = {"Near.plugin": "nav2_navfn_planner::NavfnPlanner", "Near.tolerance": 0.0}
     await server(planner_plugins=["Smac", "Near"], **smac, **near)
-    told = [each.text for each in log]
+    logged = [each.text for each in log]
     assert [
         each
-        for each in told
+        for each in logged
         if each.startswith("there is no nav2_smac_planner/SmacPlannerHybrid here: plans of 'Smac'")
     ]
-    assert not [each for each in told if "Near" in each and "there is no" in each]
+    assert not [each for each in logged if "Near" in each and "there is no" in each]
     by_wall = pose(0.15, 1.5)
     assert (await to_pose(scene, by_wall, planner_id="Smac").ended())[0] == SUCCEEDED
     status, result = await to_pose(scene, by_wall, planner_id="Near").ended()

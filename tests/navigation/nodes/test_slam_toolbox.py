@@ -70,8 +70,8 @@ class Robot:
 
     def go(self, path: np.ndarray, odometry: np.ndarray, seconds: float = 0.5) -> None:
         """Be at each pose for a moment."""
-        for pose, told in zip(path, odometry, strict=True):
-            self.tell_odometry(told)
+        for pose, text in zip(path, odometry, strict=True):
+            self.tell_odometry(text)
             self.scans.publish(self.scan(pose))
             self.test.advance(seconds)
 
@@ -91,7 +91,7 @@ def start(test: SteppedGraph, kind: Any = AsyncSlamToolbox, **parameters: Any) -
     return kind(test.graph, NodeOptions(parameters={"map_update_interval": 2.0, **parameters}))
 
 
-def said(test: SteppedGraph, level: str) -> list[str]:
+def logged(test: SteppedGraph, level: str) -> list[str]:
     return [record.text for record in test.log if record.level.name == level]
 
 
@@ -173,7 +173,7 @@ def test_without_transforms_scans_are_dropped_and_the_log_says_why(test):
         robot.scans.publish(robot.scan(PATH[0]))
         test.advance(0.5)
     assert len(maps) == 0
-    assert any("scans are dropped" in line and "odom" in line for line in said(test, "WARN"))
+    assert any("scans are dropped" in line and "odom" in line for line in logged(test, "WARN"))
     robot.go(PATH[:4], between(PATH[0], PATH[:4]))
     assert len(maps) > 0
     node.close()
@@ -321,7 +321,7 @@ def test_a_file_that_is_no_graph_is_refused_with_a_reason(test, tmp_path):
     call(test, "deserialize_map", kind, filename=str(tmp_path / "none"), match_type=1)
     call(test, "deserialize_map", kind, filename="x", match_type=3)
     call(test, "deserialize_map", kind, filename="x")
-    errors = said(test, "ERROR")
+    errors = logged(test, "ERROR")
     assert "does not exist" in errors[-3]
     assert "non-localization" in errors[-2]
     assert "match_type is not set" in errors[-1]
@@ -330,7 +330,7 @@ def test_a_file_that_is_no_graph_is_refused_with_a_reason(test, tmp_path):
 def test_who_localises_without_a_map_is_told_so(test):
     start(test, LocalizationSlamToolbox)
     Robot(test).go(PATH[:3], between(PATH[0], PATH[:3]))
-    assert any("map_file_name" in line for line in said(test, "ERROR"))
+    assert any("map_file_name" in line for line in logged(test, "ERROR"))
 
 
 def test_in_jazzy_the_node_is_managed(test, monkeypatch):
@@ -357,11 +357,11 @@ def test_in_jazzy_the_node_is_managed(test, monkeypatch):
 
 def test_what_a_file_has_that_changes_nothing_is_known_and_what_is_misspelt_is_told(test):
     start(test, solver_plugin="solver_plugins::SpaSolver", ceres_loss_function="None", resolutoin=0.1, resolution=-1.0)
-    assert any("solver_plugins::SpaSolver" in line for line in said(test, "INFO"))
-    warnings = said(test, "WARN")
+    assert any("solver_plugins::SpaSolver" in line for line in logged(test, "INFO"))
+    warnings = logged(test, "WARN")
     assert any("resolutoin" in line for line in warnings)
     assert any("zero or negative" in line for line in warnings)
-    assert not any("ceres" in line for line in (*warnings, *said(test, "INFO")))
+    assert not any("ceres" in line for line in (*warnings, *logged(test, "INFO")))
 
 
 def test_the_graph_is_shown(test):
@@ -396,7 +396,7 @@ def test_where_time_jumps_back_the_map_begins_anew(test):
     assert len(node._work[0].mapper.scans) == 5
     at(1.0, np.zeros(3))
     at(2.0, np.array((0.5, 0.0, 0.0)))
-    assert any("Time has jumped back" in line for line in said(test, "WARN"))
+    assert any("Time has jumped back" in line for line in logged(test, "WARN"))
     assert len(node._work[0].mapper.scans) == 2
     assert poses.last.header.stamp.sec == 2
 

@@ -74,26 +74,26 @@ async def test_a_step_becomes_a_ramp_within_the_limits(line, stage):
     assert one.speeds() == [0.125, 0.25, 0.375, 0.5, 0.5, 0.5]
 
 
-async def test_a_command_that_is_not_repeated_ends(line, stage, said):
+async def test_a_command_that_is_not_repeated_ends(line, stage, logged):
     one = line(velocity_timeout=0.2)
     await one.send(0.25)
     await stage.clock.advance(2.0)
     assert one.speeds() == [0.125, 0.25, 0.25, 0.25, 0.125, 0.0]
-    assert said("INFO")[-1:] == [
+    assert logged("INFO")[-1:] == [
         "no command for 0.2 s (velocity_timeout), and the last one was not a stop: the robot is stopped"
     ]
 
 
-async def test_after_a_stop_nothing_is_said_of_commands_that_end(line, stage, said):
+async def test_after_a_stop_nothing_is_said_of_commands_that_end(line, stage, logged):
     one = line(velocity_timeout=0.2)
     await one.send(0.25)
     await stage.clock.advance(0.1)
     await one.send(0.0)
     await stage.clock.advance(2.0)
-    assert not [each for each in said("INFO") if "velocity_timeout" in each]
+    assert not [each for each in logged("INFO") if "velocity_timeout" in each]
 
 
-async def test_it_stops_when_who_commanded_is_lost_and_says_so(line, stage, said):
+async def test_it_stops_when_who_commanded_is_lost_and_says_so(line, stage, logged):
     one = line(velocity_timeout=10.0, enable_stamped_cmd_vel=False)
     driver = Stranger(Outside(stage.graph), "/cmd_vel")
     message = TWIST()
@@ -104,7 +104,7 @@ async def test_it_stops_when_who_commanded_is_lost_and_says_so(line, stage, said
     await stage.clock.advance(1.0)
     assert one.speeds()[3] == 0.25
     assert one.speeds()[-1] == 0.0
-    assert said("WARN") == [
+    assert logged("WARN") == [
         (
             "'/driver', which sent the commands on '/cmd_vel', was lost (killed, crashed or out of reach): "
             "the robot is stopped"
@@ -139,20 +139,20 @@ async def test_six_axes_may_be_limited(line, stage):
 
 
 @pytest.mark.parametrize("kind", [TWIST, STAMPED])
-async def test_either_type_goes_through_and_nothing_is_said_of_the_other(line, stage, said, kind):
+async def test_either_type_goes_through_and_nothing_is_said_of_the_other(line, stage, logged, kind):
     one = line(kind=kind)
     await one.send(0.5)
     await stage.clock.advance(0.06)
     assert one.speeds() == [0.125]
-    assert said("WARN") == []
+    assert logged("WARN") == []
 
 
-async def test_numbers_that_are_none_are_left_out(line, stage, said):
+async def test_numbers_that_are_none_are_left_out(line, stage, logged):
     one = line()
     await one.send(float("nan"))
     await stage.clock.advance(0.5)
     assert one.out == []
-    assert "NaNs" in said("ERROR")[0]
+    assert "NaNs" in logged("ERROR")[0]
 
 
 async def test_it_is_a_managed_node(line, stage):
@@ -184,9 +184,9 @@ async def test_it_is_a_managed_node(line, stage):
         ({"smoothing_frequency": 0.0}, "smoothing_frequency must be more than 0"),
     ],
 )
-async def test_what_is_wrong_is_told(line, said, wrong, text):
+async def test_what_is_wrong_is_told(line, logged, wrong, text):
     line(autostart_node=False, **wrong).node.node.trigger_configure()
-    assert text in said("ERROR")[0]
+    assert text in logged("ERROR")[0]
 
 
 async def test_parameters_change_while_it_runs(line, stage):

@@ -113,8 +113,8 @@ async def test_progress_of_the_goal_is_told_and_forgotten_with_the_next_goal():
         await client.until("navigation_state", navigation="active")
         nav2.goal(2)
         nav2.progress(3.456)
-        told = await client.until("navigation_state", distance=3.46)
-        assert (told["goal"], told["eta"], told["taken"], told["recoveries"]) == ("active", 75.0, 12.5, 2)
+        message = await client.until("navigation_state", distance=3.46)
+        assert (message["goal"], message["eta"], message["taken"], message["recoveries"]) == ("active", 75.0, 12.5, 2)
         nav2.progress(float("nan"))
         await client.until("navigation_state", distance=None, eta=75.0)
         nav2.goal(4, 2)
@@ -132,8 +132,8 @@ async def test_a_failed_goal_is_told_with_the_error_of_its_node_until_the_next_g
             w.graph.create_node("camera").get_logger().error("no light")
             nav2.log.error("Goal failed: the goal is in an obstacle")
             nav2.goal(6)
-            told = await client.until("goal_outcome", failed=True)
-            assert told["reason"] == "Goal failed: the goal is in an obstacle"
+            message = await client.until("goal_outcome", failed=True)
+            assert message["reason"] == "Goal failed: the goal is in an obstacle"
             nav2.goal(6, 2)
             await client.until("goal_outcome", failed=False, reason="")
 
@@ -145,8 +145,8 @@ async def test_a_goal_that_failed_before_the_page_came_is_no_news():
         async with page(w.viewer) as client:
             await client.opened()
             nav2.goal(6, 5)
-            told = [each for each in await client.drain(0.6) if isinstance(each, dict)]
-            assert not any(each["failed"] for each in told if each["type"] == "goal_outcome")
+            messages = [each for each in await client.drain(0.6) if isinstance(each, dict)]
+            assert not any(each["failed"] for each in messages if each["type"] == "goal_outcome")
 
 
 async def test_buttons_command_both_managers_in_the_order_of_nav2():
@@ -164,8 +164,8 @@ async def test_buttons_command_both_managers_in_the_order_of_nav2():
         ]
         nav2.refuses = True
         await client.send("command_navigation", command="pause")
-        told = await client.until("navigation_state", busy=False, navigation="active")
-        assert told["problem"] == "lifecycle_manager_navigation could not do that; its log has the reason"
+        message = await client.until("navigation_state", busy=False, navigation="active")
+        assert message["problem"] == "lifecycle_manager_navigation could not do that; its log has the reason"
 
 
 async def test_a_goal_is_cancelled_alone_and_by_a_reset():

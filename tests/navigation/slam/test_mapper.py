@@ -25,11 +25,11 @@ def mapped(walls, path, odometry, settings=None, farthest=12.0, count=180):
     mapper = Mapper(settings or MapperSettings(), OccupancyMap(0.05))
     rng = np.random.default_rng(9)
     outcomes, taken = [], []
-    for number, (pose, told) in enumerate(zip(path, odometry, strict=True)):
+    for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
         stamp_ns = number * HALF_A_SECOND
-        if mapper.wants(told, stamp_ns):
+        if mapper.wants(text, stamp_ns):
             scan = scan_at(walls, pose, stamp_ns, rng, count, farthest)
-            outcomes.append(finish(mapper.process(scan, told)))
+            outcomes.append(finish(mapper.process(scan, text)))
             taken.append(pose)
     return mapper, outcomes, np.array(taken)
 
@@ -67,8 +67,8 @@ def test_a_loop_is_closed_where_odometry_slipped_in_a_corridor_without_marks():
     count = len(taken)
     first = int(np.argmin(np.hypot(*(taken[: count // 2] - taken[-1])[:, :2].T)))
     true = between(taken[first], taken[-1])
-    told = between(mapper.graph.poses[first], mapper.graph.poses[-1])
-    assert told == pytest.approx(true, abs=0.06)
+    result = between(mapper.graph.poses[first], mapper.graph.poses[-1])
+    assert result == pytest.approx(true, abs=0.06)
     assert not any(outcome.loops for outcome in without)
     assert furthest((without[-1].pose - taken[-1])[None]) > 0.8
 
@@ -112,9 +112,9 @@ def test_a_robot_finds_itself_in_a_map_that_stays():
     path = along([(4, -3), (4, 3), (-4, 3)])
     odometry = drifting(between(path[0], path), 1.05, 0.05)
     rng = np.random.default_rng(4)
-    for number, (pose, told) in enumerate(zip(path, odometry, strict=True)):
-        if mapper.wants(told, number * HALF_A_SECOND):
-            outcome = finish(mapper.localize(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), told))
+    for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
+        if mapper.wants(text, number * HALF_A_SECOND):
+            outcome = finish(mapper.localize(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), text))
             assert outcome.matched
             assert between(pose, outcome.pose) == pytest.approx([0, 0, 0], abs=0.03)
     assert len(mapper.scans) == count
@@ -129,8 +129,8 @@ def test_another_session_goes_on_with_the_map():
     odometry = drifting(between(path[0], path), 1.02, 0.03)
     rng = np.random.default_rng(4)
     taken = []
-    for number, (pose, told) in enumerate(zip(path, odometry, strict=True)):
-        if mapper.wants(told, number * HALF_A_SECOND):
-            finish(mapper.process(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), told))
+    for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
+        if mapper.wants(text, number * HALF_A_SECOND):
+            finish(mapper.process(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), text))
             taken.append(pose)
     assert furthest(between(np.array(taken), mapper.graph.poses[count:])) < 0.03

@@ -57,13 +57,13 @@ def test_meshes_are_as_large_and_as_coloured_as_the_page_draws_them(tmp_path):
     drawn = {each.link: each for each in Glb(export_snapshot(snapshot(robot_of(golden_links(tmp_path))), "glb")).drawn}
     wrong = {}
     for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():
-        told = drawn[name]
+        result = drawn[name]
         if not (
-            told.bounds[0] == pytest.approx(least, abs=1e-5)
-            and told.bounds[1] == pytest.approx(most, abs=1e-5)
-            and (told.color, told.opacity) == (color, pytest.approx(opacity))
+            result.bounds[0] == pytest.approx(least, abs=1e-5)
+            and result.bounds[1] == pytest.approx(most, abs=1e-5)
+            and (result.color, result.opacity) == (color, pytest.approx(opacity))
         ):
-            wrong[name] = told
+            wrong[name] = result
     assert wrong == {}
 
 

@@ -41,22 +41,22 @@ def page(text: str) -> str:
 
 
 def test_the_page_has_everything_a_server_would_tell():
-    told = recorded(page(GRIPPER))
-    types = [message["type"] for message in told["messages"]]
+    logged = recorded(page(GRIPPER))
+    types = [message["type"] for message in logged["messages"]]
     for needed in ("hello", "tree", "robot_scene", "view_classes", "view_state", "joints", "joint_positions"):
         assert needed in types
     assert types[-1] == "frame_table"
-    controls = next(message for message in told["messages"] if message["type"] == "joints")["controls"]
+    controls = next(message for message in logged["messages"] if message["type"] == "joints")["controls"]
     assert [(control["name"], control["mimic"]) for control in controls] == [
         ("turn", None),
         ("open", None),
         ("open_too", "open"),
     ]
-    positions = next(message for message in told["messages"] if message["type"] == "joint_positions")["positions"]
+    positions = next(message for message in logged["messages"] if message["type"] == "joint_positions")["positions"]
     assert positions == pytest.approx({"turn": 0.0, "open": 0.25, "open_too": -0.45}, abs=1e-6)
-    assert next(message for message in told["messages"] if message["type"] == "view_state")["whole_robot"] is True
-    assert told["awaits_size"] is True
-    assert told["spacing"] == pytest.approx(1.0, abs=0.1)  # from the arm to a finger
+    assert next(message for message in logged["messages"] if message["type"] == "view_state")["whole_robot"] is True
+    assert logged["awaits_size"] is True
+    assert logged["spacing"] == pytest.approx(1.0, abs=0.1)  # from the arm to a finger
 
 
 def test_only_the_one_script_may_run_and_nothing_may_be_fetched():
@@ -95,8 +95,8 @@ def test_meshes_and_what_they_name_are_inside(tmp_path):
     (tmp_path / "d.stl").write_bytes(stl_binary())
     (tmp_path / "secret.png").write_bytes(png(9, 9, 9))
     names = ("a.dae", "b.obj", "c.glb", "d.stl")
-    told = recorded(page(robot_of("".join(link(name[0], mesh(tmp_path / name, "")) for name in names))))
-    files = {path.rpartition("/")[2]: base64.b64decode(data) for path, data in told["files"].items()}
+    logged = recorded(page(robot_of("".join(link(name[0], mesh(tmp_path / name, "")) for name in names))))
+    files = {path.rpartition("/")[2]: base64.b64decode(data) for path, data in logged["files"].items()}
     assert set(files) == {*names, "b.mtl", "wood.png"}
     assert files["d.stl"] == stl_binary()
 
@@ -108,8 +108,8 @@ def test_a_mesh_cannot_take_in_files_from_elsewhere(tmp_path):
     (folder / "b.obj").write_bytes(obj("b.mtl", "paint"))
     (folder / "b.mtl").write_text("newmtl paint\nmap_Kd ../secret.png\nmap_Ks /etc/passwd\n")
     (folder / "link.mtl").symlink_to(tmp_path / "secret.png")
-    told = recorded(page(robot_of(link("b", mesh(folder / "b.obj", "")))))
-    assert {path.rpartition("/")[2] for path in told["files"]} == {"b.obj", "b.mtl"}
+    logged = recorded(page(robot_of(link("b", mesh(folder / "b.obj", "")))))
+    assert {path.rpartition("/")[2] for path in logged["files"]} == {"b.obj", "b.mtl"}
 
 
 def test_nothing_tells_of_the_machine_it_was_made_on(tmp_path):
@@ -141,8 +141,8 @@ async def test_what_else_is_shown_goes_along():
         await w.settle()
         w.viewer.manager.measured(2.0, 0.0)
         taken = snapshot_of(w.viewer, w.viewer.manager)
-    told = recorded(export_snapshot(taken, "html").decode())
-    assert told["awaits_size"] is False  # a page had measured the robot
-    assert told["spacing"] is None
-    frames = [base64.b64decode(frame) for frame in told["frames"]]
+    logged = recorded(export_snapshot(taken, "html").decode())
+    assert logged["awaits_size"] is False  # a page had measured the robot
+    assert logged["spacing"] is None
+    frames = [base64.b64decode(frame) for frame in logged["frames"]]
     assert any(b"markers_changed" in frame for frame in frames)

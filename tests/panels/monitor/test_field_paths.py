@@ -75,7 +75,7 @@ def test_what_is_no_path(text):
 
 
 @pytest.mark.parametrize(
-    ("path", "said"),
+    ("path", "message"),
     [
         ("positon[0]", "did you mean 'position'"),
         ("position", "select an element"),
@@ -85,8 +85,8 @@ def test_what_is_no_path(text):
         ("position[0].x", "has no fields"),
     ],
 )
-def test_what_leads_to_no_number(path, said):
-    with pytest.raises(FieldPathError, match=r".*" + said.replace("[", r"\[")):
+def test_what_leads_to_no_number(path, message):
+    with pytest.raises(FieldPathError, match=r".*" + message.replace("[", r"\[")):
         FieldPath(path).check(JOINT_STATE)
 
 

@@ -427,8 +427,8 @@ async def test_a_flood_is_cut_and_counted():
             for number in range(100):
                 publisher.publish(log(level=20, name="flood", msg=f"{burst * 100 + number}"))
             await made.graph.settle()
-        told = [message for message in await client.drain(0.4) if isinstance(message, dict)]
-        batches = [message for message in told if message["type"] == "log_lines"]
+        messages = [message for message in await client.drain(0.4) if isinstance(message, dict)]
+        batches = [message for message in messages if message["type"] == "log_lines"]
         assert sum(len(batch["lines"]) + batch["missed"] for batch in batches) == 3000
         assert batches[-1]["lines"][-1]["message"] == "2999"
 

@@ -38,7 +38,7 @@ def start(test, **parameters):
     return ScanToScanFilterChain(test.graph, NodeOptions(parameters=parameters))
 
 
-def said(test, level):
+def logged(test, level):
     return [record.text for record in test.log if record.level.name == level]
 
 
@@ -84,7 +84,7 @@ async def test_a_box_waits_for_the_place_of_the_laser(test):
         test.publish("/scan", scan(test, 0.5, 0.5, 0.5))
         await test.settle()
     assert len(filtered) == 0
-    (text,) = said(test, "WARN")
+    (text,) = logged(test, "WARN")
     assert text.startswith("Dropping Scan: Transform unavailable")
     pose = np.array([[0.8, 0.0, 0.0, *quaternion_from_rpy((0.0, 0.0, pi))]])
     batch = TransformBatch(("base_link",), ("laser",), test.clock.now_ns(), pose)
@@ -113,7 +113,7 @@ async def test_a_chain_that_means_nothing(test, parameters, text):
 
 async def test_unknown_parameters_and_filters_behind_a_gap_are_named(test):
     start(test, filter1={**RANGE, "params": {"uper_threshold": 1.0}}, filter3=BOUNDS)
-    *gaps, first = said(test, "WARN")
+    *gaps, first = logged(test, "WARN")
     assert first.startswith(
         "'filter1.params.uper_threshold' is not a parameter of laser_filters/LaserScanRangeFilter; did"
     )

@@ -25,7 +25,7 @@ def start(test, kind, **parameters):
     return kind(test.graph, NodeOptions(parameters=parameters))
 
 
-def said(test, level):
+def logged(test, level):
     return [record.text for record in test.log if record.level.name == level]
 
 
@@ -64,7 +64,7 @@ async def test_a_depth_image_becomes_a_scan(test):
     scan = test.record("/scan")
     await send(test, "/depth", depth_image(test, np.full((3, 5), 2.0)))
     assert len(scan) == 0
-    assert said(test, "ERROR") == [
+    assert logged(test, "ERROR") == [
         "Could not convert depth image to laserscan: no camera_info with a focal length has arrived"
     ]
     await send(test, "/depth_camera_info", camera(test))
@@ -81,7 +81,7 @@ async def test_a_depth_image_becomes_a_scan(test):
     odd.encoding = "rgb8"
     await send(test, "/depth", odd)
     assert len(scan) == count
-    assert said(test, "ERROR")[-1].endswith("Depth image has unsupported encoding: rgb8")
+    assert logged(test, "ERROR")[-1].endswith("Depth image has unsupported encoding: rgb8")
 
 
 async def test_nothing_is_subscribed_while_nobody_listens(test):
@@ -121,7 +121,7 @@ async def test_a_cloud_becomes_a_scan_of_the_target_frame(test):
     scan = test.record("/scan")
     await send(test, "/cloud_in", cloud(test, [[0.1, 1.0, 0.0]]))
     assert len(scan) == 0
-    assert said(test, "WARN")[0].startswith("Transform failure:")
+    assert logged(test, "WARN")[0].startswith("Transform failure:")
     place(test, "base_link", "camera", (0.0, 0.0, -pi / 2))
     await test.settle()
     await send(test, "/cloud_in", cloud(test, [[0.1, 1.0, 0.0], [0.1, 3.0, 0.0], [0.1, 0.5, 2.0]]))

@@ -133,14 +133,14 @@ def test_a_base_that_was_made_goes_with_the_value_that_is_taken_back(text):
 
 
 @pytest.mark.parametrize(
-    ("text", "value", "told"), [("off", True, 1), ("NO", True, 1), ("0", False, 0), ("yes", True, 0)]
+    ("text", "value", "message"), [("off", True, 1), ("NO", True, 1), ("0", False, 0), ("yes", True, 0)]
 )
-def test_a_box_says_no_only_in_the_ways_that_rviz_knows(reported, text, value, told):
+def test_a_box_says_no_only_in_the_ways_that_rviz_knows(reported, text, value, message):
     spec = PropertySpec("Selectable", "bool", default=False)
     section = yaml_tree.parse(f"Selectable: {text}\n", "f.rviz")
     assert PropertyStore("x", section, lambda: (spec,), reported.append).get("Selectable") is value
-    assert len(reported) == told
-    if told:
+    assert len(reported) == message
+    if message:
         assert reported[0].message == f"'Selectable': true or false is expected, not '{text}'; True is used"
 
 

@@ -27,16 +27,16 @@ async def test_what_is_unsaved_is_kept_beside_the_file_and_told_of_next_time(tmp
     async with opened(path=path) as (made, client):
         text = path.read_text()
         await change(client)
-        (said,) = made.viewer.keep_unsaved()
+        (notice,) = made.viewer.keep_unsaved()
         edited = made.viewer.config.text()
     (recovered,) = kept()
-    assert (said.code, path.read_text(), recovered.read_text()) == ("RVIZ301", text, edited)
-    assert f"'{path}'" in said.message
-    assert f"'{recovered}'" in said.message
+    assert (notice.code, path.read_text(), recovered.read_text()) == ("RVIZ301", text, edited)
+    assert f"'{path}'" in notice.message
+    assert f"'{recovered}'" in notice.message
     assert RecentFiles().paths[0] == str(recovered)
-    (told,) = find_unsaved(RvizConfig.load(path))
-    assert told.code == "RVIZ302"
-    assert f"'{recovered}'" in told.message
+    (result,) = find_unsaved(RvizConfig.load(path))
+    assert result.code == "RVIZ302"
+    assert f"'{recovered}'" in result.message
     assert find_unsaved(RvizConfig.load(recovered)) == []
     assert find_unsaved(RvizConfig.default()) == []
 
@@ -94,9 +94,9 @@ async def test_without_edits_nothing_is_written(tmp_path):
 async def test_displays_of_no_file_are_kept_too(tmp_path):
     async with opened() as (made, client):
         await change(client)
-        (said,) = made.viewer.keep_unsaved()
+        (notice,) = made.viewer.keep_unsaved()
     assert [path.name for path in kept()] == ["untitled.rviz"]
-    assert said.message.startswith("unsaved displays are stored in")
+    assert notice.message.startswith("unsaved displays are stored in")
 
 
 async def test_those_of_a_single_page_are_kept_beside_the_shared_ones(tmp_path):
@@ -132,8 +132,8 @@ async def test_a_folder_that_cannot_be_written_is_told_of(tmp_path, monkeypatch)
     async with opened(path=path) as (made, client):
         await change(client)
         monkeypatch.setenv("XDG_STATE_HOME", str(blocked))
-        (said,) = made.viewer.keep_unsaved()
-    assert said.code == "RVIZ104"
+        (notice,) = made.viewer.keep_unsaved()
+    assert notice.code == "RVIZ104"
 
 
 @pytest.mark.parametrize("name", ["ü x.rviz", "a.b.rviz"])

@@ -208,7 +208,7 @@ async def test_a_scan_is_shown():
 
 
 @pytest.mark.parametrize(
-    ("ranges", "said"),
+    ("ranges", "expected"),
     [
         ([math.nan, math.nan], "All 2 ranges are NaN: the sensor could not measure"),
         (
@@ -221,7 +221,7 @@ async def test_a_scan_is_shown():
         ([math.nan, 2.0], None),
     ],
 )
-async def test_a_scan_of_which_no_ray_counts_says_why_but_for_a_wide_open_space(ranges, said):
+async def test_a_scan_of_which_no_ray_counts_says_why_but_for_a_wide_open_space(ranges, expected):
     async with world(config("LaserScan")) as w:
         publisher = w.graph.create_node("laser").create_publisher(LaserScan, "/points", 5)
         message = scan(ranges)
@@ -229,7 +229,7 @@ async def test_a_scan_of_which_no_ray_counts_says_why_but_for_a_wide_open_space(
         publisher.publish(message)
         await w.settle()
         level, text = w.status("LaserScan").get("Values", (None, ""))
-        assert (level, text.partition(":")[0]) == (("warn", said.partition(":")[0]) if said else (None, ""))
+        assert (level, text.partition(":")[0]) == (("warn", expected.partition(":")[0]) if expected else (None, ""))
         message.ranges = [1.0, 2.0]
         publisher.publish(message)
         await w.settle()

@@ -111,9 +111,9 @@ async def test_a_file_without_colours_is_told_of(tmp_path, text):
     path = tmp_path / "colours.yaml"
     path.write_text(text)
     async with world(config(f"{PLUGINS}/Detection3DArray", f", ConfigPath: {path}")) as w:
-        level, told = w.status("Detection3DArray")["ConfigPath"]
+        level, status = w.status("Detection3DArray")["ConfigPath"]
         assert level == "error"
-        assert str(path) in told
+        assert str(path) in status
     with pytest.raises(ValueError, match=r"cannot read"):
         read_class_colors(str(tmp_path / "none.yaml"))
 
@@ -158,8 +158,8 @@ async def test_an_image_is_shown_with_what_was_found_in_it(monkeypatch):
 
         async def now() -> list:
             await w.settle()
-            told = {content.fields["kind"]: content for content in contents(w.display("Detections"))}
-            shown, boxes = told.get("image_frame"), told.get("image_boxes")
+            facts = {content.fields["kind"]: content for content in contents(w.display("Detections"))}
+            shown, boxes = facts.get("image_frame"), facts.get("image_boxes")
             return [shown and shown.stamp, boxes and boxes.stamp, boxes and boxes.fields["of_image"]]
 
         camera.publish(image(1))
@@ -221,8 +221,8 @@ async def test_other_nodes_detections_are_filtered_in_the_page_and_that_is_told(
     async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
         detecting(w, **parameters)
         w.display("Detections").set_property(("Threshold",), 0.7)
-        told, text = await threshold_told(w)
-        assert (told, words in text) == (level, True)
+        answer, text = await threshold_told(w)
+        assert (answer, words in text) == (level, True)
 
 
 async def test_a_threshold_that_the_node_refuses_and_one_without_a_node():

@@ -91,8 +91,8 @@ async def test_what_is_wrong_is_told(message, row, text):
         out = await described(w)
         out.publish(message)
         await w.settle()
-        level, said = w.status("Effort")[row]
-        assert (level, text in said) == ("error", True)
+        level, status = w.status("Effort")[row]
+        assert (level, text in status) == ("error", True)
 
 
 async def test_without_a_robot_there_are_no_rings():

@@ -136,11 +136,11 @@ async def test_the_panel_of_a_page_that_is_gone_is_not_seen():
 async def test_of_all_panels_the_largest_counts(monkeypatch):
     async with world(config("Image")) as w, page(w.viewer) as first:
         display = w.display("Image")
-        told: list[ImageSize] = []
-        monkeypatch.setattr(display, "receive", told.append)
+        messages: list[ImageSize] = []
+        monkeypatch.setattr(display, "receive", messages.append)
 
         async def heard(width: int, height: int) -> None:
-            await eventually(lambda: told and told[-1] == ImageSize(display.id, width, height))
+            await eventually(lambda: messages and messages[-1] == ImageSize(display.id, width, height))
 
         await first.send("image_size", display=display.id, width=30, height=18)
         await heard(30, 18)
@@ -262,7 +262,7 @@ async def test_malformed_camera_infos_are_said():
         images = node.create_publisher(Image, "/camera/image", 5)
         infos = node.create_publisher(CameraInfo, "/camera/camera_info", 5)
 
-        async def said(message) -> tuple[str, str]:
+        async def status(message) -> tuple[str, str]:
             infos.publish(message)
             images.publish(small_image(1, 2))
             await w.settle()
@@ -271,10 +271,10 @@ async def test_malformed_camera_infos_are_said():
 
         bad = info()
         bad.p[0] = math.nan
-        assert await said(bad) == ("error", "Contains invalid floating point values (nans or infs)")
+        assert await status(bad) == ("error", "Contains invalid floating point values (nans or infs)")
         bad = info()
         bad.p[0] = 0.0
-        assert (await said(bad))[0] == "error"
+        assert (await status(bad))[0] == "error"
         empty = info(0, 0)
         infos.publish(empty)
         images.publish(small_image())

@@ -51,18 +51,18 @@ def message(cls: str, stamp_ns: int) -> Any:
 
 def levels_of(display: ViewerDisplay, monkeypatch: pytest.MonkeyPatch) -> dict[str, list[str]]:
     """Of each row the levels that it had, one after the other."""
-    told: dict[str, list[str]] = {}
+    facts: dict[str, list[str]] = {}
     set_status = display.set_status
 
     def record(rows: list[Any]) -> None:
         for row in rows:
-            levels = told.setdefault(row.name, [])
+            levels = facts.setdefault(row.name, [])
             if levels[-1:] != [row.level]:
                 levels.append(row.level)
         set_status(rows)
 
     monkeypatch.setattr(display, "set_status", record)
-    return told
+    return facts
 
 
 async def every(period: float, call: Callable[[], object]) -> None:
@@ -93,10 +93,10 @@ async def drive(w: World, tf_delay: float) -> None:
 @pytest.mark.parametrize("tf_delay", [0.03, 0.2])
 async def test_sensors_whose_transforms_come_late_are_green_from_the_first_message_on(tf_delay, monkeypatch):
     async with world(RvizConfig.parse(FILE)) as w:
-        told = {cls: levels_of(w.display(cls), monkeypatch) for cls in SENSORS}
+        facts = {cls: levels_of(w.display(cls), monkeypatch) for cls in SENSORS}
         await drive(w, tf_delay)
         await w.settle()
-        for cls, rows in told.items():
+        for cls, rows in facts.items():
             assert {"Topic", "Transform"} <= rows.keys(), cls
             assert {name: levels for name, levels in rows.items() if levels != ["ok"]} == {}, cls
             assert w.display(cls).data()

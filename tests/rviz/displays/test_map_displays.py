@@ -150,18 +150,18 @@ async def test_maps_that_are_none_are_said_in_rvizs_words():
     async with world(config()) as w:
         publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
 
-        async def said(message) -> tuple[str, str]:
+        async def status(message) -> tuple[str, str]:
             publisher.publish(message)
             await w.settle()
             assert contents(w.display("Map")) == []
             return w.status("Map")["Map"]
 
-        assert await said(grid(0, 4)) == ("error", "Map is zero-sized (0x4)")
+        assert await status(grid(0, 4)) == ("error", "Map is zero-sized (0x4)")
         text = "Data size doesn't match width*height: width = 3, height = 2, data size = 1"
-        assert await said(grid(data=[0])) == ("error", text)
+        assert await status(grid(data=[0])) == ("error", text)
         bad = grid()
         bad.info.resolution = math.nan
-        assert await said(bad) == ("error", "Message contained invalid floating point values (nans or infs)")
+        assert await status(bad) == ("error", "Message contained invalid floating point values (nans or infs)")
 
 
 async def test_the_topic_of_updates_goes_with_the_maps():
@@ -245,7 +245,7 @@ async def test_cells_that_cannot_be_shown_are_said_in_rvizs_words():
     async with world(config("GridCells")) as w:
         publisher = w.graph.create_node("map").create_publisher(GridCells, "/map", 1)
 
-        async def said(message) -> tuple[str, str]:
+        async def status(message) -> tuple[str, str]:
             publisher.publish(cell_grid(1.0))
             publisher.publish(message)
             await w.settle()
@@ -253,7 +253,7 @@ async def test_cells_that_cannot_be_shown_are_said_in_rvizs_words():
             return w.status("GridCells")["Topic"]
 
         text = "Message contained invalid floating point values (nans or infs)"
-        assert await said(cell_grid(math.nan)) == ("error", text)
+        assert await status(cell_grid(math.nan)) == ("error", text)
         text = "One of the Cell's dimension is zero, cells will be invisible."
-        assert await said(cell_grid(1.0, height=0.0)) == ("error", text)
-        assert await said(cell_grid()) == ("warn", "Message is empty: there are no cells to be shown.")
+        assert await status(cell_grid(1.0, height=0.0)) == ("error", text)
+        assert await status(cell_grid()) == ("warn", "Message is empty: there are no cells to be shown.")

@@ -307,9 +307,9 @@ async def test_another_topic_is_followed():
         for topic, text in (("", "Empty topic name"), ("a b", "'a b' is not a valid topic name")):
             await client.set("display-1/Description Topic", topic)
             await client.until("property_changed", id="display-1/Description Topic")
-            level, said = made.status("RobotModel")["Topic"]
-            assert (level, text in said) == ("error", True)
-            assert said.startswith("Error subscribing: ")
+            level, status = made.status("RobotModel")["Topic"]
+            assert (level, text in status) == ("error", True)
+            assert status.startswith("Error subscribing: ")
 
 
 async def test_a_description_may_come_from_a_xacro_file(tmp_path):

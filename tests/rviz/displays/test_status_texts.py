@@ -59,8 +59,8 @@ async def test_each_page_reads_statuses_in_its_language():
             await other.opened()
             await other.set(f"{display['id']}/Topic", "")
             for client, language in ((chinese, "zh"), (other, "en")):
-                told = await client.until("display_status", display=display["id"], level="error")
-                assert [(row["name"], row["text"]) for row in told["status"]] == [("Topic", wrong[language])]
+                message = await client.until("display_status", display=display["id"], level="error")
+                assert [(row["name"], row["text"]) for row in message["status"]] == [("Topic", wrong[language])]
 
 
 async def test_findings_are_told_in_the_language_of_each_page_too():

@@ -221,41 +221,41 @@ async def test_the_last_count_of_messages_is_told_when_no_more_come(monkeypatch)
         for x in range(4):
             publisher.publish(point(float(x)))
 
-        def said() -> tuple[str, str]:
+        def status() -> tuple[str, str]:
             level, text = w.status("PointStamped")["Topic"]
             return level, text.split(" at ")[0]
 
-        await eventually(lambda: said() == ("ok", "4 messages received"))
+        await eventually(lambda: status() == ("ok", "4 messages received"))
 
 
 async def test_a_silent_topic_says_who_is_silent_and_where_such_messages_are(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
     async with world(config()) as w:
 
-        def said() -> str:
+        def status() -> str:
             return w.status("PointStamped")["Topic"][1].removeprefix("No messages received: ")
 
-        assert said() == "the topic has no publisher"
+        assert status() == "the topic has no publisher"
         node = w.graph.create_node("clicks")
         node.create_publisher(PointStamped, "/other", 5)
         there = "the topic has no publisher; there is geometry_msgs/msg/PointStamped on /other"
-        await eventually(lambda: said() == there, what=said)
+        await eventually(lambda: status() == there, what=status)
         for name in ("/a", "/b", "/clicked_points", "/c"):
             node.create_publisher(PointStamped, name, 5)
-        await eventually(lambda: said().startswith(there.replace("/other", "/clicked_points, ")), what=said)
+        await eventually(lambda: status().startswith(there.replace("/other", "/clicked_points, ")), what=status)
         node.create_publisher(PointStamped, "/clicked_point", 5)
-        await eventually(lambda: said() == "no message arrived yet from clicks", what=said)
+        await eventually(lambda: status() == "no message arrived yet from clicks", what=status)
 
 
 async def test_a_topic_of_another_type_is_told(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
     async with world(RvizConfig.parse(FILE.replace("/clicked_point", "/words"))) as w:
         w.graph.create_node("speaker").create_publisher(get_message("std_msgs/msg/String"), "/words", 1)
-        told = (
+        message = (
             "warn",
             "No messages received: the topic carries std_msgs/msg/String, not geometry_msgs/msg/PointStamped",
         )
-        await eventually(lambda: w.status("PointStamped")["Topic"] == told)
+        await eventually(lambda: w.status("PointStamped")["Topic"] == message)
 
 
 @skipping

@@ -161,8 +161,8 @@ async def test_with_the_fixed_frame_world_the_frames_of_tf_are_placed_in_the_wor
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
         assert sent(made, "world_poses").frame == "world"
-        told = "tf has no 'world': its frames are placed so that 'base' coincides in both"
-        await eventually(lambda: made.status("World")["Frame"] == ("ok", told))
+        text = "tf has no 'world': its frames are placed so that 'base' coincides in both"
+        await eventually(lambda: made.status("World")["Frame"] == ("ok", text))
         transforms = made.viewer.context.transforms
         await eventually(lambda: transforms.own("world").parent == "odom")
         assert transforms.pose("world", "base", 0) == pytest.approx([1, 2, 0.5, 0, 0, 0, 1])
@@ -199,7 +199,7 @@ LOST = "<link name='l'><pose relative_to='x'/></link>"
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("<sdf", "<world>:1:1: this tag is never finished"),
         ("<robot name='r'/>", "the root element is <robot>, not <sdf>"),
@@ -207,13 +207,13 @@ LOST = "<link name='l'><pose relative_to='x'/></link>"
         (f"<sdf version='1.6'><model name='m'>{LOST}</model></sdf>", "'x' cannot be placed"),
     ],
 )
-async def test_a_text_that_says_no_world_is_told_of_and_the_world_before_stays(text, told):
+async def test_a_text_that_says_no_world_is_told_of_and_the_world_before_stays(text, message):
     async with world(config("world")) as made:
         simulation = Simulation(made)
         await simulation.describe(WORLD)
         simulation.description.publish(String(text))
         await eventually(lambda: made.status("World")["World"][0] == "error")
-        assert told in made.status("World")["World"][1]
+        assert message in made.status("World")["World"][1]
         assert links_of(made) == 3
 
 
@@ -236,9 +236,9 @@ async def test_files_of_a_model_are_served_with_its_textures_and_those_that_are_
         assert meshes.file(key, "meshes/wood.png") == model / "materials/textures/wood.png"  # as Gazebo looks for it
         with pytest.raises(Exception, match="only meshes and images"):
             meshes.file(key, "secret.txt")
-        level, told = made.status("World")["Files"]
+        level, status = made.status("World")["Files"]
         assert level == "error"
-        assert "crate::link: Could not load 'file:///nowhere.stl'" in told
+        assert "crate::link: Could not load 'file:///nowhere.stl'" in status
 
 
 async def test_the_heights_of_a_ground_are_sent_as_the_simulation_has_them_and_not_too_many(tmp_path):
@@ -266,8 +266,8 @@ async def test_how_a_surface_reflects_is_sent_where_its_material_says_so(tmp_pat
     albedo = f"<albedo_map>{bumps}</albedo_map>"
     metal = f"<metalness>1</metalness><roughness>0.2</roughness><normal_map>{bumps}</normal_map>"
     lamp = f"<emissive_map>{bumps}</emissive_map><ambient_occlusion_map>{bumps}</ambient_occlusion_map>"
-    said = {"plain": albedo, "metal": albedo + metal, "lamp": albedo + lamp}
-    visuals = "".join(visual.format(name, each) for name, each in said.items())
+    facts = {"plain": albedo, "metal": albedo + metal, "lamp": albedo + lamp}
+    visuals = "".join(visual.format(name, each) for name, each in facts.items())
     text = f"<sdf version='1.9'><model name='ball'><link name='l'>{visuals}</link></model></sdf>"
     async with world(config("world")) as made:
         await Simulation(made).describe(text, links=1)

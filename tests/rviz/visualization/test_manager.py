@@ -64,8 +64,8 @@ async def test_a_box_that_is_set_back_leaves_the_file_as_it_was(box):
 async def test_what_can_be_added_is_told():
     async with opened() as (_, client):
         await client.send("ask_display_choices")
-        told = (await client.until("display_choices"))["classes"]
-        classes = {each["cls"]: each["messages"] for each in told}
+        message = (await client.until("display_choices"))["classes"]
+        classes = {each["cls"]: each["messages"] for each in message}
         assert classes["rviz_default_plugins/PointStamped"] == ["geometry_msgs/msg/PointStamped"]
         assert classes["rviz_default_plugins/Grid"] == []
         assert list(classes)[-1] == "rviz_common/Group"

@@ -1,3 +1,3 @@
 from __future__ import annotations
 
-from tests.nodes.conftest import clock, graph, log, said, stage  # noqa: F401  # fixtures
+from tests.nodes.conftest import clock, graph, log, logged, stage  # noqa: F401  # fixtures

@@ -97,11 +97,11 @@ async def test_topics_are_there_before_the_simulation_has_them(stage):
 
 
 @pytest.mark.parametrize("types", ["", "@gz.msgs.WorldControl@gz.msgs.Boolean"])
-async def test_a_service_among_the_topics_is_told_of_and_the_topics_are_bridged(stage, said, types):
+async def test_a_service_among_the_topics_is_told_of_and_the_topics_are_bridged(stage, logged, types):
     words = [f"/world/empty/control@ros_gz_interfaces/srv/ControlWorld{types}", SCAN]
     ParameterBridge(stage.graph, NodeOptions(arguments=words))
     assert "/scan" in stage.graph.topics()
-    assert said("WARN") == ["/world/empty/control is not bridged: services of gz are not here"]
+    assert logged("WARN") == ["/world/empty/control is not bridged: services of gz are not here"]
 
 
 async def test_a_remapped_name_is_bridged(stage):
@@ -146,14 +146,14 @@ async def test_a_twist_with_a_header_becomes_one_without(stage, tmp_path: Path):
     assert stage.graph.topics()["/cmd_vel"] == ["geometry_msgs/msg/TwistStamped"]
 
 
-async def test_a_type_that_is_not_known_is_named_and_the_rest_is_bridged(stage, said):
+async def test_a_type_that_is_not_known_is_named_and_the_rest_is_bridged(stage, logged):
     kind = "std_msgs/msg/String"
     ros = heard(stage, kind, "/ros")
     words = ["/a@strange_msgs/msg/Thing[gz.msgs.Thing", f"/gz@{kind}[gz.msgs.StringMsg"]
     ParameterBridge(stage.graph, NodeOptions(arguments=words, remappings=[("/gz", "/ros")]))
     publisher(stage, kind, "/gz").publish(get_message(kind)(data="hello"))
     await stage.graph.settle()
-    assert said("WARN") == ["/a is not bridged: there is no type strange_msgs/msg/Thing"]
+    assert logged("WARN") == ["/a is not bridged: there is no type strange_msgs/msg/Thing"]
     assert [message.data for message in ros] == ["hello"]
 
 
@@ -182,8 +182,8 @@ async def test_a_lazy_bridge_listens_only_while_somebody_hears_it(stage, tmp_pat
     heard_by = stage.node.create_subscription(get_message(kind), "/ros", lambda message: None, 10)
     await stage.graph.settle()
     assert source.get_subscription_count() == 1
-    (told,) = stage.node.get_publishers_info_by_topic("/ros")
-    assert told.qos_profile.depth == 3
+    (result,) = stage.node.get_publishers_info_by_topic("/ros")
+    assert result.qos_profile.depth == 3
     stage.node.destroy_subscription(heard_by)
     await stage.graph.settle()
     assert source.get_subscription_count() == 0
@@ -206,7 +206,7 @@ async def test_parameters_override_the_quality_of_service(stage):
     assert len(late) == 1
 
 
-async def test_poses_become_what_is_asked_for(stage, said):
+async def test_poses_become_what_is_asked_for(stage, logged):
     transform = get_message("geometry_msgs/msg/TransformStamped")()
     transform.header.frame_id, transform.transform.translation.x = "robot", 2.0
     kinds = ("Pose", "PoseStamped", "Transform", "PoseArray")
@@ -225,7 +225,7 @@ async def test_poses_become_what_is_asked_for(stage, said):
     assert results["PoseStamped"][0].header.frame_id == results["PoseArray"][0].header.frame_id == "robot"
     word = "/one@geometry_msgs/msg/Pose]gz.msgs.Pose"
     ParameterBridge(stage.graph, NodeOptions(name="back", arguments=[word]))
-    assert said("WARN") == [
+    assert logged("WARN") == [
         "/one is not bridged: geometry_msgs/msg/Pose does not become geometry_msgs/msg/TransformStamped"
     ]
 

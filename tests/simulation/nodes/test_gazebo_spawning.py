@@ -78,7 +78,7 @@ def create(stage: Stage, *words: str, **parameters: Any) -> Create:
     return Create(stage.graph, NodeOptions(arguments=list(words), parameters=parameters))
 
 
-async def test_what_is_published_is_spawned_where_it_is_wanted(stage, said):
+async def test_what_is_published_is_spawned_where_it_is_wanted(stage, logged):
     simulator = Simulator(stage)
     place = ("-x", "1.5", "-y", "-2", "-z", "0.1", "-Y", str(math.pi / 2))
     node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", *place)
@@ -91,7 +91,7 @@ async def test_what_is_published_is_spawned_where_it_is_wanted(stage, said):
     assert (pose.position.x, pose.position.y, pose.position.z) == (1.5, -2.0, 0.1)
     assert (pose.orientation.z, pose.orientation.w) == pytest.approx((math.sqrt(0.5), math.sqrt(0.5)))
     assert node.finished.result() == 0
-    assert said("INFO")[-1] == "Spawn status: spawned mbot"
+    assert logged("INFO")[-1] == "Spawn status: spawned mbot"
 
 
 async def test_a_description_that_was_published_before_is_heard(stage):
@@ -114,25 +114,25 @@ async def test_only_the_first_description_counts(stage):
     assert node.finished.result() == 0
 
 
-async def test_it_waits_for_the_simulator_and_gives_up_in_the_end(stage, said):
+async def test_it_waits_for_the_simulator_and_gives_up_in_the_end(stage, logged):
     await stage.describe(ROBOT)
     node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-timeout", "7")
     await stage.clock.advance(6.9)
     assert not node.finished.done()
-    assert said("INFO")[-1] == "Waiting for service /spawn_entity, timeout = 7"
+    assert logged("INFO")[-1] == "Waiting for service /spawn_entity, timeout = 7"
     await stage.clock.advance(0.2)
     assert node.finished.result() == 1
-    assert said("ERROR") == ["Service /spawn_entity unavailable. Was the simulation started?"]
+    assert logged("ERROR") == ["Service /spawn_entity unavailable. Was the simulation started?"]
 
 
-async def test_what_the_simulator_refuses_ends_with_status_1(stage, said):
+async def test_what_the_simulator_refuses_ends_with_status_1(stage, logged):
     simulator = Simulator(stage)
     simulator.refuses = True
     await stage.describe(ROBOT)
     node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot")
     await stage.graph.settle()
     assert node.finished.result() == 1
-    assert said("ERROR") == ["Spawning 'mbot' failed: Entity already exists"]
+    assert logged("ERROR") == ["Spawning 'mbot' failed: Entity already exists"]
 
 
 async def test_namespaces(stage):

@@ -232,7 +232,7 @@ async def test_what_is_not_saved_when_the_program_ends_is_kept(tmp_path):
         assert made.viewer.keep_unsaved() == []
         await client.send("delete_entities", names=["box"])
         await client.until("modelling_state", unsaved=True)
-        (said,) = made.viewer.keep_unsaved()
-    assert (said.code, path.read_text()) == ("RVIZ301", PLAIN)
+        (notice,) = made.viewer.keep_unsaved()
+    assert (notice.code, path.read_text()) == ("RVIZ301", PLAIN)
     kept = list(recovery_folder().glob("my-*.world"))
-    assert [each.read_text() for each in kept if str(each) in said.message] == [PLAIN.replace(BOX, "")]
+    assert [each.read_text() for each in kept if str(each) in notice.message] == [PLAIN.replace(BOX, "")]

@@ -57,8 +57,8 @@ class Robot:
         manager = {"update_rate": 100, "base": {"type": self.type}}
         return json.dumps(
             {
-                name: {"ros__parameters": said}
-                for name, said in (("controller_manager", manager), ("base", self.parameters))
+                name: {"ros__parameters": text}
+                for name, text in (("controller_manager", manager), ("base", self.parameters))
             }
         )
 

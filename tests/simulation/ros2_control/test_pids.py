@@ -37,11 +37,11 @@ def in_file(kind: str) -> str:
 @pytest.mark.parametrize("written", ["description", "file"])
 @pytest.mark.parametrize("kind", KINDS)
 async def test_a_pid_controller_brings_a_joint_to_its_command_and_ends_with_the_controller(tmp_path, kind, written):
-    told = written == "description"
-    path = parameter_file(tmp_path / "controllers.yaml", kind, "" if told else in_file(kind))
+    result = written == "description"
+    path = parameter_file(tmp_path / "controllers.yaml", kind, "" if result else in_file(kind))
     async with served(controlled(path)) as (server, graph, log):
         world = Controlled(server, graph)
-        await world.describe(in_description(kind) if told else description(wheel("left_joint", kind)))
+        await world.describe(in_description(kind) if result else description(wheel("left_joint", kind)))
         await world.start("arm")
         server.simulation.push("mbot::base_link", (0.0, 0.0, 40.0), by="test")  # the wheels are in the air
         await world.command(1.5, topic="/arm/commands")
@@ -61,5 +61,5 @@ async def test_a_gain_that_is_no_number_is_told(tmp_path):
     path = parameter_file(tmp_path / "controllers.yaml", "position")
     async with served(controlled(path)) as (server, graph, log):
         await Controlled(server, graph).describe(in_description("position", kp="stiff"))
-        told = [each.text for each in log if each.level == LogLevel.WARN]
-        assert told == ["PID controller of joint 'left_joint': kp is not a number: 'stiff'"]
+        logged = [each.text for each in log if each.level == LogLevel.WARN]
+        assert logged == ["PID controller of joint 'left_joint': kp is not a number: 'stiff'"]

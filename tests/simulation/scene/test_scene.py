@@ -205,10 +205,10 @@ def test_links_of_one_model_pass_through_each_other_unless_they_say_otherwise():
     text = f"""<model name="m"><self_collide>{{}}</self_collide><link name="a">{shape}</link>
     <link name="b"><pose>0 0 0.15 0 0 0</pose>{shape}</link></model>"""
     apart = {}
-    for said in ("false", "true"):
-        simulation = simulated(text.format(said), gravity="0 0 0")
+    for shown in ("false", "true"):
+        simulation = simulated(text.format(shown), gravity="0 0 0")
         simulation.advance(NANOSECONDS_PER_SECOND)
-        apart[said] = simulation.link_pose("m::b")[2] - simulation.link_pose("m::a")[2]
+        apart[shown] = simulation.link_pose("m::b")[2] - simulation.link_pose("m::a")[2]
     assert apart["false"] == pytest.approx(0.15)
     assert apart["true"] > 0.17
 

@@ -14,11 +14,11 @@ CARRIER = '<model name="carrier"><static>true</static><pose>{pose}</pose><link n
 def block(name: str, pose: str, size: str, *, retro: float = 0.0, colour: str = "1 0 0 1") -> str:
     """A box that stands still, is seen and touched."""
     geometry = f"<geometry><box><size>{size}</size></box></geometry>"
-    said = f"<laser_retro>{retro}</laser_retro>" if retro else ""
+    text = f"<laser_retro>{retro}</laser_retro>" if retro else ""
     return (
         f'<model name="{name}"><static>true</static><pose>{pose}</pose><link name="link">'
-        f'<collision name="collision">{geometry}{said}</collision>'
-        f'<visual name="visual">{geometry}{said}<material><diffuse>{colour}</diffuse></material></visual>'
+        f'<collision name="collision">{geometry}{text}</collision>'
+        f'<visual name="visual">{geometry}{text}<material><diffuse>{colour}</diffuse></material></visual>'
         "</link></model>"
     )
 
@@ -49,9 +49,9 @@ def sensor(text: str, kind: str = "lidar") -> Sensor:
 
 def lidar(text: str) -> Lidar:
     """A lidar, from what stands in its element."""
-    said = sensor(f"<lidar>{text}</lidar>").lidar
-    assert said is not None
-    return said
+    shown = sensor(f"<lidar>{text}</lidar>").lidar
+    assert shown is not None
+    return shown
 
 
 def flat(samples: int, low: float, high: float, rest: str = "", *, near: float = 0.1, far: float = 30.0) -> Lidar:

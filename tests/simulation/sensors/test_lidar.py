@@ -41,12 +41,12 @@ def test_rays_turn_with_the_link_that_carries_them():
 
 
 def test_rings_look_up_and_down():
-    said = lidar(
+    element = lidar(
         "<scan><horizontal><samples>1</samples></horizontal><vertical><samples>3</samples>"
         f"<min_angle>{-pi / 4}</min_angle><max_angle>{pi / 4}</max_angle></vertical></scan>"
         "<range><min>0.1</min><max>30</max></range>"
     )
-    scan = look(simulated(GROUND, room(), carrier("0 0 1 0 0 0")), said).measure()
+    scan = look(simulated(GROUND, room(), carrier("0 0 1 0 0 0")), element).measure()
     assert scan.ranges[:, 0] == pytest.approx([sqrt(2), 3.0, 3 * sqrt(2)], abs=1e-9)
 
 
@@ -90,8 +90,8 @@ def test_a_lidar_sees_its_robot_beyond_the_least_range_and_never_its_own_link(ne
 
 def test_noise_is_that_of_the_seed_and_stays_in_range():
     simulation = simulated(room(), carrier())
-    said = flat(2000, -1.0, 1.0, GAUSSIAN, far=3.4)
-    one, same, other = (look(simulation, said, seed=seed).measure().ranges[0] for seed in (1, 1, 2))
+    parameters = flat(2000, -1.0, 1.0, GAUSSIAN, far=3.4)
+    one, same, other = (look(simulation, parameters, seed=seed).measure().ranges[0] for seed in (1, 1, 2))
     assert (one == same).all()
     assert not (one == other).all()
     exact = look(simulation, flat(2000, -1.0, 1.0, far=3.4)).measure().ranges[0]
@@ -111,7 +111,7 @@ def test_models_that_come_are_seen():
 
 
 def test_the_angles_are_those_of_gazebo():
-    said = flat(360, 0.0, 6.28)
-    angles = said.horizontal
+    parameters = flat(360, 0.0, 6.28)
+    angles = parameters.horizontal
     assert (angles.count, angles.step) == (360, pytest.approx(6.28 / 359))
     assert flat(1, 0.5, 0.7).horizontal.step == 0.0

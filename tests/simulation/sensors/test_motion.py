@@ -29,8 +29,8 @@ CHANCE = np.random.default_rng(0)
 
 
 def imu(simulation: Simulation, link: str, text: str = "", *, seed: int = 0, initial: bool = False) -> ImuSensor:
-    said = sensor(f"<imu>{text}</imu>", "imu").imu
-    return ImuSensor(Mount(simulation, link), said, generator=np.random.default_rng(seed), initial_reference=initial)
+    shown = sensor(f"<imu>{text}</imu>", "imu").imu
+    return ImuSensor(Mount(simulation, link), shown, generator=np.random.default_rng(seed), initial_reference=initial)
 
 
 def test_an_imu_at_rest_feels_the_reaction_to_gravity():
@@ -131,8 +131,8 @@ ARM = """
 def test_a_joint_carries_what_hangs_on_it(direction: str, sign: int):
     simulation = simulated(ARM)
     simulation.advance(NANOSECONDS_PER_SECOND // 100)
-    said = ForceTorque(measure_direction=direction)
-    force, torque = ForceTorqueSensor(simulation, "arm::wrist", said, CHANCE).measure()
+    element = ForceTorque(measure_direction=direction)
+    force, torque = ForceTorqueSensor(simulation, "arm::wrist", element, CHANCE).measure()
     assert sign * force == pytest.approx([0, 0, 2 * 9.81], abs=1e-6)
     assert sign * torque == pytest.approx([0, -2 * 9.81, 0], abs=1e-6)
 

@@ -85,13 +85,13 @@ async def test_a_laser_says_nothing_while_nobody_listens():
         assert len(recording) == 10
 
 
-@pytest.mark.parametrize(("said", "topic"), [("true", "/world_rays"), ("false", "/world_rays/others")])
-async def test_the_rays_of_a_lidar_are_told_to_who_draws_them_of_the_same_measurement(said: str, topic: str):
+@pytest.mark.parametrize(("message", "topic"), [("true", "/world_rays"), ("false", "/world_rays/others")])
+async def test_the_rays_of_a_lidar_are_told_to_who_draws_them_of_the_same_measurement(message: str, topic: str):
     two_rows = RAYS.replace(
         "</horizontal>",
         "</horizontal><vertical><samples>2</samples><min_angle>0</min_angle><max_angle>0</max_angle></vertical>",
     )
-    text = sensor("gpu_lidar", f"<visualize>{said}</visualize><topic>scan</topic><lidar>{two_rows}</lidar>")
+    text = sensor("gpu_lidar", f"<visualize>{message}</visualize><topic>scan</topic><lidar>{two_rows}</lidar>")
     async with served(WALL, carrier(text)) as (server, graph, _):
         (lidar,) = server.plugins("robot")
         measured = []
@@ -115,10 +115,10 @@ async def test_a_lidar_that_nobody_listens_to_measures_while_its_rays_are_drawn(
 
 @pytest.mark.parametrize("kind", ["PointCloud2", "PointCloud", "Range"])
 async def test_the_other_types_of_a_lasers_output(kind: str):
-    said = plugin(
+    element = plugin(
         "libgazebo_ros_ray_sensor.so", f"<output_type>sensor_msgs/{kind}</output_type><frame_name>l</frame_name>"
     )
-    async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + said))) as (server, graph, _):
+    async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, _):
         (message,) = await heard(server, graph, "/driver/out")
         assert message.header.frame_id == "l"
         if kind == "Range":
@@ -131,15 +131,15 @@ async def test_the_other_types_of_a_lasers_output(kind: str):
 
 
 async def test_a_type_of_output_that_is_none_is_told_of():
-    said = plugin("libgazebo_ros_ray_sensor.so", "<output_type>sensor_msgs/Imu</output_type>")
-    async with served(carrier(sensor("ray", f"<ray>{RAYS}</ray>" + said))) as (server, _, log):
+    element = plugin("libgazebo_ros_ray_sensor.so", "<output_type>sensor_msgs/Imu</output_type>")
+    async with served(carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, _, log):
         assert server.plugins("robot") == ()
         assert "is not an output type" in str(log[0].text)
 
 
 async def test_a_laser_of_ros_1_has_its_topic_and_frame():
-    said = plugin("libgazebo_ros_laser.so", "<topicName>/laser</topicName><frameName>hokuyo</frameName>")
-    async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + said))) as (server, graph, log):
+    element = plugin("libgazebo_ros_laser.so", "<topicName>/laser</topicName><frameName>hokuyo</frameName>")
+    async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, log):
         (scan,) = await heard(server, graph, "/laser")
         assert (scan.header.frame_id, scan.ranges[1]) == ("hokuyo", 2.0)
         assert not log
@@ -150,8 +150,8 @@ async def test_a_laser_of_ros_1_has_its_topic_and_frame():
     ["block_laser", "range", "velodyne_laser"],
 )
 async def test_other_lasers_of_ros_1_have_the_messages_that_they_had(library: str):
-    said = plugin(f"libgazebo_ros_{library}.so", "<topicName>/told</topicName><frameName>hokuyo</frameName>")
-    async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + said))) as (server, graph, log):
+    element = plugin(f"libgazebo_ros_{library}.so", "<topicName>/told</topicName><frameName>hokuyo</frameName>")
+    async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, log):
         (message,) = await heard(server, graph, "/told")
         assert message.header.frame_id == "hokuyo"
         if library == "range":
@@ -185,8 +185,8 @@ LASERS = RAYS.replace(
 
 
 async def test_points_of_a_velodyne_tell_which_laser_measured_them():
-    said = plugin("libgazebo_ros_velodyne_laser.so", "<topicName>/told</topicName>")
-    async with served(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + said))) as (server, graph, log):
+    element = plugin("libgazebo_ros_velodyne_laser.so", "<topicName>/told</topicName>")
+    async with served(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + element))) as (server, graph, log):
         (message,) = await heard(server, graph, "/told")
         rows = rows_of(message)
         assert (message.height, message.width, message.is_dense) == (1, 2, True)
@@ -198,8 +198,8 @@ async def test_points_of_a_velodyne_tell_which_laser_measured_them():
 
 async def test_an_organized_cloud_of_a_velodyne_has_a_row_for_each_firing():
     more = "<topicName>/told</topicName><organize_cloud>true</organize_cloud><max_range>5</max_range>"
-    said = plugin("libgazebo_ros_velodyne_laser.so", more)
-    async with served(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + said))) as (server, graph, log):
+    element = plugin("libgazebo_ros_velodyne_laser.so", more)
+    async with served(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + element))) as (server, graph, log):
         (message,) = await heard(server, graph, "/told")
         rows = rows_of(message).reshape(message.height, message.width)
         assert (message.height, message.width, message.is_dense) == (3, 2, False)
@@ -236,8 +236,12 @@ async def test_a_sensor_of_gz_without_a_topic_has_the_name_of_gz():
 )
 async def test_imus_tell_gravity_and_their_noise(library: str | None, text: str, topic: str):
     noise = '<angular_velocity><z><noise type="gaussian"><stddev>0.1</stddev></noise></z></angular_velocity>'
-    said = sensor("imu", f"{text}<imu>{noise}</imu>" + (plugin(library) if library else ""), rate=100)
-    async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</link>", said + "</link>")) as (server, graph, log):
+    shown = sensor("imu", f"{text}<imu>{noise}</imu>" + (plugin(library) if library else ""), rate=100)
+    async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</link>", shown + "</link>")) as (
+        server,
+        graph,
+        log,
+    ):
         (message,) = await heard(server, graph, topic, duration=SECOND)
         assert message.linear_acceleration.z == pytest.approx(9.81, abs=1e-3)
         assert message.angular_velocity_covariance[8] == pytest.approx(0.01)
@@ -248,10 +252,10 @@ async def test_imus_tell_gravity_and_their_noise(library: str | None, text: str,
 
 
 async def test_an_imu_of_ros_1_names_its_link():
-    said = plugin(
+    element = plugin(
         "libgazebo_ros_imu.so", "<bodyName>link</bodyName><topicName>/imu</topicName><updateRate>10</updateRate>"
     )
-    async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</model>", said + "</model>")) as (
+    async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</model>", element + "</model>")) as (
         server,
         graph,
         log,
@@ -262,8 +266,8 @@ async def test_an_imu_of_ros_1_names_its_link():
 
 
 async def test_contacts_of_gz_are_told_while_something_touches():
-    said = sensor("contact", "<contact><collision>collision</collision><topic>/touched</topic></contact>", rate=100)
-    text = box("crate", "0 0 0.7 0 0 0", "1 1 1", 2.0).replace("</link>", f"{said}</link>")
+    element = sensor("contact", "<contact><collision>collision</collision><topic>/touched</topic></contact>", rate=100)
+    text = box("crate", "0 0 0.7 0 0 0", "1 1 1", 2.0).replace("</link>", f"{element}</link>")
     async with served(GROUND, text) as (server, graph, log):
         recording = Recording(graph, server.node, "/touched")
         server.advance(SECOND // 10)
@@ -300,8 +304,14 @@ async def test_heights_and_pressures_of_gz():
 
 
 async def test_a_bumper_tells_what_it_touches():
-    said = sensor("contact", "<contact><collision>collision</collision></contact>" + plugin("libgazebo_ros_bumper.so"))
-    async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</link>", said + "</link>")) as (server, graph, log):
+    element = sensor(
+        "contact", "<contact><collision>collision</collision></contact>" + plugin("libgazebo_ros_bumper.so")
+    )
+    async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</link>", element + "</link>")) as (
+        server,
+        graph,
+        log,
+    ):
         (message,) = await heard(server, graph, "/bumper_states", duration=SECOND)
         (state,) = message.states
         assert message.header.frame_id == "world"
@@ -321,16 +331,16 @@ EARTH = (
     ("gps", "libgazebo_ros_gps_sensor.so", "/driver/out"), ("navsat", None, "/gps/fix"),
 ])  # fmt: skip
 async def test_receivers_tell_where_they_are(kind: str, library: str | None, topic: str):
-    said = sensor(kind, plugin(library) if library else "<topic>/gps/fix</topic>")
-    async with served(EARTH, carrier(said)) as (server, graph, log):
+    element = sensor(kind, plugin(library) if library else "<topic>/gps/fix</topic>")
+    async with served(EARTH, carrier(element)) as (server, graph, log):
         (fix,) = await heard(server, graph, topic)
         assert (fix.latitude, fix.longitude, fix.altitude) == pytest.approx((47.5, 8.5, 430.0))
         assert not log
 
 
 async def test_a_magnetometer_feels_the_field_in_its_axes():
-    said = sensor("magnetometer", f"<pose>0 0 0 0 0 {pi / 2}</pose><topic>mag</topic>")
-    async with served("<magnetic_field>1 2 3</magnetic_field>", carrier(said)) as (server, graph, _):
+    element = sensor("magnetometer", f"<pose>0 0 0 0 0 {pi / 2}</pose><topic>mag</topic>")
+    async with served("<magnetic_field>1 2 3</magnetic_field>", carrier(element)) as (server, graph, _):
         (message,) = await heard(server, graph, "/mag")
         field = message.magnetic_field
         assert (field.x, field.y, field.z) == pytest.approx((2.0, -1.0, 3.0))
@@ -363,8 +373,8 @@ def pixels_of(message) -> np.ndarray:
 
 
 async def test_a_camera_of_gazebo_classic_has_an_image_and_its_figures():
-    said = "<camera_name>front</camera_name><frame_name>optical</frame_name><hack_baseline>0.07</hack_baseline>"
-    text = carrier(sensor("camera", EYE + plugin("libgazebo_ros_camera.so", said)))
+    expected = "<camera_name>front</camera_name><frame_name>optical</frame_name><hack_baseline>0.07</hack_baseline>"
+    text = carrier(sensor("camera", EYE + plugin("libgazebo_ros_camera.so", expected)))
     async with served(WALL, text) as (server, graph, log):
         image, info = await heard(server, graph, "/front/image_raw", "/front/camera_info")
         assert (image.width, image.height, image.encoding, image.step) == (64, 48, "rgb8", 192)
@@ -392,9 +402,9 @@ async def test_formats_are_encodings(written: str, encoding: str, step: int):
 
 @pytest.mark.parametrize("library", ["libgazebo_ros_camera.so", "libgazebo_ros_openni_kinect.so"])
 async def test_a_depth_camera_measures_along_its_axis(library: str):
-    said = plugin(library, "<camera_name>depth</camera_name><max_depth>3</max_depth>")
+    element = plugin(library, "<camera_name>depth</camera_name><max_depth>3</max_depth>")
     near = block("near", "0.35 0.2 0 0 0 0", "0.1 0.1 0.1")
-    async with served(WALL, near, carrier(sensor("depth", EYE + said))) as (server, graph, _):
+    async with served(WALL, near, carrier(sensor("depth", EYE + element))) as (server, graph, _):
         depth, cloud = await heard(server, graph, "/depth/depth/image_raw", "/depth/points")
         metres = np.frombuffer(bytes(depth.data), np.float32).reshape(48, 64)
         assert (depth.encoding, depth.step) == ("32FC1", 256)
@@ -409,8 +419,8 @@ async def test_a_depth_camera_measures_along_its_axis(library: str):
 
 
 async def test_a_camera_that_is_triggered_waits_for_it():
-    said = plugin("libgazebo_ros_camera.so", "<triggered>true</triggered>")
-    async with served(WALL, carrier(sensor("camera", EYE + said))) as (server, graph, _):
+    element = plugin("libgazebo_ros_camera.so", "<triggered>true</triggered>")
+    async with served(WALL, carrier(sensor("camera", EYE + element))) as (server, graph, _):
         recording = Recording(graph, server.node, "/eye/image_raw")
         server.advance(SECOND)
         await graph.settle()
@@ -425,8 +435,8 @@ async def test_a_camera_that_is_triggered_waits_for_it():
 
 async def test_several_cameras_have_a_topic_each():
     eyes = EYE.replace("<camera>", '<camera name="left">') + EYE.replace("<camera>", '<camera name="right">')
-    said = plugin("libgazebo_ros_camera.so", "<camera_name>stereo</camera_name>")
-    async with served(WALL, carrier(sensor("multicamera", eyes + said))) as (server, graph, _):
+    element = plugin("libgazebo_ros_camera.so", "<camera_name>stereo</camera_name>")
+    async with served(WALL, carrier(sensor("multicamera", eyes + element))) as (server, graph, _):
         left, right = await heard(server, graph, "/stereo/left/image_raw", "/stereo/right/camera_info")
         assert (left.width, right.width) == (64, 64)
 

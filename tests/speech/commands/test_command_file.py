@@ -137,7 +137,7 @@ def test_the_phrase_that_says_more_of_itself_is_meant() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "code", "line", "column", "said"),
+    ("text", "code", "line", "column", "message"),
     [
         ("places: {}\n", "VOICE302", 1, 1, "'commands' is missing"),
         ("places: {}\ncommands: {}\n", "VOICE302", 2, 11, "there is no command in 'commands'"),
@@ -187,13 +187,13 @@ def test_the_phrase_that_says_more_of_itself_is_meant() -> None:
         ),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place(text: str, code: str, line: int, column: int, said: str) -> None:
+def test_what_is_wrong_is_told_with_its_place(text: str, code: str, line: int, column: int, message: str) -> None:
     with pytest.raises(LinkwrightError) as caught:
         read(text)
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.span is not None
     assert (diagnostic.code, diagnostic.span.line, diagnostic.span.column) == (code, line, column)
-    assert said in str(diagnostic.message)
+    assert message in str(diagnostic.message)
 
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:

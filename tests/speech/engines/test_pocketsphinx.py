@@ -97,7 +97,7 @@ class Decoder:
 
 
 @pytest.fixture
-def told(monkeypatch):
+def fake_decoder(monkeypatch):
     monkeypatch.setitem(sys.modules, "pocketsphinx", SimpleNamespace(Decoder=Decoder, Endpointer=Endpointer))
     monkeypatch.setattr(Decoder, "made", [])
 
@@ -113,7 +113,7 @@ def test_both_engines_are_found_by_name():
     assert {"vosk", "pocketsphinx"} <= set(engine_names())
 
 
-def test_an_utterance_in_blocks_of_another_length(told):
+def test_an_utterance_in_blocks_of_another_length(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("go to the kitchen", "Stop")))
     assert "public <said> = go to the kitchen | stop;" in Decoder.made[0].grammar
     sound = np.concatenate([QUIET, QUIET, *[SPEECH] * 5, QUIET, QUIET])
@@ -124,7 +124,7 @@ def test_an_utterance_in_blocks_of_another_length(told):
 
 
 @pytest.mark.parametrize(("fit", "confidence"), [(-4.0, 0.982), (-8.0, 0.5), (-11.0, 0.047), (-900.0, 0.0)])
-def test_words_that_do_not_fit_the_sounds_are_not_certain(told, monkeypatch, fit, confidence):
+def test_words_that_do_not_fit_the_sounds_are_not_certain(fake_decoder, monkeypatch, fit, confidence):
     monkeypatch.setattr(Decoder, "fit", fit)
     engine = PocketsphinxEngine(EngineOptions(("go to",)))
     (heard,) = [*engine.hear(SPEECH), *engine.finish()]
@@ -132,13 +132,13 @@ def test_words_that_do_not_fit_the_sounds_are_not_certain(told, monkeypatch, fit
     assert heard.confidence == pytest.approx(confidence, abs=1e-3)
 
 
-def test_other_words_are_none_of_the_phrases(told):
+def test_other_words_are_none_of_the_phrases(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("stop",)))
     (heard,) = engine.hear(np.concatenate([SPEECH, SPEECH, QUIET]))
     assert (heard.text, heard.final) == ("", True)
 
 
-def test_the_end_of_a_button_press_ends_the_utterance(told):
+def test_the_end_of_a_button_press_ends_the_utterance(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("go", "stop")))
     assert [each.text for each in engine.hear(np.concatenate([SPEECH, SPEECH[:100]]))] == ["go"]
     (heard,) = engine.finish()

@@ -37,7 +37,7 @@ def engine(model, phrases=ENGLISH, language="en"):
     return VoskEngine(EngineOptions(phrases, language, model))
 
 
-def said(engine, *script):
+def heard_by(engine, *script):
     """What is heard in as many blocks as the script has items."""
     fake_vosk.SCRIPT[:] = script
     return [each for _ in script for each in engine.hear(BLOCK)]
@@ -60,12 +60,12 @@ def test_the_grammar_is_the_phrases_and_all_other_speech(model, vosk):
 
 def test_a_phrase_with_its_least_certain_word_and_its_times(model):
     made = engine(model)
-    heard = said(made, "", "", "", "", "", "", "", [("turn", 0.8), ("left", 0.95)])
+    heard = heard_by(made, "", "", "", "", "", "", "", [("turn", 0.8), ("left", 0.95)])
     assert heard == [Heard("turn left", 0.8, True, pytest.approx(0.2), pytest.approx(0.8))]
 
 
 def test_silence_is_nothing(model):
-    assert said(engine(model), "", [], "") == []
+    assert heard_by(engine(model), "", [], "") == []
 
 
 @pytest.mark.parametrize(
@@ -82,32 +82,32 @@ def test_silence_is_nothing(model):
     ],
 )
 def test_other_speech_is_heard_as_none_of_the_phrases(words, nearest, model):
-    (heard,) = said(engine(model), "", words)
+    (heard,) = heard_by(engine(model), "", words)
     assert (heard.text, heard.final, heard.nearest) == ("", True, nearest)
 
 
 def test_phrases_one_after_another(model):
-    heard = said(engine(model), [("turn", 1.0), ("left", 0.9), ("now", 0.7), ("stop", 1.0)])
+    heard = heard_by(engine(model), [("turn", 1.0), ("left", 0.9), ("now", 0.7), ("stop", 1.0)])
     assert [(each.text, each.confidence) for each in heard] == [("turn left now", 0.7), ("stop", 1.0)]
 
 
 def test_partials_come_when_they_change_and_are_phrases(model):
     made = engine(model)
-    heard = said(made, "", "turn", "turn left", "turn left", "turn left now")
+    heard = heard_by(made, "", "turn", "turn left", "turn left", "turn left now")
     assert [(each.text, each.final) for each in heard] == [("turn left", False), ("turn left now", False)]
     assert heard[0].start == pytest.approx(0.2)
     assert heard[0].end == pytest.approx(0.3)
-    assert [each.text for each in said(made, [("stop", 1.0)], "stop")] == ["stop", "stop"]
+    assert [each.text for each in heard_by(made, [("stop", 1.0)], "stop")] == ["stop", "stop"]
 
 
 def test_stop_in_the_middle_of_other_speech_is_a_partial(model):
-    heard = said(engine(model), "[unk]", "[unk] stop", [("[unk]", 1.0), ("stop", 1.0)])
+    heard = heard_by(engine(model), "[unk]", "[unk] stop", [("[unk]", 1.0), ("stop", 1.0)])
     assert [(each.text, each.final) for each in heard] == [("stop", False), ("", True)]
 
 
 def test_the_end_of_a_button_press_ends_the_utterance(model):
     made = engine(model)
-    said(made, "forward")
+    heard_by(made, "forward")
     assert [(each.text, each.final) for each in made.finish()] == [("forward", True)]
     assert list(made.finish()) == []
     assert list(made.hear(np.zeros(0, np.int16))) == []
@@ -117,13 +117,13 @@ def test_chinese_is_put_in_the_words_of_the_model(model, vosk, monkeypatch):
     monkeypatch.setattr(vosk, "WORDS", {"前进", "向", "左", "转", "左转", "停"})
     made = engine(model, ("前进", "向左", "向左转", "停"), "zh")
     assert vosk.MADE[0].grammar == ["前进", "向 左", "向 左转", "停", "[unk]"]
-    heard = said(made, [("向", 1.0), ("左", 1.0)], [("向", 1.0), ("左转", 1.0)])
+    heard = heard_by(made, [("向", 1.0), ("左", 1.0)], [("向", 1.0), ("左转", 1.0)])
     assert [each.text for each in heard] == ["向左", "向左转"]
 
 
 def test_capitals_are_no_other_words(model):
     made = engine(model, ("Turn Left",))
-    assert [each.text for each in said(made, [("turn", 1.0), ("left", 1.0)])] == ["Turn Left"]
+    assert [each.text for each in heard_by(made, [("turn", 1.0), ("left", 1.0)])] == ["Turn Left"]
 
 
 def test_words_that_the_model_lacks_are_named_at_once(model, vosk, monkeypatch):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.nodes.conftest import clock, graph, log, said, stage  # noqa: F401  # fixtures
+from tests.nodes.conftest import clock, graph, log, logged, stage  # noqa: F401  # fixtures
 from tests.speech.nodes.fakes import ENTRY, Talk, ToldEngine
 
 

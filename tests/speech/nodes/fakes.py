@@ -101,10 +101,10 @@ class Talk:
     async def say_nothing_more(self) -> None:
         """Wait until all that was heard was dealt with: press once more, and hear nothing that counts."""
         ToldEngine.says_at_end[:] = [partial("the end")]
-        told = len(self.said["partial_text"])
+        text = len(self.said["partial_text"])
         await self.hold(True)
         await self.hold(False)
-        await eventually(lambda: len(self.said["partial_text"]) > told)
+        await eventually(lambda: len(self.said["partial_text"]) > text)
         ToldEngine.says_at_end.clear()
         await self.stage.graph.settle()
 
@@ -122,6 +122,6 @@ class Talk:
         self.sound.publish(audio_stamped(block.tobytes(), now.to_msg()))
         await self.stage.graph.settle()
         if heard:
-            told = len(heard) + before
-            await eventually(lambda: len(self.said["text"]) + len(self.said["partial_text"]) >= told)
+            result = len(heard) + before
+            await eventually(lambda: len(self.said["text"]) + len(self.said["partial_text"]) >= result)
         await self.stage.graph.settle()

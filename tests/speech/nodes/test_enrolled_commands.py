@@ -22,8 +22,8 @@ def words_file(tmp_path_factory):
     words = Words()
     for name, phones in WORDS.items():
         for number in range(3):
-            said = say(phones, speed=0.95 + 0.05 * number, pitch=115 + 5 * number, seed=number)
-            assert enrol(words, name, said) == ()
+            samples = say(phones, speed=0.95 + 0.05 * number, pitch=115 + 5 * number, seed=number)
+            assert enrol(words, name, samples) == ()
     path = tmp_path_factory.mktemp("voice") / "words.json"
     words.write(path)
     return path

@@ -125,8 +125,8 @@ async def test_pages_are_told_when_enrolling_is_proposed_and_when_no_longer(
     engine, talk, stage, monkeypatch, parameters, proposed
 ):
     monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"enrolled": ENTRY})
-    told = []
-    stage.node.create_subscription(BOOL, "/voice/propose_enrolling", lambda message: told.append(message.data), 10)
+    messages = []
+    stage.node.create_subscription(BOOL, "/voice/propose_enrolling", lambda message: messages.append(message.data), 10)
     robot = talk(engine="enrolled", **parameters)
     engine.says_at_end.append(final(""))
     for _ in range(3):
@@ -134,4 +134,4 @@ async def test_pages_are_told_when_enrolling_is_proposed_and_when_no_longer(
         await robot.hold(False)
     await eventually(lambda: len(engine.finished) == 3)
     await robot.say_nothing_more()
-    assert told == proposed
+    assert messages == proposed

@@ -68,8 +68,8 @@ def test_what_the_source_itself_lost_is_told_however_much_it_is():
 def test_small_losses_are_told_together_and_hide_no_large_one():
     stamps, gaps = SampleStamps(), SoundGaps()
     losses = {10: 0.01, 11: 0.04, 12: 0.03, 13: 0.5, 20: 0.02}
-    told = [stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND), losses.get(each, 0.0)) for each in range(30)]
-    found = [gaps.missing(stamp, BLOCK) for stamp in told]
+    result = [stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND), losses.get(each, 0.0)) for each in range(30)]
+    found = [gaps.missing(stamp, BLOCK) for stamp in result]
     assert [number for number, each in enumerate(found) if each] == [12, 13]
     assert np.allclose([found[12], found[13]], [0.08, 0.5], atol=0.005)
 

@@ -287,11 +287,11 @@ async def test_after_a_stop_nothing_else_of_the_utterance_is_done(engine, talk):
     assert robot.said["command"] == ["left", "stop", "stop", "go_to_object object=stop_sign"]
 
 
-async def test_it_is_told_why_an_engine_hears_nothing(engine, talk, said):
+async def test_it_is_told_why_an_engine_hears_nothing(engine, talk, logged):
     engine.trouble.append(Diagnostic("VOICE201", phrase("nothing is enrolled"), hint=phrase("enrol something")))
     robot = talk(engine="told")
-    await eventually(lambda: said("WARN"))
-    assert said("WARN") == ["nothing is enrolled", "enrol something"]
+    await eventually(lambda: logged("WARN"))
+    assert logged("WARN") == ["nothing is enrolled", "enrol something"]
     assert not robot.running.finished.done()
 
 
@@ -313,21 +313,21 @@ async def test_it_stops_when_the_microphone_is_gone(engine, stage, talk):
     assert robot.said["response"][-1] == "the audio source is gone, so I stop"
 
 
-async def test_an_engine_that_is_not_there_ends_the_node(engine, talk, said):
+async def test_an_engine_that_is_not_there_ends_the_node(engine, talk, logged):
     robot = talk(engine="tolt")
     await eventually(robot.running.finished.done)
     assert robot.running.finished.result() == 1
-    assert said("FATAL") == ["there is no speech engine 'tolt'", "did you mean 'told'?"]
+    assert logged("FATAL") == ["there is no speech engine 'tolt'", "did you mean 'told'?"]
 
 
-async def test_an_engine_that_fails_stops_the_robot_and_ends_the_node(engine, talk, said):
+async def test_an_engine_that_fails_stops_the_robot_and_ends_the_node(engine, talk, logged):
     robot = talk(engine="told", open_listening=True)
     await robot.say(final("forward"))
     robot.sound.publish(audio_stamped(b"\xff\x7f", robot.stage.node.get_clock().now().to_msg()))
     await eventually(robot.running.finished.done)
     await robot.stage.graph.settle()
     assert robot.speed == (0.0, 0.0, 0.0)
-    assert said("FATAL") == ["the speech engine failed: KeyError: 32767"]
+    assert logged("FATAL") == ["the speech engine failed: KeyError: 32767"]
 
 
 # --- others ----------------------------------------------------------------------------------------------------------
@@ -364,12 +364,12 @@ async def test_answers_are_in_the_language_of_the_node_until_somebody_speaks(tal
 
 
 async def test_answers_are_in_the_language_that_was_spoken_last(talk, tmp_path):
-    told = """
+    text = """
 commands:
   stop: {phrases: {en: stop, zh: 停}, stop: true, response: {en: stopped, zh: 停下了}}
   forward: {phrases: {en: [forward], zh: [前进]}, drive: {x: 1}, response: {en: I drive, zh: 我走}}
 """
-    robot = talk(commands_file=commands(tmp_path, told))
+    robot = talk(commands_file=commands(tmp_path, text))
     assert await robot.type("前进") == "我走"
     assert await robot.type("sing") == "我没听懂“sing”"
     assert await robot.type("停") == "停下了"
@@ -528,8 +528,8 @@ async def test_who_drives_to_objects_is_told_where_and_to_stop(stage, talk):
     assert heard == ["stop", "red ball", "stop", ("zh", "red ball")]
 
 
-async def test_a_file_of_commands_that_is_wrong_ends_it(talk, tmp_path, said):
+async def test_a_file_of_commands_that_is_wrong_ends_it(talk, tmp_path, logged):
     with pytest.raises(LinkwrightError) as caught:
         talk(commands_file=commands(tmp_path, "commands: {a: {phrases: b}}"))
     assert caught.value.diagnostics[0].code == "VOICE302"
-    assert said("FATAL") == ["the command 'a' does nothing"]
+    assert logged("FATAL") == ["the command 'a' does nothing"]

@@ -51,8 +51,8 @@ async def test_a_word_is_enrolled_by_saying_it():
             assert (judged["code"], judged["number"]) == (None, count)
             assert 0.1 < judged["peak"] < 1.0
             assert judged["seconds"] == pytest.approx(1.0 + 0.4, abs=0.3)
-            told = await other.until("voice_words")
-            assert (told["words"], told["enough"]) == ([{"name": "stop", "takes": count}], 3)
+            message = await other.until("voice_words")
+            assert (message["words"], message["enough"]) == ([{"name": "stop", "takes": count}], 3)
         assert Words.read(words_path()).names == ("stop",)
 
 
@@ -76,16 +76,16 @@ async def test_words_are_renamed_and_removed_and_keep_their_place():
         for name in ("stop", "back", "forward"):
             await record(client, name, say(WORDS[name]))
         await client.send("rename_word", name="stop", new_name="停止")
-        told = await client.until("voice_words", problem=None)
-        while [word["name"] for word in told["words"]] != ["停止", "back", "forward"]:
-            told = await client.until("voice_words", problem=None)
+        message = await client.until("voice_words", problem=None)
+        while [word["name"] for word in message["words"]] != ["停止", "back", "forward"]:
+            message = await client.until("voice_words", problem=None)
         await client.send("rename_word", name="back", new_name="forward")
-        while told["problem"] is None:
-            told = await client.until("voice_words")
-        assert told["problem"] == "a word cannot be called 'forward': there is a word of that name"
+        while message["problem"] is None:
+            message = await client.until("voice_words")
+        assert message["problem"] == "a word cannot be called 'forward': there is a word of that name"
         await client.send("remove_word", name="back")
-        told = await client.until("voice_words", problem=None)
-        assert [word["name"] for word in told["words"]] == ["停止", "forward"]
+        message = await client.until("voice_words", problem=None)
+        assert [word["name"] for word in message["words"]] == ["停止", "forward"]
 
 
 async def test_the_file_goes_from_one_user_to_another():

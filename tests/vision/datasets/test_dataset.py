@@ -82,14 +82,14 @@ def test_all_forms_say_the_same(source, tmp_path):
         "names": {0: "ball", 1: "crate", 2: "drums"},
     }
     objects = 0
-    for split, said in lists_of(folder).items():
-        assert [each["name"] for each in said["categories"]] == ["ball", "crate", "drums"]
-        assert len({each["id"] for each in said["annotations"]}) == len(said["annotations"])
-        for image in said["images"]:
+    for split, text in lists_of(folder).items():
+        assert [each["name"] for each in text["categories"]] == ["ball", "crate", "drums"]
+        assert len({each["id"] for each in text["annotations"]}) == len(text["annotations"])
+        for image in text["images"]:
             with Image.open(folder / "images" / split / image["file_name"]) as opened:
                 assert opened.size == (160, 120) == (image["width"], image["height"])
             lines = (folder / "labels" / split / f"{Path(image['file_name']).stem}.txt").read_text().splitlines()
-            known = [each for each in said["annotations"] if each["image_id"] == image["id"] and not each["iscrowd"]]
+            known = [each for each in text["annotations"] if each["image_id"] == image["id"] and not each["iscrowd"]]
             assert len(lines) == len(known)
             for line, each in zip(lines, known, strict=True):
                 number, *shares = line.split()
@@ -97,7 +97,7 @@ def test_all_forms_say_the_same(source, tmp_path):
                 assert int(number) + 1 == each["category_id"]
                 assert [x - width / 2, y - height / 2, width, height] == pytest.approx(each["bbox"], abs=1e-3)
                 objects += 1
-        for each in said["annotations"]:
+        for each in text["annotations"]:
             mask = mask_of(tuple(each["segmentation"]["counts"]), *each["segmentation"]["size"])
             left, top, right, bottom = box_of(mask)
             assert each["bbox"] == [left, top, right - left, bottom - top]
@@ -155,7 +155,7 @@ def test_images_are_added(source, tmp_path):
     make(source, folder, 3)
     made = make(source, folder, 4, append=True)
     assert (made.added, made.folder.count) == (4, 7)
-    numbers = sorted(image["id"] for said in lists_of(folder).values() for image in said["images"])
+    numbers = sorted(image["id"] for text in lists_of(folder).values() for image in text["images"])
     assert numbers == list(range(7))
     make(source, tmp_path / "whole", 7)
     assert {

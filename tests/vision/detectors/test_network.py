@@ -119,14 +119,14 @@ def test_one_class_of_classic_yolov5_is_not_taken_for_final_boxes(tmp_path, imag
     assert len(found) == len(slowly(output[0], 1, limits, True))
 
 
-@pytest.mark.parametrize("said", [{"end2end": "True"}, {"args": "{'batch': 1, 'nms': True}"}, {}])
-def test_final_boxes(tmp_path, image, said):
+@pytest.mark.parametrize("message", [{"end2end": "True"}, {"args": "{'batch': 1, 'nms': True}"}, {}])
+def test_final_boxes(tmp_path, image, message):
     rows = np.zeros((1, 300, 6), np.float32)
     rows[0, 0] = [10, 20, 40, 60, 0.9, 2]
     rows[0, 1] = [11, 20, 40, 60, 0.8, 2]
     rows[0, 2] = [0, 0, 128, 96, 0.7, 0]
     rows[0, 3] = [0, 0, 50, 50, 0.3, 1]
-    path = constant(tmp_path / "v10.onnx", rows, {**NAMES, **said})
+    path = constant(tmp_path / "v10.onnx", rows, {**NAMES, **message})
     found = opened(path).detect(image, LIMITS)
     assert [found.name(index) for index in range(len(found))] == ["cat", "cat", "ball"]
     across, down, top = 128 / 200, 77 / 120, round((96 - 77) / 2 - 0.1)
@@ -150,8 +150,8 @@ def test_half_precision(tmp_path, image):
 
 @pytest.mark.parametrize("task", ["segment", ""])
 def test_masks_are_left_out_and_that_is_said(tmp_path, image, task):
-    said = {**NAMES, "task": task}
-    path = columns(tmp_path / "seg.onnx", metadata=said, masks=32)
+    facts = {**NAMES, "task": task}
+    path = columns(tmp_path / "seg.onnx", metadata=facts, masks=32)
     output, *place = by_hand(path, image, 96, 128)
     detector = opened(path)
     check(detector.detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place)
@@ -159,8 +159,8 @@ def test_masks_are_left_out_and_that_is_said(tmp_path, image, task):
 
 
 def test_key_points_are_left_out_and_that_is_said(tmp_path, image):
-    said = {"names": "{0: 'person'}", "task": "pose", "kpt_shape": "[17, 3]"}
-    path = columns(tmp_path / "pose.onnx", 1, metadata=said, more=51)
+    facts = {"names": "{0: 'person'}", "task": "pose", "kpt_shape": "[17, 3]"}
+    path = columns(tmp_path / "pose.onnx", 1, metadata=facts, more=51)
     output, *_ = by_hand(path, image, 96, 128)
     detector = opened(path)
     assert len(detector.detect(image, LIMITS)) == len(slowly(output[0].T, 1, LIMITS))

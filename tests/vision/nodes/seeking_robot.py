@@ -117,7 +117,7 @@ class SeekingRobot(SteppedSimulation):
         """What ends all seeking."""
         self.publish("/vision/stop", get_message("std_msgs/msg/Empty")())
 
-    def said(self) -> list[str]:
+    def spoken(self) -> list[str]:
         """What the robot has said."""
         return [said_message.data for said_message in self.said_messages]
 
@@ -125,7 +125,7 @@ class SeekingRobot(SteppedSimulation):
         """Let time pass until the robot says something with a word in it."""
         for _ in range(round(seconds / 0.5)):
             self.advance(0.5)
-            if any(word in text for text in self.said()):
+            if any(word in text for text in self.spoken()):
                 return True
         return False
 

@@ -67,7 +67,7 @@ WALL[220:260, 300:340] = 2.0
 BOX = (300.0, 220.0, 340.0, 260.0)
 
 
-def said(test):
+def warnings(test):
     return [record.text for record in test.log if record.level.name == "WARN"]
 
 
@@ -111,7 +111,7 @@ def test_without_depth_things_are_where_they_stand_on_the_ground(test):
     assert each.id == "7", "the other one is above the horizon"
     assert each.bbox.center.position.x == pytest.approx(2.1, abs=0.02)
     assert each.bbox.center.position.z == pytest.approx(0.09, abs=0.02)
-    assert said(test) == []
+    assert warnings(test) == []
 
 
 def test_where_there_is_no_depth_in_the_box_the_ground_counts(test):
@@ -132,18 +132,18 @@ def test_nothing_is_found_and_it_is_said(test):
 def test_what_is_missing_is_named(test):
     _, found, _ = start(test)
     boxes(test, BOX)
-    assert said(test) == ["detections have no place: no camera_info has arrived"]
+    assert warnings(test) == ["detections have no place: no camera_info has arrived"]
     camera(test, "/camera_info")
     test.advance(6.0)
     boxes(test, BOX)
-    assert said(test)[-1].endswith("no depth image has arrived with a stamp near that of the detections")
+    assert warnings(test)[-1].endswith("no depth image has arrived with a stamp near that of the detections")
     depth(test, WALL, frame="elsewhere")
     test.advance(6.0)
     boxes(test, BOX)
-    assert "must be registered" in said(test)[-1]
+    assert "must be registered" in warnings(test)[-1]
     test.advance(6.0)
     boxes(test, BOX, frame="nowhere")
-    assert "nowhere" in said(test)[-1]
+    assert "nowhere" in warnings(test)[-1]
     test.advance(6.0)
     depth(test, WALL, frame="camera", stamp=Time.from_nanoseconds(5 * 10**9))
     boxes(test, BOX)
@@ -154,7 +154,7 @@ def test_what_is_missing_is_named(test):
 def test_a_lens_that_is_not_known_is_said(test):
     start(test)
     camera(test, "/camera_info", distortion_model="equidistant", d=[0.1, 0.0, 0.0, 0.0])
-    assert "equidistant" in said(test)[-1]
+    assert "equidistant" in warnings(test)[-1]
 
 
 def test_as_yolo_ros_with_its_messages_and_parameters(test):

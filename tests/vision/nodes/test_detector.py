@@ -291,9 +291,9 @@ async def test_detectors_that_cannot_be_loaded_end_the_node_with_one_error_and_w
 ):
     running = await start(**parameters)
     assert running.finished.result() == 1
-    said = [record.text for record in test.log if record.level is LogLevel.FATAL]
-    assert len(said) == 2, "the error, and the hint"
-    assert words in said[0]
+    logged = [record.text for record in test.log if record.level is LogLevel.FATAL]
+    assert len(logged) == 2, "the error, and the hint"
+    assert words in logged[0]
 
 
 # --- where no images come -----------------------------------------------------------------------------------------

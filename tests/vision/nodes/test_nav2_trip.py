@@ -42,8 +42,8 @@ class Navigator:
         self.goals[-1].execute(finish)
 
 
-@pytest.mark.parametrize(("reached", "said"), [(True, "I am at the ball."), (False, "Something is between")])
-def test_nav2_goes_there(tmp_path, reached, said):
+@pytest.mark.parametrize(("reached", "message"), [(True, "I am at the ball."), (False, "Something is between")])
+def test_nav2_goes_there(tmp_path, reached, message):
     with SeekingRobot(tmp_path, (2.0, 0.0), seeker={"use_nav2": True}) as test:
         navigator = Navigator(test)
         test.tell("/vision/go_to", "ball")
@@ -56,7 +56,7 @@ def test_nav2_goes_there(tmp_path, reached, said):
         assert test.commands.last.linear.x == 0.0, "nav2 drives"
         navigator.end(reached)
         test.advance(0.5)
-        assert test.said()[-1].startswith(said)
+        assert test.spoken()[-1].startswith(message)
         commands = len(test.commands)
         test.advance(1.0)
         assert len(test.commands) == commands
@@ -70,7 +70,7 @@ def test_a_stop_cancels_the_goal(tmp_path):
         test.tell_to_stop()
         test.advance(0.5)
         assert navigator.canceled == 1
-        assert test.said()[-1] == "I stop."
+        assert test.spoken()[-1] == "I stop."
 
 
 def test_without_nav2_it_drives_itself(tmp_path):

@@ -17,7 +17,7 @@ def test_it_goes_to_the_ball(tmp_path, ball):
     with SeekingRobot(tmp_path, ball) as test:
         test.tell("/vision/go_to", "ball")
         assert test.advance_until_said("I am at the ball")
-        assert test.said() == [
+        assert test.spoken() == [
             "I am looking for the ball.",
             "I see the ball, and go there.",
             "I am at the ball.",
@@ -60,7 +60,7 @@ def test_it_answers_in_the_language_that_it_is_asked_in(tmp_path, language):
         test.settle()
         usual = "我在找球。" if language == "zh" else "I am looking for the ball."
         asked = ["我在找球。", "I am looking for the ball."]
-        assert test.said() == [*asked, *asked, usual, "我在找球。", "我停下了。"]
+        assert test.spoken() == [*asked, *asked, usual, "我在找球。", "我停下了。"]
 
 
 def test_it_follows_a_ball_that_is_moved_until_it_is_told_to_stop(tmp_path):
@@ -74,7 +74,7 @@ def test_it_follows_a_ball_that_is_moved_until_it_is_told_to_stop(tmp_path):
         assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.1)
         test.tell_to_stop()
         test.advance(0.5)
-        assert test.said()[-1] == "I stop."
+        assert test.spoken()[-1] == "I stop."
         commands = len(test.commands)
         test.delete("ball")
         test.put_ball(3.5, 0.3)
@@ -130,6 +130,6 @@ def test_a_request_that_names_nothing_moves_nothing(tmp_path):
         test.tell("/vision/go_to", " the ")
         test.tell_to_stop()
         test.advance(1.0)
-        assert test.said() == []
+        assert test.spoken() == []
         assert len(test.commands) == 0
         assert any("names nothing to go to" in record.text for record in test.log)

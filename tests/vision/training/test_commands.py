@@ -21,9 +21,9 @@ def colours(tmp_path):
 def test_without_pytorch_training_says_what_to_install(colours, tmp_path, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "torch", None)
     assert main(["vision", "train", str(colours), "-o", str(tmp_path / "out")]) == 1
-    told = capsys.readouterr().err
-    assert "VISION301" in told
-    assert str(install_hint("train")) in told
+    output = capsys.readouterr().err
+    assert "VISION301" in output
+    assert str(install_hint("train")) in output
     assert not (tmp_path / "out").exists()
 
 
@@ -35,10 +35,10 @@ def test_a_size_that_the_network_cannot_have_is_wrong_usage(size, capsys):
 
 def test_a_detector_is_judged(colours, capsys):
     assert main(["vision", "evaluate", "colours", str(colours), "--confusion"]) == 0
-    told = capsys.readouterr().out
-    assert told.startswith("6 images: mAP50 1.000, ")
-    assert "| red | 6 | 1.000 |" in told
-    assert "| blue |  | 6 |" in told
+    output = capsys.readouterr().out
+    assert output.startswith("6 images: mAP50 1.000, ")
+    assert "| red | 6 | 1.000 |" in output
+    assert "| blue |  | 6 |" in output
 
 
 def test_figures_are_printed_for_programs(colours, capsys):
@@ -51,9 +51,9 @@ def test_figures_are_printed_for_programs(colours, capsys):
 
 def test_a_folder_that_is_no_dataset_is_one_error(tmp_path, capsys):
     assert main(["vision", "evaluate", "colours", str(tmp_path)]) == 1
-    told = capsys.readouterr()
-    assert "VISION302" in told.err
-    assert told.out == ""
+    output = capsys.readouterr()
+    assert "VISION302" in output.err
+    assert output.out == ""
 
 
 def test_a_detector_that_is_not_there_is_one_error(colours, capsys):

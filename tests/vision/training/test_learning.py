@@ -80,10 +80,10 @@ def test_the_same_seed_gives_the_same_weights_and_another_one_others(shapes, tmp
 def test_with_16_bits_it_learns_the_same_but_for_rounding(shapes, tmp_path):
     losses = []
     for precision in ("float32", "bfloat16"):
-        course, told = course_of(options(shapes, tmp_path, epochs=12, whole_epochs=0, precision=precision)), []
-        course.run(told.append)
+        course, received = course_of(options(shapes, tmp_path, epochs=12, whole_epochs=0, precision=precision)), []
+        course.run(received.append)
         assert all(parameter.dtype == torch.float32 for parameter in course.network.parameters())
-        losses.append([each.losses for each in told])
+        losses.append([each.losses for each in received])
     exact, rounded = np.array(losses)
     assert (exact != rounded).any()
     assert rounded == pytest.approx(exact, rel=0.2)
@@ -134,10 +134,10 @@ def test_the_exported_network_says_what_the_network_says():
         boxes, logits = network(image)
     content = to_onnx(network, ("a", "b", "c"), 64, 96, {"seed": "2"}, 0.2)
     session = onnxruntime.InferenceSession(content, providers=["CPUExecutionProvider"])
-    told = session.run(None, {"images": image.numpy()})[0][0].T
-    left, right = told[:, :2] - told[:, 2:4] / 2, told[:, :2] + told[:, 2:4] / 2
+    output = session.run(None, {"images": image.numpy()})[0][0].T
+    left, right = output[:, :2] - output[:, 2:4] / 2, output[:, :2] + output[:, 2:4] / 2
     assert np.abs(np.concatenate((left, right), 1) - boxes[0].numpy()).max() < 0.05  # pixels
-    assert np.abs(told[:, 4:] - (logits[0] + np.log(4)).sigmoid().numpy()).max() < 1e-4
+    assert np.abs(output[:, 4:] - (logits[0] + np.log(4)).sigmoid().numpy()).max() < 1e-4
     metadata = session.get_modelmeta().custom_metadata_map
     assert metadata["names"] == "{0: 'a', 1: 'b', 2: 'c'}"
     assert (metadata["imgsz"], metadata["stride"], metadata["task"]) == ("[96, 64]", "32", "detect")
@@ -263,9 +263,9 @@ def test_the_command_trains_judges_and_writes_a_card(shapes, tmp_path, capsys, m
     words += ["--channels", "4", "--threads", "1", "--held-out", str(shapes)]
     monkeypatch.setattr(sys, "argv", ["linkwright", *words])
     assert main(words) == 0
-    told = capsys.readouterr()
-    assert told.err.count("epoch ") == 2
-    assert told.out.count("mAP50 ") >= 2
+    output = capsys.readouterr()
+    assert output.err.count("epoch ") == 2
+    assert output.out.count("mAP50 ") >= 2
     card = (tmp_path / "eye.md").read_text(encoding="utf-8")
     assert f"vision train {shapes}" in card
     assert "## Held out: shapes (val)" in card

@@ -71,7 +71,7 @@ def test_the_yaml_file_itself_may_be_named(shapes):
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "message"),
     [
         ("train: images/train\n", "'names' does not name the classes"),
         ("train: images/train\nnames: {0: a, 2: b}\n", "'names' does not name the classes"),
@@ -80,11 +80,11 @@ def test_the_yaml_file_itself_may_be_named(shapes):
         ("names: [a\n", "is not a dataset"),
     ],
 )
-def test_what_is_no_dataset_is_said(tmp_path, content, said):
+def test_what_is_no_dataset_is_said(tmp_path, content, message):
     (tmp_path / "data.yaml").write_text(content)
     found = problem(open_dataset, tmp_path)
     assert found.code == "VISION302"
-    assert said in str(found.message)
+    assert message in str(found.message)
 
 
 def test_folders_that_are_not_there_or_empty_are_no_datasets(tmp_path):
@@ -105,7 +105,7 @@ def test_a_part_without_images_is_said(shapes):
 
 
 @pytest.mark.parametrize(
-    ("line", "said"),
+    ("line", "message"),
     [
         ("0 0.5 0.5 0.1", "five numbers"),
         ("0 0.5 0.5 0.1 b", "five numbers"),
@@ -115,12 +115,12 @@ def test_a_part_without_images_is_said(shapes):
         ("0 nan 0.5 0.1 0.1", "shares of the image"),
     ],
 )
-def test_a_label_that_cannot_be_is_said_with_its_place(shapes, line, said):
+def test_a_label_that_cannot_be_is_said_with_its_place(shapes, line, message):
     text = shapes / "labels" / "train" / "001.txt"
     text.write_text(f"0 0.5 0.5 0.1 0.1\n{line}\n")
     found = problem(open_dataset(shapes).read, "train")
     assert found.code == "VISION304"
-    assert said in str(found.message)
+    assert message in str(found.message)
     assert found.span is not None
     assert found.span.line == 2
 

@@ -112,8 +112,8 @@ def test_nothing_is_lost_on_a_line_that_breaks_and_loses_packets(site, robot, de
         begin(robot, desk, topic, qos, count=COUNT, rate=40.0, size=100)
     desk.ask_until(lambda heard: len(heard) > COUNT // 10, "heard", "/robot1/everything")
     site.hosts.link(is_up=False)
-    said = robot.ask_until(lambda said: said > COUNT // 2, "said", "/robot1/lasting")
-    assert len(desk.ask("heard", "/robot1/lasting")) < said
+    answer = robot.ask_until(lambda answer: answer > COUNT // 2, "said", "/robot1/lasting")
+    assert len(desk.ask("heard", "/robot1/lasting")) < answer
     site.hosts.link(is_up=True)
     lossy = ("-m", "statistic", "--mode", "random", "--probability", "0.05", "-j", "DROP")
     site.hosts.run(GATEWAY, "iptables", "-A", "FORWARD", *lossy)
@@ -126,7 +126,7 @@ def test_what_lasts_is_made_up_for_where_the_connection_itself_was_lost(site, ro
     begin(robot, desk, "/robot1/lasting", "lasting", count=COUNT, rate=40.0, size=100)
     desk.ask_until(lambda heard: len(heard) > COUNT // 10, "heard", "/robot1/lasting")
     site.hosts.run(GATEWAY, "ip", "link", "set", f"to{CLOUD}", "down")  # which has it forget whom it translates for
-    robot.ask_until(lambda said: said > COUNT // 2, "said", "/robot1/lasting")
+    robot.ask_until(lambda text: text > COUNT // 2, "said", "/robot1/lasting")
     site.hosts.run(GATEWAY, "ip", "link", "set", f"to{CLOUD}", "up")
     heard = desk.ask_until(lambda heard: len(set(heard)) >= COUNT, "heard", "/robot1/lasting", seconds=180)
     assert sorted(set(heard)) == list(range(COUNT))
@@ -146,7 +146,7 @@ def test_a_desk_takes_only_what_it_listens_to_and_says_only_what_it_may(site, ro
     robot.ask("offer", "/robot1/camera", "last")
     robot.ask("say", "/robot1/camera", 1_000_000, 20.0, image)
     before = site.hosts.received(DESK, CLOUD)
-    first = robot.ask_until(lambda said: said > 20, "said", "/robot1/camera")
+    first = robot.ask_until(lambda text: text > 20, "said", "/robot1/camera")
     unheard = site.hosts.received(DESK, CLOUD) - before
     assert unheard < image * first / 20, "images came though nobody listens"
     desk.ask("hear", "/robot1/camera", "last")

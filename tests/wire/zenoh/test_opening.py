@@ -87,11 +87,11 @@ def test_a_router_says_whom_it_does_not_reach(router_port, silent_port):
         ROUTER, env={**os.environ, OVERRIDES: settings}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )
     assert router.stdout is not None
-    said = [router.stdout.readline() for _ in range(2)]
+    output = [router.stdout.readline() for _ in range(2)]
     router.kill()
     router.communicate()
-    assert "Zenoh router at" in said[0]
-    assert "Not connected yet; retrying: 'nowhere.pem' cannot be read: No such file" in said[1]
+    assert "Zenoh router at" in output[0]
+    assert "Not connected yet; retrying: 'nowhere.pem' cannot be read: No such file" in output[1]
 
 
 def test_addresses_that_are_none_or_unknown():
@@ -164,7 +164,7 @@ def certificates(tmp_path_factory) -> Certificates:
 
 
 @pytest.fixture
-def said(certificates) -> Callable[..., str]:
+def obstacle_at(certificates) -> Callable[..., str]:
     port = certificates.serve()
 
     def ask(host: str = "localhost", **names: str) -> str:
@@ -173,15 +173,15 @@ def said(certificates) -> Callable[..., str]:
     return ask
 
 
-def test_certificates_that_do_not_fit(said):
-    assert not said()
-    assert "the certificate of tls/localhost" in said(authority="other")
-    assert "is refused here: " in said(authority="other")
-    assert "not valid for '127.0.0.1'" in said("127.0.0.1")
-    assert "other.pem': " in said(certificate="other", key="other")
-    assert "refuses the certificate" in said(certificate="other", key="other")
-    assert "are not a certificate and its key in PEM" in said(key="other")
-    assert "missing-key.pem' cannot be read: No such file" in said(key="missing")
+def test_certificates_that_do_not_fit(logged):
+    assert not logged()
+    assert "the certificate of tls/localhost" in logged(authority="other")
+    assert "is refused here: " in logged(authority="other")
+    assert "not valid for '127.0.0.1'" in logged("127.0.0.1")
+    assert "other.pem': " in logged(certificate="other", key="other")
+    assert "refuses the certificate" in logged(certificate="other", key="other")
+    assert "are not a certificate and its key in PEM" in logged(key="other")
+    assert "missing-key.pem' cannot be read: No such file" in logged(key="missing")
 
 
 def test_who_speaks_no_tls_and_who_does(certificates, silent_port):

@@ -136,12 +136,12 @@ def test_a_second_router_says_why_it_cannot_be_one(start_router, router_port):
 
 
 @pytest.mark.parametrize(
-    ("settings", "said"),
+    ("settings", "message"),
     [("mode", "'mode' in ZENOH_CONFIG_OVERRIDE is not a setting"), ("mode=17", "Zenoh refuses 'mode=17'")],
 )
-def test_a_setting_that_is_refused_is_told_with_its_name(monkeypatch, settings, said):
+def test_a_setting_that_is_refused_is_told_with_its_name(monkeypatch, settings, message):
     result = subprocess.run(
         ROUTER, check=False, env={**os.environ, OVERRIDES: settings}, capture_output=True, text=True, timeout=60
     )
     assert result.returncode == 1
-    assert f"error[DDS111]: {said}" in result.stderr
+    assert f"error[DDS111]: {message}" in result.stderr

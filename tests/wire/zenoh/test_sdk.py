@@ -85,8 +85,8 @@ def test_a_thousand_calls_of_several_clients_there_are_answered_each_with_its_ow
 
     us.node.create_service(SetBool, "flip", flip)
     them = peer()
-    told = meanwhile(us, lambda: them.ask("call", CLIENTS, CALLS // CLIENTS))
-    assert told == [[f"{number % 2 == 0} flipped" for number in range(CALLS // CLIENTS)]] * CLIENTS
+    message = meanwhile(us, lambda: them.ask("call", CLIENTS, CALLS // CLIENTS))
+    assert message == [[f"{number % 2 == 0} flipped" for number in range(CALLS // CLIENTS)]] * CLIENTS
     assert len(served) == CALLS
 
 

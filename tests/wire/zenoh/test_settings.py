@@ -30,13 +30,13 @@ def test_how_long_they_wait_can_be_said(wait):
 
 
 @pytest.mark.parametrize(
-    ("override", "said", "advice"),
+    ("override", "message", "advice"),
     [
         ('listen/endpoints=["tcp/127.0.0.1:{port}"]', "already in use", "port 0"),
         ('mode="client";connect/endpoints=["tcp/127.0.0.1:{free}"]', "Unable to connect", ": start a router there"),
     ],
 )
-def test_why_a_session_cannot_be_opened_is_told_with_what_helps(router_port, override, said, advice):
+def test_why_a_session_cannot_be_opened_is_told_with_what_helps(router_port, override, message, advice):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
@@ -45,7 +45,7 @@ def test_why_a_session_cannot_be_opened_is_told_with_what_helps(router_port, ove
             open_with(configuration(read_settings({OVERRIDES: text})))
     (finding,) = refused.value.diagnostics
     assert finding.code == "DDS112"
-    assert said in render(finding)
+    assert message in render(finding)
     assert advice in render(finding)
     assert "/src/" not in render(finding)
 

@@ -122,10 +122,10 @@ def test_the_quality_of_service_of_others_is_known_and_keeps_nobody_apart(proces
 def test_closing_a_publisher_that_keeps_messages_waits_for_no_callback(processes):
     """A callback in a thread of Zenoh that needs Python's lock is not waited for by who has that lock: it took 10 s."""
     node = processes("ours", join_now=False).node
-    told = threading.Event()
+    result = threading.Event()
 
     def changed() -> None:
-        told.set()
+        result.set()
         time.sleep(0.3)  # and then needs the lock
 
     with open_with(configuration(read_settings())) as ours, open_with(configuration(read_settings())) as theirs:
@@ -140,7 +140,7 @@ def test_closing_a_publisher_that_keeps_messages_waits_for_no_callback(processes
         known = f"{keeping.token.data_key}/@adv/**"
         wait_until(lambda: list(theirs.liveliness().get(known)))
         listener = theirs.declare_subscriber(other.token.data_key)
-        assert told.wait(SECONDS)
+        assert result.wait(SECONDS)
         began = time.monotonic()
         keeping.close()
         assert time.monotonic() - began < 5.0
