@@ -79,7 +79,8 @@ class Metadata(MetadataHookInterface):
     def update(self, metadata: dict[str, Any]) -> None:
         """Complete the project's metadata."""
         core = f"linkwright-core=={engine_build.version()}"
-        if (CORE / "pyproject.toml").is_file() and "LINKWRIGHT_PINNED_CORE" not in os.environ:
+        of_checkout = not (ROOT / "PKG-INFO").exists()
+        if of_checkout and "LINKWRIGHT_PINNED_CORE" not in os.environ:
             core = f"linkwright-core @ {CORE.as_uri()}"
         metadata["dependencies"] = [core if name == "linkwright-core" else name for name in metadata["dependencies"]]
         metadata["readme"] = {"content-type": "text/markdown", "text": package_readme.package_readme()}
