@@ -14,13 +14,14 @@ from tests.places import REPOSITORY
 _CONSTRAINTS = REPOSITORY / ".build" / "constraints.txt"
 
 
-def install(folder: Path, *others: str, extra: str = "all") -> Path:
+def install(folder: Path, *others: str, extra: str = "all", project: Path = REPOSITORY) -> Path:
     """Make an environment in a folder, with the wheel and other packages, once for all workers of a test run.
 
     Args:
         folder: shared by the workers; it gets ``wheel/`` and ``environment/``.
         others: what else is installed, such as ``pytest``.
-        extra: the extra of Linkwright.
+        extra: the extra of the wheel; none where it is empty.
+        project: the folder whose wheel is built.
 
     Returns:
         The environment's folder, whose ``bin`` has ``linkwright``.
@@ -30,11 +31,11 @@ def install(folder: Path, *others: str, extra: str = "all") -> Path:
     with (folder / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not (folder / "done").exists():
-            _uv("build", "--wheel", "--out-dir", str(folder / "wheel"), str(REPOSITORY))
+            _uv("build", "--wheel", "--out-dir", str(folder / "wheel"), str(project))
             _uv("venv", "--clear", "--python", sys.executable, str(environment))
             (wheel,) = (folder / "wheel").glob("*.whl")
             python = ("--python", str(environment), "--constraints", str(_CONSTRAINTS))
-            _uv("pip", "install", *python, f"{wheel}[{extra}]", *others)
+            _uv("pip", "install", *python, f"{wheel}[{extra}]" if extra else str(wheel), *others)
             (folder / "done").touch()
     return environment
 

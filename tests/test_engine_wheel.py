@@ -1,0 +1,41 @@
+"""linkwright-core in an empty environment: small, complete, and with the findings of the whole."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright import __version__
+from tests.installed import install
+from tests.places import REPOSITORY
+
+pytestmark = pytest.mark.slow
+MOST_BYTES = 90 * 1024 * 1024
+
+
+@pytest.fixture(scope="module")
+def engine(tmp_path_factory) -> Path:
+    """The environment."""
+    return install(tmp_path_factory.mktemp("engine"), extra="", project=REPOSITORY / "core")
+
+
+def test_it_installs_few_packages_and_runs_its_commands(engine, tmp_path):
+    words = [engine / "bin" / "python", "-I", REPOSITORY / "tools" / "try_installation.py", __version__, "--engine"]
+    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "six commands" in done.stdout
+    assert sum(path.stat().st_size for path in engine.rglob("*") if path.is_file()) < MOST_BYTES
+
+
+@pytest.mark.parametrize("package", sorted(path.name for path in (REPOSITORY / "robots").iterdir() if path.is_dir()))
+def test_it_finds_what_the_whole_finds(engine, package):
+    found = []
+    for python in (engine / "bin" / "python", sys.executable):
+        words = [python, "-I", "-m", "linkwright", "check", "--format", "json", "--select", "ALL", package]
+        done = subprocess.run(words, capture_output=True, text=True, cwd=REPOSITORY / "robots", check=False)
+        assert done.returncode in (0, 1), done.stderr
+        found.append((done.returncode, done.stdout))
+    assert found[0] == found[1]
