@@ -14,7 +14,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "src" / "linkwright"
-LIST = PACKAGE / "packages" / "substitutes" / "names.txt"
+LIST = PACKAGE / "packages" / "substituted_names.txt"
 
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 

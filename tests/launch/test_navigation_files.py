@@ -15,8 +15,8 @@ from launch_ros.actions import Node
 from linkwright.graph import Graph
 from linkwright.launch.frontend.include import IncludeLaunchDescription
 from linkwright.launch.ros.left_out import drop_left_out
-from linkwright.launch.ros.navigation import Server
 from linkwright.messages import get_message, get_service
+from linkwright.navigation.substitutes.servers import Server
 from linkwright.nodes import EXECUTABLES, NodeOptions
 from linkwright.nodes.options import SingleNode, create_node
 from linkwright.packages import PackageFinder, is_substitute
@@ -192,7 +192,7 @@ async def test_map_saver(launch: Launch, started: Started) -> None:
 
 
 async def test_composed_servers_get_their_parameters(launch: Launch, monkeypatch: pytest.MonkeyPatch) -> None:
-    from linkwright.launch.ros import navigation
+    from linkwright.navigation.substitutes import servers
 
     composed: list[Any] = []
 
@@ -200,7 +200,7 @@ async def test_composed_servers_get_their_parameters(launch: Launch, monkeypatch
         composed.append(words)
         return Node(executable="true")
 
-    monkeypatch.setattr(navigation, "LoadComposableNodes", load)
+    monkeypatch.setattr(servers, "LoadComposableNodes", load)
     launched = await launch(include("nav2_bringup", "localization_launch.py", use_composition="True", namespace="red"))
     assert launched.succeeded, launched.err
     (words,) = composed

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.loading import extensions
 from linkwright.packages import PackageFinder, PackageNotFoundError, current_finder, is_substitute, use_finder
 from linkwright.packages.finder import shipped_folder
 from linkwright.packages.sources import SourceScan
@@ -312,3 +313,25 @@ def test_packages_of_which_we_have_something_have_a_share_folder_after_all_other
     assert name not in found.packages()
     own = install(tmp_path / "ros", name)
     assert finder(tmp_path, tmp_path / "ros").share(name) == own
+
+
+def test_a_package_may_bring_substitutes_for_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    module = tmp_path / "site" / "my_sea_substitutes"
+    install(module, "sea_ros")
+    (module / "__init__.py").touch()
+    metadata = tmp_path / "site" / "my_sea-1.0.dist-info"
+    metadata.mkdir()
+    (metadata / "entry_points.txt").write_text(
+        "[linkwright.package_substitutes]\nsea_ros = my_sea_substitutes\nlost_ros = my_sea_that_is_not_there\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    extensions._all_groups.cache_clear()
+    try:
+        found = finder(tmp_path / "ws")
+        assert found.share("sea_ros") == module / "share" / "sea_ros"
+        assert is_substitute(found.share("sea_ros"))
+        assert not is_substitute(tmp_path / "share" / "sea_ros")
+        with pytest.warns(UserWarning, match="'my_sea' brings no substitute for 'lost_ros'"):
+            assert "sea_ros" in found.packages()
+    finally:
+        extensions._all_groups.cache_clear()

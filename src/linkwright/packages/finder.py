@@ -13,7 +13,7 @@ from linkwright.packages.errors import PackageNotFoundError
 from linkwright.packages.manifest import enclosing_package
 from linkwright.packages.share_layout import share_of_sources
 from linkwright.packages.sources import SourceScan
-from linkwright.packages.substituted import SUBSTITUTES, substituted_share
+from linkwright.packages.substituted import substituted_share, substitutes
 
 START_VARIABLE = "LINKWRIGHT_START"
 """The environment variable by which a launcher tells its processes where its own search for packages began."""
@@ -182,7 +182,7 @@ class PackageFinder:
         for root in self._source_roots():
             yield from self._scan(root).packages().items()
         yield from self._shipped().items()
-        yield from ament.packages_in_prefix(SUBSTITUTES)
+        yield from substitutes()
 
     def _upwards(self) -> Iterator[Path]:
         seen: set[Path] = set()

@@ -1,12 +1,15 @@
 """Our substitutes for packages of ROS that launch files include, such as those of Gazebo and nav2.
 
-They are in the folder ``substitutes``, laid out as installed packages. They have the launch files of those packages and
-the files that these need, and start nodes of ours. A package that is replaced only by modules, messages or nodes, such
-as rclpy, std_msgs and robot_state_publisher, has an empty share folder there.
+They have the launch files of those packages and the files that these need, and start nodes of ours. They are found
+through the entry points ``linkwright.package_substitutes``: each has the name of a package, and points to a module
+whose folder is a prefix with that package, ``share/NAME``. A package that is replaced only by modules, messages or
+nodes, such as rclpy, std_msgs and robot_state_publisher, has a share folder that does not exist.
 """
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
@@ -15,22 +18,43 @@ from linkwright.packages.ament import install_prefix, share_in_prefix
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.installed_file import InstalledFile
 
-SUBSTITUTES = Path(__file__).parent / "substitutes"
-"""The prefix of the substitutes."""
+_GROUP = "linkwright.package_substitutes"
+_IN_PART = Path(__file__).parent / "substitutes"
+"""The prefix of the packages that are replaced without files."""
 
 
 def substituted_share(name: str) -> Path | None:
     """The share folder of our substitute for a package of ROS; None if there is none."""
-    share = share_in_prefix(SUBSTITUTES, name)
+    share = _share_with_files(name)
     if share is None and name in _known_in_part():
-        return SUBSTITUTES / "share" / name
+        return _IN_PART / "share" / name
     return share
+
+
+def substitutes() -> Iterator[tuple[str, Path]]:
+    """Name and share folder of every substitute that has files, by name."""
+    for name in sorted(extensions(_GROUP)):
+        share = _share_with_files(name)
+        if share is not None:
+            yield name, share
+
+
+def _share_with_files(name: str) -> Path | None:
+    entry = extensions(_GROUP).get(name)
+    if entry is None:
+        return None
+    try:
+        prefix = Path(entry.load().__file__).parent
+    except Exception as error:  # noqa: BLE001 - a broken package must not stop the search
+        warnings.warn(f"'{entry.distribution}' brings no substitute for '{name}': {error}", stacklevel=2)
+        return None
+    return share_in_prefix(prefix, name)
 
 
 @cache
 def substituted_executables() -> dict[str, frozenset[str]]:
     """Return the packages that are replaced in part, by modules, messages or nodes, with the executables that are."""
-    lines = (SUBSTITUTES / "names.txt").read_text(encoding="utf-8").splitlines()
+    lines = Path(__file__).with_name("substituted_names.txt").read_text(encoding="utf-8").splitlines()
     return {package: frozenset(executables) for package, *executables in map(str.split, lines)}
 
 
@@ -46,7 +70,7 @@ def is_substitute(share: Path) -> bool:
 
     It has the launch files that others include, but not the rest of that package.
     """
-    return install_prefix(share) == SUBSTITUTES
+    return install_prefix(share) == _IN_PART or share == _share_with_files(share.name)
 
 
 def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
@@ -60,7 +84,7 @@ def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
         name: the package.
         folder: its source folder.
     """
-    share = share_in_prefix(SUBSTITUTES, name)
+    share = _share_with_files(name)
     if share is None or not _compiles(folder):
         return {}
     ours = {file.relative_to(share).as_posix(): file for file in sorted(share.rglob("*")) if file.is_file()}

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import linkwright.packages
+import linkwright.navigation.substitutes
 from linkwright.graph import ActionClient, LogLevel
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.graph.parameters.rules import ParameterRules
@@ -21,7 +21,7 @@ from linkwright.nodes import NodeOptions
 from linkwright.nodes.component_container import ComponentContainer, load_request
 from tests.navigation.nodes.scene import Scene, walls
 
-SHARE = Path(linkwright.packages.__file__).parent / "substitutes" / "share"
+SHARE = Path(linkwright.navigation.substitutes.__file__).parent / "share"
 COSTMAP = {
     "robot_radius": 0.2,
     "resolution": 0.05,

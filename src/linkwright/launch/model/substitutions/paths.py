@@ -18,7 +18,6 @@ from linkwright.launch.model.declared_substitution import (
     TextLists,
     Texts,
 )
-from linkwright.launch.model.replaced_programs import replaced_programs
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -93,6 +92,8 @@ class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({nam
         path = shutil.which(name, path=context.environment.get("PATH"))
         if path is not None:
             return path
+        from linkwright.launch.model.replaced_programs import replaced_programs
+
         known = IN_PROCESS_PROGRAMS | replaced_programs().keys()
         if name in known:
             return name

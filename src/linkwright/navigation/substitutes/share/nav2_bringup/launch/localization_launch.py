@@ -5,7 +5,7 @@ from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
 
 from launch import LaunchDescription
-from linkwright.launch.ros.navigation import ARGUMENTS, Server, managed
+from linkwright.navigation.substitutes.servers import ARGUMENTS, Server, managed
 
 SERVERS = (
     Server("nav2_map_server", "map_server", "nav2_map_server::MapServer"),

@@ -6,7 +6,7 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironment
 from nav2_common.launch import HasNodeParams
 
 from launch import LaunchDescription
-from linkwright.launch.ros.navigation import ARGUMENTS, Server, managed
+from linkwright.navigation.substitutes.servers import ARGUMENTS, Server, managed
 
 COMMANDED = ("cmd_vel", "cmd_vel_nav")
 MONITOR = Server("nav2_collision_monitor", "collision_monitor", "nav2_collision_monitor::CollisionMonitor")

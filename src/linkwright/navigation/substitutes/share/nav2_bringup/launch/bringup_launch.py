@@ -7,7 +7,7 @@ from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch_ros.actions import Node, PushRosNamespace
 
 from launch import LaunchDescription
-from linkwright.launch.ros.navigation import ARGUMENTS, configured_parameters, is_true
+from linkwright.navigation.substitutes.servers import ARGUMENTS, configured_parameters, is_true
 
 HERE = get_package_share_path("nav2_bringup")
 DECLARED = {

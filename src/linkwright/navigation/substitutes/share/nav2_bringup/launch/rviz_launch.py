@@ -7,7 +7,7 @@ from launch_ros.actions import Node
 from nav2_common.launch import ReplaceString
 
 from launch import LaunchDescription
-from linkwright.launch.ros.navigation import is_true
+from linkwright.navigation.substitutes.servers import is_true
 
 ARGUMENTS = {
     "namespace": ("navigation", "The replacement for <robot_namespace> in the view"),

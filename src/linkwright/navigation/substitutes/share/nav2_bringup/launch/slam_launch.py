@@ -7,7 +7,7 @@ from launch.launch_description_sources import PythonLaunchDescriptionSource
 from nav2_common.launch import HasNodeParams
 
 from launch import LaunchDescription
-from linkwright.launch.ros.navigation import Server, managed
+from linkwright.navigation.substitutes.servers import Server, managed
 
 SERVERS = (Server("nav2_map_server", "map_saver_server", "nav2_map_server::MapSaver", "map_saver"),)
 ARGUMENTS = {

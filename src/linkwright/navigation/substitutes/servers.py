@@ -1,4 +1,7 @@
-"""The common parts of nav2_bringup's launch files: servers, separate or composed, and their lifecycle manager."""
+"""The common parts of nav2_bringup's launch files: servers, separate or composed, and their lifecycle manager.
+
+It imports what launch files import, and runs where they do.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from linkwright.launch.model.context import LaunchContext
-from linkwright.launch.ros.components import ComposableNode
-from linkwright.launch.ros.containers import LoadComposableNodes
-from linkwright.launch.ros.node import Node
-from linkwright.launch.ros.parameter_files import ParameterFile
-from linkwright.launch.ros.rewritten_yaml import RewrittenYaml
+from launch_ros.actions import LoadComposableNodes, Node  # type: ignore[import-not-found, unused-ignore]
+from launch_ros.descriptions import ComposableNode  # type: ignore[import-not-found, unused-ignore]
+from launch_ros.parameter_descriptions import ParameterFile  # type: ignore[import-not-found, unused-ignore]
+from nav2_common.launch import RewrittenYaml  # type: ignore[import-not-found, unused-ignore]
+
+from launch import LaunchContext  # type: ignore[attr-defined, import-not-found, unused-ignore]
 
 _TRUE = ("true", "1", "yes", "on")
 _TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
