@@ -72,13 +72,13 @@ import { TitleBar } from "./shell/title-bar";
 import { Session } from "./state/session";
 import { ThemeState } from "./state/theme";
 import { browserStorage } from "./storage";
-import { language, languageChosen } from "./strings";
+import { language, languageChosen, languageTag } from "./strings";
 import { matches, SHORTCUTS } from "./widgets/shortcuts";
 
 const CLOSING_MS = 2000;
 
 function start(app: HTMLElement): void {
-  document.documentElement.lang = language === "zh" ? "zh-CN" : "en";
+  document.documentElement.lang = languageTag;
   const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
   const own = hasOwnDisplays(location.href) ? ownKey(browserStorage("sessionStorage")) : null;
   const tokens = new Tokens(addressBar(), browserStorage());

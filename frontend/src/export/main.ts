@@ -18,7 +18,7 @@ import { noWebgl } from "../shell/no-webgl";
 import { Session } from "../state/session";
 import { ThemeState } from "../state/theme";
 import { browserStorage } from "../storage";
-import { language, languageChosen, strings } from "../strings";
+import { languageChosen, languageTag, strings } from "../strings";
 import { RecordedConnection } from "./recorded-connection";
 import { RecordedFiles } from "./recorded-files";
 import { readRecording } from "./recording";
@@ -29,7 +29,7 @@ import { lookFrom } from "./views";
 const NO_PANELS = { offer: () => undefined, withdraw: () => undefined, retitle: () => undefined };
 
 function start(app: HTMLElement, recorded: HTMLElement): void {
-  document.documentElement.lang = language === "zh" ? "zh-CN" : "en";
+  document.documentElement.lang = languageTag;
   const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
   const recording = readRecording(recorded);
   const { display } = recording;

@@ -7,7 +7,7 @@ import type { View } from "../protocol";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
 import type { ThemeState } from "../state/theme";
-import { chooseLanguage, language, strings } from "../strings";
+import { changeLanguage, strings } from "../strings";
 import { tickBox } from "../widgets/controls";
 import type { Side } from "./views";
 
@@ -36,7 +36,7 @@ export class Sidebar {
     const name = session.robots.get(display)?.name ?? "";
     const languages = button(
       strings.shell.languageHint,
-      () => chooseLanguage(language === "en" ? "zh" : "en"),
+      changeLanguage,
       "tool",
       icon("language"),
       strings.shell.language,

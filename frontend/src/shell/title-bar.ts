@@ -3,7 +3,7 @@ import { icon } from "../icons";
 import type { Dock } from "../panels/dock/dock";
 import type { Session } from "../state/session";
 import { THEME_CHOICES, type ThemeState } from "../state/theme";
-import { chooseLanguage, language, strings } from "../strings";
+import { changeLanguage, strings } from "../strings";
 import { Logo } from "../widgets/logo";
 import { openMenu, type MenuEntry } from "../widgets/menu";
 import { keyText, SHORTCUTS } from "../widgets/shortcuts";
@@ -55,7 +55,7 @@ export class TitleBar {
       themeButton(theme),
       button(
         words.languageHint,
-        () => chooseLanguage(language === "en" ? "zh" : "en"),
+        changeLanguage,
         "tool",
         icon("language"),
         words.language,

@@ -1,29 +1,36 @@
+import { LANGUAGES, type Language } from "../protocol/languages";
 import { Signal } from "../signal";
 import { browserStorage } from "../storage";
 import { en, type Strings } from "./en";
 import { zh } from "./zh";
 
-export type Language = "en" | "zh";
+export type { Language };
 
+const TEXTS: Record<Language, Strings> = { en, zh };
+const ALL = Object.keys(TEXTS) as Language[];
+const FALLBACK = "en";
 const LANGUAGE_KEY = "linkwright.language";
 
-function preferred(): Language {
-  const chosen = browserStorage().getItem(LANGUAGE_KEY);
-  if (chosen === "en" || chosen === "zh") return chosen;
-  return navigator.language.toLowerCase().startsWith("zh") ? "zh" : "en";
+/** The language of a locale's tag such as "zh-TW"; undefined if the page has no words in it. */
+function languageOf(tag: string): Language | undefined {
+  return ALL.find((language) => language === tag.toLowerCase().split("-")[0]);
 }
 
-export const language: Language = preferred();
+export const language: Language =
+  languageOf(browserStorage().getItem(LANGUAGE_KEY) ?? "") ?? languageOf(navigator.language) ?? FALLBACK;
+
+/** Its tag, for the document. */
+export const languageTag: string = LANGUAGES[language];
 
 /** The page's words in the user's language. */
-export const strings: Strings = language === "zh" ? zh : en;
+export const strings: Strings = TEXTS[language];
 
 /** The page is about to be shown in another language. */
 export const languageChosen = new Signal();
 
-/** Remembers the choice and reloads the page. */
-export function chooseLanguage(next: Language): void {
-  browserStorage().setItem(LANGUAGE_KEY, next);
+/** Remembers the next language as the user's and reloads the page. */
+export function changeLanguage(): void {
+  browserStorage().setItem(LANGUAGE_KEY, ALL[ALL.indexOf(language) + 1] ?? FALLBACK);
   languageChosen.emit();
   location.reload();
 }

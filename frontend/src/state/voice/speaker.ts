@@ -1,3 +1,4 @@
+import { LANGUAGES } from "../../protocol/languages";
 import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 
@@ -53,7 +54,7 @@ export class Speaker {
     if (voice) {
       utterance.voice = voice;
       utterance.lang = voice.lang;
-    } else if (/\p{Script=Han}/u.test(text)) utterance.lang = "zh-CN";
+    } else if (/\p{Script=Han}/u.test(text)) utterance.lang = LANGUAGES.zh;
     this.synthesis.speak(utterance);
   }
 

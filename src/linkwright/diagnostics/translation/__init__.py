@@ -4,11 +4,23 @@ Messages are written in English where they are reported. A catalogue maps the En
 language; a template that it does not have stays English. Codes, places and the user's own words never change.
 """
 
-from linkwright.diagnostics.translation.language import LANGUAGES, asked_language, language, language_of, set_language
+from linkwright.diagnostics.translation.language import (
+    CHINESE,
+    ENGLISH,
+    LANGUAGES,
+    TAGS,
+    asked_language,
+    language,
+    language_of,
+    set_language,
+)
 from linkwright.diagnostics.translation.translate import labels, localized, translate, translate_phrase, translated
 
 __all__ = [
+    "CHINESE",
+    "ENGLISH",
     "LANGUAGES",
+    "TAGS",
     "asked_language",
     "labels",
     "language",

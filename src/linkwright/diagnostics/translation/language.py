@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import os
 
-LANGUAGES = ("en", "zh")
-"""The languages of messages: English, and Chinese in simplified characters."""
+ENGLISH, CHINESE = "en", "zh"
+TAGS = {ENGLISH: "en", CHINESE: "zh-CN"}
+"""The languages of messages, each with its tag in web pages: English, and Chinese in simplified characters."""
+
+LANGUAGES = tuple(TAGS)
 
 _VARIABLES = ("LINKWRIGHT_LANG", "LC_ALL", "LC_MESSAGES", "LANG")
 """The first that is set decides; the order of the last three is that of POSIX."""
@@ -27,14 +30,14 @@ def asked_language() -> str | None:
 
 
 def language() -> str:
-    """The language for people: ``en`` or ``zh``."""
+    """The language for people, one of `LANGUAGES`."""
     if _asked is not None:
         return _asked
     for name in _VARIABLES:
         value = os.environ.get(name)
         if value:
-            return language_of(value) or "en"
-    return "en"
+            return language_of(value) or ENGLISH
+    return ENGLISH
 
 
 def language_of(locale: str) -> str | None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from linkwright.diagnostics.diagnostic import Diagnostic, Note
 from linkwright.diagnostics.phrase import Phrase, Wording, term
-from linkwright.diagnostics.translation.language import asked_language, language
+from linkwright.diagnostics.translation.language import ENGLISH, asked_language, language
 from linkwright.diagnostics.translation.wording import wording
 
 _LABELS = ("error", "warning", "info", "note", "hint", ": ")
@@ -44,7 +44,7 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
 def localized(text: str, lang: str | None = None) -> str:
     """Return a text in a language of `LANGUAGES`, by default the user's; a text that is not a phrase stays the same."""
     lang = language() if lang is None else lang
-    return text.translated_text(wording(lang)) if lang != "en" and isinstance(text, Phrase) else text
+    return text.translated_text(wording(lang)) if lang != ENGLISH and isinstance(text, Phrase) else text
 
 
 def translate_phrase(text: Phrase, lang: str) -> str:

@@ -16,6 +16,7 @@ from linkwright.diagnostics import (
     did_you_mean,
     phrase,
 )
+from linkwright.diagnostics.translation import LANGUAGES, localized
 from linkwright.files.yaml_documents import YamlDocument, read_source
 from linkwright.speech.commands.action_reading import ActionReader
 from linkwright.speech.commands.actions import MOTIONS
@@ -132,7 +133,8 @@ class _Reader:
     def _question(self, keys: Keys) -> ByLanguage:
         node = keys.node("confirm")
         if isinstance(node, yaml.ScalarNode) and node.tag == "tag:yaml.org,2002:bool":
-            return {"en": "are you sure?", "zh": "确定吗？"} if keys.flag("confirm") else {}
+            question = phrase("are you sure?")
+            return {language: localized(question, language) for language in LANGUAGES} if keys.flag("confirm") else {}
         return self._one_text(node)
 
     def _one_text(self, node: yaml.Node | None) -> dict[str, str]:
@@ -170,7 +172,7 @@ class _Reader:
         return {ANY: Keys.of(self._document, what, node).texts(what)}
 
     def _count(self, found: CommandSet) -> None:
-        languages = {"en", "zh", *found.languages}
+        languages = {*LANGUAGES, *found.languages}
         for language in sorted(languages):
             count = found.phrase_count(language)
             if count > MOST_PHRASES:

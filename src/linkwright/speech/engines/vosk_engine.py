@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, missing_extra, phrase
+from linkwright.diagnostics.translation import LANGUAGES
 from linkwright.model_files import find_model, model_entry
 from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
 from linkwright.speech.engines.phrasing import Phrasing
@@ -27,7 +28,7 @@ LEAST_CONFIDENCE = 0.6
 _NEAR = 0.3
 """The confidence from which a rejected phrase is reported as the nearest."""
 
-MODELS = {"en": "vosk-en", "zh": "vosk-zh"}
+MODELS = {language: f"vosk-{language}" for language in LANGUAGES}
 """The models that are fetched by name, by language."""
 
 _UNKNOWN = "[unk]"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.diagnostics.translation import localized
+from linkwright.diagnostics.translation import ENGLISH, language_of, localized
 from linkwright.graph import Clock, ClockType, Node
 from linkwright.speech.commands.actions import (
     CallService,
@@ -118,7 +118,7 @@ class Conversation:
 
     def answer(self, text: Phrase) -> None:
         """Answer in the language that was spoken last."""
-        self._respond(localized(text, "zh" if self._language.startswith("zh") else "en"))
+        self._respond(localized(text, language_of(self._language) or ENGLISH))
 
     def drive_ended(self, ending: Ending) -> None:
         """Handle the end of a drive: done, or out of time."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.diagnostics.translation import localized
+from linkwright.diagnostics.translation import ENGLISH, language_of, localized
 from linkwright.graph import LATCHED_QOS, Clock, ClockType, Graph, ParameterType, Publisher, Subscription
 from linkwright.graph.endpoints.commander import Commander
 from linkwright.graph.endpoints.info import EndpointInfo
@@ -117,7 +117,7 @@ class VoiceCommander(SingleNode):
         self._conversation = Conversation(
             node,
             commands,
-            "zh" if language.startswith("zh") else "en",
+            language_of(language) or ENGLISH,
             self._driver,
             self._requests,
             patience,

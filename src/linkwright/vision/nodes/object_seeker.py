@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwright.diagnostics.translation import ENGLISH, LANGUAGES
 from linkwright.geometry.single import Transform, invert, rotate, rpy_from_quaternion
 from linkwright.graph import SENSOR_DATA_QOS, EndpointInfo, Graph
 from linkwright.graph.endpoints.commander import Commander, describe_lost_publisher
@@ -24,7 +25,7 @@ from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.vision.nodes.nav2_trip import Nav2Trip
 from linkwright.vision.nodes.seen_objects import SeenObject, SeenObjects
 from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
-from linkwright.vision.places.words import LANGUAGES, Answer, ObjectRequest, Sighting, answer, described, requested
+from linkwright.vision.places.words import Answer, ObjectRequest, Sighting, answer, described, requested
 
 _DEPTH = 10
 _PERIOD = 0.05
@@ -115,7 +116,7 @@ class ObjectSeeker(SingleNode):
         if request is None:
             self._node.get_logger().warning(f"'{message.data}' names nothing to go to; say 'ball' or 'red ball'")
             return
-        self._answers_in = language or ("zh" if request.language == "zh" else self._language)
+        self._answers_in = language or (self._language if request.language == ENGLISH else request.language)
         if self._seeker.phase is Phase.IDLE:
             self._velocity.review()
         self._cancel_trip()

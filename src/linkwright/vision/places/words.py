@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from math import atan2, degrees, hypot
 
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics.translation import CHINESE, ENGLISH, localized
 from linkwright.images.colour_words import SPELLINGS, named_colour, words_of
-
-LANGUAGES = ("en", "zh")
 
 _CHINESE_COLOURS = {
     "红": "red", "橙": "orange", "橘": "orange", "黄": "yellow", "绿": "green", "青": "cyan", "蓝": "blue",
@@ -50,8 +50,8 @@ _CHINESE_VERBS = re.compile(
 )
 _CHINESE_FILLERS = re.compile(r"那个|这个|一个|那只|这只|色的|色|的|请")
 _NUMBERS = {
-    "en": ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
-    "zh": ("零", "一", "两", "三", "四", "五", "六", "七", "八", "九", "十"),
+    ENGLISH: ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
+    CHINESE: ("零", "一", "两", "三", "四", "五", "六", "七", "八", "九", "十"),
 }
 _ROUND, _ABOUT_ONE = "ball", (0.75, 1.33)
 _FILLED_BY_A_CIRCLE = (0.7, 0.86)
@@ -73,16 +73,17 @@ class Answer(Enum):
     STOPPED = "stopped"
 
 
-_ANSWERS = {
-    Answer.LOOKING: {"en": "I am looking for the {it}.", "zh": "我在找{it}。"},
-    Answer.FOUND: {"en": "I see the {it}, and go there.", "zh": "我看到{it}了，正在过去。"},
-    Answer.ARRIVED: {"en": "I am at the {it}.", "zh": "我到{it}这里了。"},
-    Answer.NOT_FOUND: {"en": "I cannot find the {it}.", "zh": "我没有找到{it}。"},
-    Answer.LOST: {"en": "I have lost the {it}.", "zh": "我看不到{it}了。"},
-    Answer.BLOCKED: {"en": "Something is between me and the {it}.", "zh": "我和{it}之间有东西挡着。"},
-    Answer.BLIND: {"en": "I stop: no detections arrive.", "zh": "我停下了：没有收到检测结果。"},
-    Answer.STOPPED: {"en": "I stop.", "zh": "我停下了。"},
+_ANSWERS: Mapping[Answer, Callable[[str], Phrase]] = {
+    Answer.LOOKING: lambda it: phrase("I am looking for the {it}.", it=it),
+    Answer.FOUND: lambda it: phrase("I see the {it}, and go there.", it=it),
+    Answer.ARRIVED: lambda it: phrase("I am at the {it}.", it=it),
+    Answer.NOT_FOUND: lambda it: phrase("I cannot find the {it}.", it=it),
+    Answer.LOST: lambda it: phrase("I have lost the {it}.", it=it),
+    Answer.BLOCKED: lambda it: phrase("Something is between me and the {it}.", it=it),
+    Answer.BLIND: lambda _: phrase("I stop: no detections arrive."),
+    Answer.STOPPED: lambda _: phrase("I stop."),
 }
+"""The answer about an object."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,8 +102,8 @@ class ObjectRequest:
 
     @property
     def language(self) -> str:
-        """The language of the request: ``zh`` or ``en``."""
-        return "en" if self.text.isascii() else "zh"
+        """The language of the request, one of `LANGUAGES`."""
+        return ENGLISH if self.text.isascii() else CHINESE
 
     def is_it(self, name: str, colour: str | None, shape: float = 1.0, score: float = 1.0) -> bool:
         """Return whether an object of a class is meant.
@@ -172,8 +173,8 @@ def described(sightings: Iterable[Sighting], language: str) -> str:
     for sighting in sorted(sightings, key=lambda sighting: hypot(sighting.ahead, sighting.left)):
         groups.setdefault(named(sighting.name, sighting.colour, language), []).append(sighting)
     if not groups:
-        return "我什么也没看到。" if language == "zh" else "I see nothing that I know."
-    if language == "zh":
+        return localized(phrase("I see nothing that I know."), language)
+    if language == CHINESE:
         return f"我看到{_joined([_in_chinese(group) for group in groups.values()], '，', '和')}。"
     return f"I see {_joined([_in_english(group) for group in groups.values()], ', ', ' and ')}."
 
@@ -183,7 +184,7 @@ def named(name: str, colour: str | None, language: str) -> str:
     words = [word for word in words_of(name) if word not in SPELLINGS]
     shown = named_colour(name) or colour
     noun = " ".join(words)
-    if language != "zh":
+    if language != CHINESE:
         return " ".join(filter(None, (shown, noun or "thing")))
     chinese = _CHINESE.get(object_name(noun), noun) if noun else "东西"
     signs = {english: sign for sign, english in reversed(_CHINESE_COLOURS.items())}
@@ -193,35 +194,33 @@ def named(name: str, colour: str | None, language: str) -> str:
 def answer(event: Answer, request: ObjectRequest, language: str) -> str:
     """Return the answer to a request. It names the object as in the request, or translated."""
     name = request.text if request.language == language else named(request.noun, request.colour, language)
-    return _ANSWERS[event][language].format(it=name)
+    return localized(_ANSWERS[event](name), language)
 
 
 def _in_english(group: Sequence[Sighting]) -> str:
     first = group[0]
-    name = named(first.name, first.colour, "en")
+    name = named(first.name, first.colour, ENGLISH)
     if len(group) > 1:
-        return f"{_number(len(group), 'en')} {_plural(name)}"
+        return f"{_number(len(group), ENGLISH)} {_plural(name)}"
     article = "an" if name[0] in "aeiou" else "a"
-    return f"{article} {name} {hypot(first.ahead, first.left):.1f} m {_direction(first, 'en')}"
+    return f"{article} {name} {hypot(first.ahead, first.left):.1f} m {_direction(first, ENGLISH)}"
 
 
 def _in_chinese(group: Sequence[Sighting]) -> str:
     first = group[0]
-    name = named(first.name, first.colour, "zh")
+    name = named(first.name, first.colour, CHINESE)
     if len(group) > 1:
-        return f"{_number(len(group), 'zh')}个{name}"
-    return f"{_direction(first, 'zh')}{hypot(first.ahead, first.left):.1f}米处有一个{name}"
+        return f"{_number(len(group), CHINESE)}个{name}"
+    return f"{_direction(first, CHINESE)}{hypot(first.ahead, first.left):.1f}米处有一个{name}"
 
 
 def _direction(sighting: Sighting, language: str) -> str:
     angle = degrees(atan2(sighting.left, sighting.ahead))
     if abs(angle) <= _AHEAD:
-        return "前方" if language == "zh" else "ahead"
+        return localized(phrase("ahead"), language)
     if abs(angle) > _BESIDE:
-        return "后方" if language == "zh" else "behind me"
-    if language == "zh":
-        return "左边" if angle > 0 else "右边"
-    return f"to the {'left' if angle > 0 else 'right'}"
+        return localized(phrase("behind me"), language)
+    return localized(phrase("to the left") if angle > 0 else phrase("to the right"), language)
 
 
 def _number(count: int, language: str) -> str:

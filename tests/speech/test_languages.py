@@ -1,0 +1,22 @@
+"""What is written down by language covers the languages of the catalogue."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.cli import voice
+from linkwright.diagnostics.translation import LANGUAGES
+from linkwright.model_files import model_entry
+from linkwright.speech.commands.quantities import SAYABLE
+from linkwright.speech.engines.vosk_engine import MODELS
+from linkwright.vision.places import words
+
+
+@pytest.mark.parametrize("table", [voice._LANGUAGES, words._NUMBERS, *SAYABLE.values()])
+def test_a_table_has_each_language(table) -> None:
+    assert tuple(table) == LANGUAGES
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_vosk_has_a_model_of_each_language(language) -> None:
+    assert model_entry(MODELS[language])
