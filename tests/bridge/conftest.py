@@ -14,8 +14,7 @@ from linkwright.bridge.networks import read_network
 from linkwright.graph import LogRecord
 from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES, ROUTER_FILE, SESSION_FILE
 from tests.waiting import SECONDS
-from tests.wire.conftest import Process, domain  # noqa: F401 - the fixture of the domain, which takes no part here else
-from tests.wire.zenoh.conftest import ZenohProcess, router_port  # noqa: F401 - as before
+from tests.wire.conftest import Process, domain, router_port  # noqa: F401 - fixtures, which take no part here else
 
 collect_ignore_glob = [] if find_spec("zenoh") and find_spec("cyclonedds") else ["test_*.py"]
 
@@ -28,7 +27,7 @@ def variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: int) ->
     monkeypatch.setenv(OVERRIDES, f'connect/endpoints=["tcp/localhost:{router_port}"]')
 
 
-ClosableT = TypeVar("ClosableT", Process, ZenohProcess, "Bridge")
+ClosableT = TypeVar("ClosableT", Process, "Bridge")
 
 
 class Bridge:
@@ -74,9 +73,9 @@ class Networks:
         """A process over DDS."""
         return self._kept(Process(name))
 
-    def zenoh(self, name: str) -> ZenohProcess:
+    def zenoh(self, name: str) -> Process:
         """A process over Zenoh."""
-        return self._kept(ZenohProcess(name))
+        return self._kept(Process(name, wire="zenoh"))
 
     def bridge(self, bridge_id: str = "b0", **names: tuple[str, ...]) -> Bridge:
         """A bridge between both."""

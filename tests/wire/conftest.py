@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import socket
 import time
 from collections.abc import Callable, Iterator
 
@@ -9,8 +10,10 @@ from linkwright.graph import Graph, LogRecord
 from linkwright.graph.executors import SingleThreadedExecutor
 from linkwright.graph.log.levels import LogLevel
 from linkwright.messages.distribution import ASSUMED
-from linkwright.wire.dds import DdsTransport, join
+from linkwright.wire import dds, zenoh
+from linkwright.wire.background import BackgroundTransport
 from linkwright.wire.unfollowed import DISCOVERY_SERVERS, SECURITY
+from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES, ROUTER_FILE, SESSION_FILE
 from tests.domains import own_domain
 from tests.waiting import SECONDS
 from tests.wire.programs import Program
@@ -27,7 +30,11 @@ ROS_VARIABLES = (
     *SECURITY,
     *DISCOVERY_SERVERS,
 )
-_taken: dict[str, int] = {}
+JOINS = {"dds": dds.join, "zenoh": zenoh.join}
+PACKAGES = {"dds": "cyclonedds", "zenoh": "zenoh"}
+
+both_wires = pytest.mark.parametrize("wire", list(JOINS), indirect=True)
+"""For a test that says the same of DDS and of Zenoh."""
 
 
 @pytest.fixture(autouse=True)
@@ -40,21 +47,51 @@ def domain(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> i
     return number
 
 
-class Process:
-    """What a process has on a domain: a graph, an executor, a transport. Several of them live in one test process."""
+@pytest.fixture
+def wire(request: pytest.FixtureRequest) -> str:
+    """The transport of a test: DDS, unless it asks for both."""
+    return getattr(request, "param", "dds")
 
-    def __init__(self, name: str, *, join_now: bool = True) -> None:
+
+@pytest.fixture
+def router_port() -> int:
+    """A port that nobody listens at: no router of this machine takes part in a test."""
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        return int(taken.getsockname()[1])
+
+
+@pytest.fixture
+def zenoh_variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: int) -> None:
+    """Zenoh, and a router that is looked for at a port of the test's own."""
+    for name in (ATTEMPTS, ROUTER_FILE, SESSION_FILE):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_zenoh_cpp")
+    monkeypatch.setenv(OVERRIDES, f'connect/endpoints=["tcp/localhost:{router_port}"]')
+
+
+class Process:
+    """What a process has on a domain: a graph, an executor, a transport. Several of them live in one test process.
+
+    Args:
+        name: the name of its node.
+        wire: its transport, one of `JOINS`.
+        join_now: whether it joins at once.
+    """
+
+    def __init__(self, name: str, *, wire: str = "dds", join_now: bool = True) -> None:
         self.log: list[LogRecord] = []
         self.graph = Graph(threads=True, on_log=self.log.append)
         self.node = self.graph.create_node(name)
         self.executor = SingleThreadedExecutor()
         self.executor.add_node(self.node)
-        self.transport: DdsTransport | None = None
+        self.transport: BackgroundTransport | None = None
+        self._join = JOINS[wire]
         if join_now:
             self.join()
 
-    def join(self) -> DdsTransport:
-        self.transport = join(self.graph)
+    def join(self) -> BackgroundTransport:
+        self.transport = self._join(self.graph)
         assert self.transport is not None
         assert self.transport.wait_until_ready(SECONDS)
         return self.transport
@@ -75,13 +112,15 @@ class Process:
 
 
 @pytest.fixture
-def processes() -> Iterator[Callable[..., Process]]:
+def processes(wire: str, request: pytest.FixtureRequest) -> Iterator[Callable[..., Process]]:
     """Makes graphs that meet on the wire alone, closed after the test."""
-    pytest.importorskip("cyclonedds", reason="there is no DDS here")
+    pytest.importorskip(PACKAGES[wire], reason=f"there is no {wire} here")
+    if wire == "zenoh":
+        request.getfixturevalue("zenoh_variables")
     made: list[Process] = []
 
     def make(name: str, **options: bool) -> Process:
-        made.append(Process(name, **options))
+        made.append(Process(name, wire=wire, **options))
         return made[-1]
 
     yield make

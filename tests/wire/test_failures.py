@@ -8,6 +8,7 @@ from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
 from linkwright.messages import String, get_service
 from linkwright.wire.living_threads import guarded
 from tests.waiting import wait_until
+from tests.wire.conftest import both_wires
 
 SetBool = get_service("std_srvs/srv/SetBool")
 LASTING = QoSProfile(5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -39,6 +40,7 @@ def flip(request, response):
     return response
 
 
+@both_wires
 def test_a_message_that_fails_on_its_way_in_takes_no_other_with_it(processes):
     a, b = processes("a"), processes("b")
     got = []
@@ -53,6 +55,7 @@ def test_a_message_that_fails_on_its_way_in_takes_no_other_with_it(processes):
     assert len(warnings_of(b, "callback of topic '/chatter' failed:")) == 1
 
 
+@both_wires
 def test_who_watches_the_graph_and_fails_keeps_nobody_from_knowing_it(processes):
     a = processes("a")
     failing, after = Once(), Once()
@@ -70,6 +73,7 @@ def test_who_watches_the_graph_and_fails_keeps_nobody_from_knowing_it(processes)
     assert after.calls > 1
 
 
+@both_wires
 def test_a_request_and_a_response_that_fail_on_their_way_in_are_told(processes):
     a, b = processes("a"), processes("b")
     service = b.node.create_service(SetBool, "flip", flip)
@@ -96,6 +100,7 @@ def unfit(message, value):
     return message
 
 
+@both_wires
 def test_a_kept_message_that_cannot_be_written_is_told_and_the_others_are_sent(processes):
     a = processes("a", join_now=False)
     publisher = a.node.create_publisher(String, "described", LASTING)
@@ -111,6 +116,7 @@ def test_a_kept_message_that_cannot_be_written_is_told_and_the_others_are_sent(p
     assert [text for text in a.warnings() if text.startswith("sending the messages of topic '/described' failed:")]
 
 
+@both_wires
 def test_a_request_that_waited_and_cannot_be_written_fails_and_the_next_is_answered(processes):
     a, b = processes("a"), processes("b")
     a.node.handle.copies_messages = False  # as of nodes that come with Linkwright

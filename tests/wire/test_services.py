@@ -6,6 +6,7 @@ from linkwright.graph.parameters.client import AsyncParameterClient
 from linkwright.messages import get_action, get_service
 from linkwright.wire.dds.services import IncomingService
 from tests.waiting import SECONDS
+from tests.wire.conftest import both_wires
 
 SetBool = get_service("std_srvs/srv/SetBool")
 Empty = get_service("std_srvs/srv/Empty")
@@ -17,6 +18,7 @@ def flip(request, response):
     return response
 
 
+@both_wires
 def test_requests_made_before_the_server_is_there_are_answered(processes):
     a = processes("a")
     client = a.node.create_client(SetBool, "flip")
@@ -33,6 +35,7 @@ def test_requests_made_before_the_server_is_there_are_answered(processes):
     assert [future.result().success for future in futures] == [False, True]
 
 
+@both_wires
 def test_a_client_is_ready_while_the_server_is_there(processes):
     a, b = processes("a"), processes("b")
     client = a.node.create_client(SetBool, "flip")
@@ -42,6 +45,7 @@ def test_a_client_is_ready_while_the_server_is_there(processes):
     a.spin_until(lambda: not client.service_is_ready())
 
 
+@both_wires
 def test_answers_go_to_who_asked(processes):
     a, b, server = processes("a"), processes("b"), processes("server")
     server.node.create_service(SetBool, "flip", flip)
@@ -71,6 +75,7 @@ def test_a_server_is_woken_by_requests_and_not_again_and_again_by_who_has_matche
     assert 20 <= woken.count("/flip") <= 40
 
 
+@both_wires
 def test_messages_without_members_travel(processes):
     a, b = processes("a"), processes("b")
     calls = []
@@ -82,6 +87,7 @@ def test_messages_without_members_travel(processes):
     assert future.result() == Empty.Response()
 
 
+@both_wires
 def test_parameters_of_a_node_elsewhere_are_read_and_set(processes):
     a, b = processes("a"), processes("b")
     b.node.declare_parameter("speed", 1.5)
@@ -95,6 +101,7 @@ def test_parameters_of_a_node_elsewhere_are_read_and_set(processes):
     assert done(parameters.get_parameters(["speed"])).values[0].double_value == 1.5
 
 
+@both_wires
 def test_an_action_elsewhere_is_carried_out(processes):
     a, b = processes("a"), processes("b")
 

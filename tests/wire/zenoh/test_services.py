@@ -12,15 +12,7 @@ from linkwright.wire.zenoh.services import IncomingService
 from linkwright.wire.zenoh.session import configuration, open_with
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.tokens import Token
-from tests.wire.test_services import (  # noqa: F401 - the same over Zenoh
-    flip,
-    test_a_client_is_ready_while_the_server_is_there,
-    test_an_action_elsewhere_is_carried_out,
-    test_answers_go_to_who_asked,
-    test_messages_without_members_travel,
-    test_parameters_of_a_node_elsewhere_are_read_and_set,
-    test_requests_made_before_the_server_is_there_are_answered,
-)
+from tests.wire.test_services import flip
 
 AddTwoInts = get_service("example_interfaces/srv/AddTwoInts")
 SetBool = get_service("std_srvs/srv/SetBool")

@@ -24,77 +24,7 @@ from linkwright.wire.zenoh.tokens import Token
 from linkwright.wire.zenoh.topics import OutgoingTopic
 from tests.waiting import SECONDS, wait_until
 from tests.wire.programs import linkwright
-from tests.wire.test_topics import (  # noqa: F401 - the same over Zenoh
-    EVERYTHING,
-    LASTING,
-    test_a_message_goes_from_process_to_process_once,
-    test_nothing_is_serialised_while_nobody_outside_listens,
-    test_what_is_published_as_soon_as_there_is_a_publisher_goes_to_who_is_known,
-)
-
-
-def test_late_comers_get_what_was_published_before_the_session_was_open(processes):
-    a = processes("a", join_now=False)
-    publisher = a.node.create_publisher(String, "described", LASTING)
-    for word in ("one", "two", "three", "four"):
-        publisher.publish(String(data=word))
-    a.join()
-    publisher.publish(String(data="five"))
-    b = processes("b")
-    got: list[str] = []
-    b.node.create_subscription(String, "described", lambda message: got.append(message.data), LASTING)
-    b.spin_until(lambda: len(got) == 3)
-    assert got == ["three", "four", "five"]
-    publisher.publish(String(data="six"))
-    b.spin_until(lambda: len(got) == 4)
-    assert got[3:] == ["six"]
-
-
-def test_a_latched_message_of_the_same_process_comes_once(processes):
-    a, b = processes("a"), processes("b")
-    publisher = a.node.create_publisher(String, "described", LASTING)
-    publisher.publish(String(data="one"))
-    got: list[str] = []
-    for process in (a, b):
-        process.node.create_subscription(String, "described", lambda message: got.append(message.data), LASTING)
-    a.spin_until(lambda: len(got) == 1)
-    b.spin_until(lambda: len(got) == 2)
-    publisher.publish(String(data="two"))
-    a.spin_until(lambda: got.count("two") == 1)
-    b.spin_until(lambda: got.count("two") == 2)
-    assert got == ["one", "one", "two", "two"]
-
-
-def test_what_a_process_that_keeps_everything_said_last_is_heard_after_it_left(processes):
-    a, b = processes("a"), processes("b")
-    got: list[str] = []
-    b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), EVERYTHING)
-    publisher = a.node.create_publisher(String, "chatter", EVERYTHING)
-    a.spin_until(lambda: publisher.get_subscription_count() == 1)
-    for number in range(2000):
-        publisher.publish(String(data=str(number)))
-    a.close()
-    b.spin_until(lambda: len(got) == 2000)
-    assert got == [str(number) for number in range(2000)]
-
-
-def test_callbacks_learn_where_a_message_comes_from(processes):
-    a, b = processes("a"), processes("b")
-    infos = []
-    b.node.create_subscription(String, "chatter", lambda _message, info: infos.append(info), 10)
-    publisher = a.node.create_publisher(String, "chatter", 10)
-    a.spin_until(lambda: publisher.get_subscription_count() == 1)
-    b.spin_until(lambda: b.node.count_publishers("chatter") == 1)
-    before = time.time_ns()
-    publisher.publish(String())
-    b.spin_until(lambda: infos)
-    (info,) = infos
-    assert info.from_outside
-    assert info.publisher_gid == publisher.gid
-    assert info.publication_sequence_number == 1
-    assert before <= info.source_timestamp <= info.received_timestamp <= time.time_ns()
-    (seen,) = b.node.get_publishers_info_by_topic("/chatter")
-    assert bytes(seen.endpoint_gid[:16]) == publisher.gid
+from tests.wire.test_topics import LASTING
 
 
 def test_the_quality_of_service_of_others_is_known_and_keeps_nobody_apart(processes):
