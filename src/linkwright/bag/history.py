@@ -147,12 +147,12 @@ class _Track:
 
     def _place(self, number: int) -> int | None:
         """The index of a message, by its number; None when it has been dropped."""
-        place = bisect_left(self.kept, number, lo=self.first, key=lambda each: each[1])
+        place = bisect_left(self.kept, number, lo=self.first, key=lambda item: item[1])
         return place if place < len(self.kept) and self.kept[place][1] == number else None
 
     def lasting(self, start_ns: int, end_ns: int) -> list[_Kept]:
         """Return the messages of an interval that were repeated after it."""
-        return [each for each in self.between(start_ns, end_ns) if each[1] in self._lasting]
+        return [item for item in self.between(start_ns, end_ns) if item[1] in self._lasting]
 
     def still_at(self, at_ns: int) -> list[_Kept]:
         """Return the repeated messages up to a time: all of transforms, only the last one of other topics."""
@@ -331,19 +331,19 @@ class History:
                 else:
                     count = sys.maxsize if name == STATIC_TRANSFORMS else 1
                     kept = track.clock_at(at_ns) if name == CLOCK_TOPIC else track.until(at_ns, count)
-                    before = [each for each in track.before.values() if each[0] <= at_ns]
+                    before = [item for item in track.before.values() if item[0] <= at_ns]
                     if name == STATIC_TRANSFORMS:
                         kept = before + kept
                     kept = kept or before
                 into = static if name == STATIC_TRANSFORMS else found
                 into += [(name, stamp, whole(data)) for stamp, _, data in kept]
-        return static + sorted(found, key=lambda each: each[1])
+        return static + sorted(found, key=lambda item: item[1])
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
         """When the last message before a time was received, nanoseconds since the epoch; None where there is none."""
         with self.lock:
             last = [self._tracks[name].until(at_ns - 1, 1) for name in topics if name in self._tracks]
-            return max((each[0][0] for each in last if each), default=None)
+            return max((item[0][0] for item in last if item), default=None)
 
     def part(self, start_ns: int, end_ns: int) -> list[Recorded]:
         """Return the messages from one time to another, both included, in the order of their times.
@@ -354,9 +354,9 @@ class History:
         """
         with self.lock:
             before = self.state_at(list(self._tracks), start_ns - 1)
-            came = [(name, *each) for name, track in self._tracks.items() for each in track.between(start_ns, end_ns)]
-            after = [(name, each[2]) for name, track in self._tracks.items() for each in track.still_at(end_ns)]
-        came.sort(key=lambda each: each[2])
+            came = [(name, *item) for name, track in self._tracks.items() for item in track.between(start_ns, end_ns)]
+            after = [(name, item[2]) for name, track in self._tracks.items() for item in track.still_at(end_ns)]
+        came.sort(key=lambda item: item[2])
         return [
             *((name, start_ns, data) for name, _, data in before),
             *((name, at, data) for name, at, _, data in came),

@@ -69,7 +69,7 @@ class McapLookup:
                     for stamp, offset in self._entries(chunk, channel)
                     if start_ns <= stamp <= end_ns
                 ]
-        found.sort(key=lambda each: (each[0], each[1].chunk_start_offset, each[2]))
+        found.sort(key=lambda item: (item[0], item[1].chunk_start_offset, item[2]))
         return [(stamp, self._message(chunk, offset)) for stamp, chunk, offset in found]
 
     def counts(self, channel: int, *, exact: bool) -> Iterator[tuple[int, int, int]]:

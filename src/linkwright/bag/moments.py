@@ -64,7 +64,7 @@ class Moments:
             else:
                 others.append(topic)
         moving += self._latest(others, at_ns)
-        return found + sorted(moving, key=lambda each: each[1])
+        return found + sorted(moving, key=lambda item: item[1])
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
         """When the last message before a time was received, nanoseconds since the epoch; None where there is none."""
@@ -87,20 +87,20 @@ class Moments:
                 for first_ns, last_ns, count in lookup.counts(connection.id, exact=exact):
                     row = found.setdefault(connection.topic, [0.0] * parts)
                     first, last = part(first_ns), part(last_ns)
-                    for each in range(first, last + 1):
-                        row[each] += count / (last - first + 1)
-        return {name: [ceil(each) for each in row] for name, row in found.items()}
+                    for index in range(first, last + 1):
+                        row[index] += count / (last - first + 1)
+        return {name: [ceil(value) for value in row] for name, row in found.items()}
 
     @cached_property
     def _lookups(self) -> list[tuple[Any, McapLookup | RowLookup]]:
         """The lookups of the files, if all have an index and no singly packed messages; else none."""
         storage: Any = self._reader.storage
         found: list[tuple[Any, McapLookup | RowLookup]] = []
-        for each in getattr(storage, "storages", [storage]):
-            if hasattr(each, "dbconn"):
-                found.append((each, RowLookup(each)))
-            elif each.chunks:
-                found.append((each, McapLookup(each)))
+        for part in getattr(storage, "storages", [storage]):
+            if hasattr(part, "dbconn"):
+                found.append((part, RowLookup(part)))
+            elif part.chunks:
+                found.append((part, McapLookup(part)))
             else:
                 return []
         return [] if self._reader.compression_mode == "message" else found
@@ -111,7 +111,7 @@ class Moments:
         found = []
         for topic in topics:
             last = [lookup.latest(_channels(storage, topic), at_ns) for storage, lookup in self._lookups]
-            best = max((each for each in last if each is not None), key=lambda each: each[0], default=None)
+            best = max((item for item in last if item is not None), key=lambda item: item[0], default=None)
             if best is not None:
                 found.append((topic, *best))
         return found
@@ -129,9 +129,9 @@ class Moments:
             read = self._reader.messages(connections, max(0, start_ns), end_ns + 1) if connections else iter(())
             return [(topic, stamp, data) for _, stamp, data in read]
         return [
-            (topic, *each)
+            (topic, *item)
             for storage, lookup in self._lookups
-            for each in lookup.between(_channels(storage, topic), start_ns, end_ns)
+            for item in lookup.between(_channels(storage, topic), start_ns, end_ns)
         ]
 
     def _latest_without_index(self, topics: Collection[str], at_ns: int) -> Iterator[Recorded]:

@@ -36,7 +36,7 @@ def is_recording(path: Path) -> bool:
     """Whether a path is that of a recording, by its names: of its file, or of the folder with its metadata or files."""
     if not path.is_dir():
         return storage_of(path) is not None or path.suffix == ROS1
-    return (path / METADATA).exists() or any(storage_of(each) is not None for each in path.iterdir())
+    return (path / METADATA).exists() or any(storage_of(entry) is not None for entry in path.iterdir())
 
 
 def in_order(files: Sequence[Path]) -> list[Path]:

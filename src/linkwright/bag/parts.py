@@ -119,17 +119,17 @@ def write_information(folder: Path, information: _Metadata) -> None:
 
 def _joined(parts: Sequence[_Metadata]) -> _Metadata:
     """Return the joined metadata of several files."""
-    files = [each for part in parts for each in part["files"]]
+    files = [item for part in parts for item in part["files"]]
     spans = [
         (file["starting_time"]["nanoseconds_since_epoch"], file["duration"]["nanoseconds"])
         for file in files
         if file["message_count"]
     ]
     topics: dict[tuple[str, str], _Metadata] = {}
-    for each in (topic for part in parts for topic in part["topics_with_message_count"]):
-        key = each["topic_metadata"]["name"], each["topic_metadata"]["type"]
+    for topic in (topic for part in parts for topic in part["topics_with_message_count"]):
+        key = topic["topic_metadata"]["name"], topic["topic_metadata"]["type"]
         known = topics.get(key)
-        topics[key] = {**each, "message_count": each["message_count"] + (known["message_count"] if known else 0)}
+        topics[key] = {**topic, "message_count": topic["message_count"] + (known["message_count"] if known else 0)}
     start = min((start for start, _ in spans), default=parts[0]["starting_time"]["nanoseconds_since_epoch"])
     return {
         **parts[-1],

@@ -92,7 +92,7 @@ def from_text(text: Any) -> list[QoSProfile]:
     """The profiles that ``metadata.yaml`` has, as text or, since its version 9, as a list."""
     from rosbags.rosbag2.metadata import parse_qos
 
-    return [from_bag(each) for each in parse_qos(text)]
+    return [from_bag(profile) for profile in parse_qos(text)]
 
 
 def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
@@ -139,7 +139,7 @@ def overrides_of(document: object, source: str) -> dict[str, QoSProfile]:
     Raises:
         LinkwrightError: BAG106, it has not that form.
     """
-    if not isinstance(document, Mapping) or not all(isinstance(each, Mapping) for each in document.values()):
+    if not isinstance(document, Mapping) or not all(isinstance(item, Mapping) for item in document.values()):
         raise _wrong(
             source,
             phrase("it does not map topics to policies"),

@@ -58,7 +58,7 @@ class _Output:
         self._file = file
         for name in _LISTS:
             value = entry.get(name, [])
-            if not (isinstance(value, list) and all(isinstance(each, str) for each in value)):
+            if not (isinstance(value, list) and all(isinstance(item, str) for item in value)):
                 raise self._wrong(phrase("'{name}' must be a list of names", name=name))
         self._storage = self._one_of("storage_id", STORAGES)
         compression = str(entry.get("compression_mode") or "none").lower()

@@ -32,7 +32,7 @@ class RowLookup:
 
     def latest(self, topics: Collection[int], at_ns: int) -> tuple[int, bytes] | None:
         """The last message of some topics up to a time, and its own time; None where there is none."""
-        best = max((each for topic in topics for each in self._latest(topic, at_ns)), default=None)
+        best = max((item for topic in topics for item in self._latest(topic, at_ns)), default=None)
         if best is None:
             return None
         ((data,),) = self._rows("SELECT data FROM messages WHERE id = ?", best[1])

@@ -41,10 +41,10 @@ class _Storages:
         self.storages: list[Any] = [reader.storage for reader in readers]
         self._readers = readers
         found: dict[tuple[str, str], Connection] = {}
-        for each in (connection for reader in readers for connection in reader.connections):
-            known = found.get(_key(each))
-            count = each.msgcount if known is None else known.msgcount + each.msgcount
-            found[_key(each)] = (known or each)._replace(id=known.id if known else len(found) + 1, msgcount=count)
+        for entry in (connection for reader in readers for connection in reader.connections):
+            known = found.get(_key(entry))
+            count = entry.msgcount if known is None else known.msgcount + entry.msgcount
+            found[_key(entry)] = (known or entry)._replace(id=known.id if known else len(found) + 1, msgcount=count)
         self.connections = list(found.values())
         count = sum(reader.message_count for reader in readers)
         start = min(reader.start_time for reader in readers)

@@ -325,8 +325,8 @@ def _print(found: Sequence[Diagnostic], form: str, *, everything: bool) -> None:
 
 def _summarise(found: Sequence[Diagnostic], fixed: Sequence[FixResult]) -> None:
     if fixed:
-        count = sum(sum(each.counts.values()) for each in fixed)
-        files = len({file for each in fixed for file in each.texts})
+        count = sum(sum(fix_result.counts.values()) for fix_result in fixed)
+        files = len({file for fix_result in fixed for file in fix_result.texts})
         line = phrase(
             "fixed {findings} in {files}",
             findings=counted("{count} finding", "{count} findings", count),

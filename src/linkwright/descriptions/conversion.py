@@ -114,7 +114,7 @@ def with_addresses(part: Any, written_in: Path, change: Callable[[str, Path], st
         change: returns the new address for an address and the folder of the file that has it.
     """
     if isinstance(part, tuple):
-        return tuple(with_addresses(each, written_in, change) for each in part)
+        return tuple(with_addresses(item, written_in, change) for item in part)
     if not is_dataclass(part) or isinstance(part, type):
         return part
     source = getattr(getattr(part, "element", None), "source", None)
@@ -126,7 +126,7 @@ def with_addresses(part: Any, written_in: Path, change: Callable[[str, Path], st
         value = getattr(part, field.name)
         if field.name in addresses:
             many = isinstance(value, tuple)
-            moved = tuple(change(each, written_in) for each in (value if many else (value,)))
+            moved = tuple(change(item, written_in) for item in (value if many else (value,)))
             new = moved if many else moved[0]
         else:
             new = with_addresses(value, written_in, change)

@@ -180,7 +180,7 @@ def _replacing(shares: Mapping[str, Path], top: Path) -> Callable[[str], str]:
         *((str(share), f"package://{name}") for name, share in shares.items()),
         (str(top), "."),
     ]
-    longest_first = sorted(known, key=lambda each: -len(each[0]))
+    longest_first = sorted(known, key=lambda item: -len(item[0]))
 
     def normalize(words: str) -> str:
         for path, name in longest_first:

@@ -17,7 +17,7 @@ _SHORTEST = 3
 def misspelling_of(name: str, known: Iterable[str]) -> str | None:
     """Return the known name that is misspelt; None if there is none, or several with different words."""
     meant = [each for each in known if each != name and _is_slip(name, each)]
-    return meant[0] if len({"".join(words_of(each)) for each in meant}) == 1 else None
+    return meant[0] if len({"".join(words_of(item)) for item in meant}) == 1 else None
 
 
 def _is_slip(name: str, known: str) -> bool:

@@ -193,7 +193,7 @@ def _without_state(seen: Observation, robot: RobotSeen, joints: Sequence[Joint])
     else:
         for name in names:
             behind = [robot.frame(joint.child) for joint in joints if robot.leader(joint) == name]
-            near = did_you_mean(name, [each for each in published if each not in robot.joint_names])
+            near = did_you_mean(name, [other for other in published if other not in robot.joint_names])
             yield Diagnostic(
                 "DOC403",
                 phrase(

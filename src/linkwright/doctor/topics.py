@@ -316,7 +316,7 @@ def _unserved(seen: Observation) -> Iterator[Diagnostic]:
             continue
         same_type = [each for each, kind in served.items() if kind == type_name]
         last = name.rpartition("/")[2]
-        near = [each for each in same_type if each.rpartition("/")[2] == last] or nearest(name, same_type)
+        near = [item for item in same_type if item.rpartition("/")[2] == last] or nearest(name, same_type)
         yield Diagnostic(
             "DOC206",
             phrase("no node provides '{name}', which {callers} calls", name=name, callers=callers),

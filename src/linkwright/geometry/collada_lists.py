@@ -51,7 +51,7 @@ class Lists:
     ) -> list[_Triangle]:
         """The triangles of an element."""
         rows = [_integers(text) for text in texts]
-        indices = [each for row in rows for each in row]
+        indices = [value for row in rows for value in row]
         counts = [len(row) // width for row in rows]
         if tag == "triangles":
             counts = [3] * (counts[0] // 3)
@@ -73,7 +73,7 @@ class Lists:
         """The mesh of the numbers of its corners and the triangles of its elements."""
         numbers = _numbers(text)
         points = list(zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True))
-        return points, [each for part in faces for each in part]
+        return points, [item for part in faces for item in part]
 
 
 def _numbers(text: str) -> list[float]:

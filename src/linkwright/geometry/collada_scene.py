@@ -104,7 +104,7 @@ class _File(Generic[MeshT, MatrixT]):
         instance = self._only(self._only(self._root, "scene"), "instance_visual_scene")
         scene = self._by_id("library_visual_scenes", "visual_scene")[_reference(instance)]
         root = self._numbers.identity()
-        placed = [each for node in self._all(scene, "node") for each in self._placed(node, root)]
+        placed = [item for node in self._all(scene, "node") for item in self._placed(node, root)]
         if not placed:
             raise Unusual
         return ColladaFile(self._unit(), placed)

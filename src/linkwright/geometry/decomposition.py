@@ -47,7 +47,7 @@ def convex_pieces(vertices: Array, faces: Faces, most: int) -> list[Array]:
             pieces.append(corners)
         else:
             concave.append((corners, _plates(vertices, part, most)))
-    concave.sort(key=lambda each: len(each[1]))
+    concave.sort(key=lambda item: len(item[1]))
     left = most - len(pieces) - len(concave)
     for corners, plates in concave:
         if len(plates) - 1 <= left:

@@ -70,7 +70,7 @@ class _Hull:
 
     def _take_in(self, face: int, apex: int) -> None:
         seen, rim = self._seen_from(face, self.points[apex])
-        loose = [self._remove(each) for each in seen]
+        loose = [self._remove(value) for value in seen]
         left = np.concatenate(loose)
         self._add([(a, b, apex) for a, b in rim], left[left != apex])
 

@@ -150,9 +150,9 @@ def _element_faults(element: Element, known: set[str]) -> Iterator[Phrase]:
             message = phrase("<{tag}> names '{value}', which is not in the file", tag=element.tag, value=value)
             yield _of(element, message)
     if element.tag in ("triangles", "polylist", "polygons"):
-        for each in element.elements("input"):
-            if "offset" not in each.attributes:
-                yield _of(each, phrase("<{tag}> has no attribute '{name}'", tag="input", name="offset"))
+        for child in element.elements("input"):
+            if "offset" not in child.attributes:
+                yield _of(child, phrase("<{tag}> has no attribute '{name}'", tag="input", name="offset"))
     if element.tag == "float_array" or element.tag in _NUMBERS_OF:
         yield from _list_faults(element, _is_number, phrase("a finite number"))
         count = element.attributes.get("count") if element.tag == "float_array" else str(_NUMBERS_OF[element.tag])

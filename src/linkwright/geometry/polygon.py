@@ -31,7 +31,7 @@ def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
         a, b, c = (ring[(at + step) % len(ring)] for step in range(3))
         side = turn(points[a], points[b], points[c])
         if side > 0 and not any(
-            _inside(points[each], points[a], points[b], points[c]) for each in ring if each not in (a, b, c)
+            _inside(points[corner], points[a], points[b], points[c]) for corner in ring if corner not in (a, b, c)
         ):
             triangles.append((a, b, c))
         if side == 0 or (triangles and triangles[-1] == (a, b, c)):

@@ -65,11 +65,11 @@ def written_element(element: Element | None, tag: str) -> Element:
     if element is None or element.source is None:
         raise NotWritableError(phrase("it is not written in a file"))
     frame = element.origin if isinstance(element.origin, Frame) else None
-    macro = next((each.macro for each in frames(frame) if each.macro is not None), None)
+    macro = next((outer.macro for outer in frames(frame) if outer.macro is not None), None)
     if macro is not None:
         raise NotWritableError(phrase("it is written by the macro '{macro}'", macro=macro))
     document = parse(element.source.text, element.source.name)
-    written = next((each for each in document.root.walk() if each.offset == element.offset), None)
+    written = next((child for child in document.root.walk() if child.offset == element.offset), None)
     if written is None or written.tag != tag:
         raise NotWritableError(phrase("it is not written as a plain <{tag}>", tag=tag))
     return written
@@ -162,7 +162,8 @@ def _is_equal_value(written: str, value: str) -> bool:
 def _holds(element: Element, pattern: re.Pattern[str]) -> bool:
     """Return whether the pattern is found in an attribute of an element or below it, or a child is left to xacro."""
     return any(
-        each.tag.startswith("xacro:") or any(map(pattern.search, each.attributes.values())) for each in element.walk()
+        child.tag.startswith("xacro:") or any(map(pattern.search, child.attributes.values()))
+        for child in element.walk()
     )
 
 

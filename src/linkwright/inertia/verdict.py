@@ -149,7 +149,7 @@ def _of_comparison(comparison: Comparison, computed: MassProperties) -> list[_Re
         reasons.append(_Reason(Standing.DOUBTFUL if part > _FAR else Standing.ROUGH, words, log(part / _OFF)))
     ratios = [ratio for ratio in comparison.moment_ratios or () if ratio > 0]
     if ratios:
-        ratio = max(ratios, key=lambda each: abs(log(each)))
+        ratio = max(ratios, key=lambda value: abs(log(value)))
         times = max(ratio, 1 / ratio)
         if times > _ROUGH:
             shown = f"{times:.2g}" if times < _DOUBTFUL else grouped(times)

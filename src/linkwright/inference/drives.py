@@ -151,12 +151,12 @@ def _reason(drive: Drive) -> Phrase:
 
 def _pairs(wheels: Sequence[Wheel]) -> tuple[list[Pair], list[Wheel]]:
     """Return the pairs of opposite left and right wheels, the foremost first, and the remaining wheels."""
-    left = sorted((wheel for wheel in wheels if wheel.center[1] > 0.0), key=lambda each: -each.center[0])
+    left = sorted((wheel for wheel in wheels if wheel.center[1] > 0.0), key=lambda other: -other.center[0])
     right = [wheel for wheel in wheels if wheel.center[1] <= 0.0]
     pairs: list[Pair] = []
     alone: list[Wheel] = []
     for wheel in left:
-        opposite = min(right, key=lambda each: _skew(wheel, each), default=None)
+        opposite = min(right, key=lambda other: _skew(wheel, other), default=None)
         if opposite is None or not _fit(wheel, opposite):
             alone.append(wheel)
             continue

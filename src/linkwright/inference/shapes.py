@@ -117,7 +117,7 @@ def round_shape(
             if each is not None:
                 found.append(each)
         if found:
-            best = max(found, key=lambda each: (each.radius, each.width or 0.0))
+            best = max(found, key=lambda item: (item.radius, item.width or 0.0))
             return (best if reach <= best.radius * (1.0 + _OFF_AXIS) else None), unread
     return None, unread
 

@@ -131,9 +131,9 @@ def _named(elements: Iterable[Element]) -> set[str]:
     """The words of elements that may be names of links and joints."""
     found: set[str] = set()
     for element in elements:
-        for each in element.walk():
-            found |= {value for name, value in each.attributes.items() if name in ("reference", "link")}
-            found |= {child.data for child in each.children if isinstance(child, Text)}
+        for inner in element.walk():
+            found |= {value for name, value in inner.attributes.items() if name in ("reference", "link")}
+            found |= {child.data for child in inner.children if isinstance(child, Text)}
     return found
 
 

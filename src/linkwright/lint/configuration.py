@@ -157,14 +157,14 @@ class _Reader:
         return {}
 
     def _selectors(self, path: tuple[str, ...], value: Any) -> tuple[str, ...]:
-        if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
+        if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             self._wrong(
                 path,
                 phrase("is not a list of texts"),
                 phrase('write {written} = ["LW204", "limit-inverted"]', written=_written(path[-1])),
             )
             return ()
-        return tuple(word for each in value if (word := self._selector(path, each, each)))
+        return tuple(word for item in value if (word := self._selector(path, item, item)))
 
     def _selector(self, path: tuple[str, ...], word: str, mark: str) -> str | None:
         if is_selector(word):
@@ -192,8 +192,8 @@ class _Reader:
     def _arguments(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[Mapping[str, str], ...]]]:
         for pattern, value in table.items():
             sets = value if isinstance(value, list) else [value]
-            if all(isinstance(each, dict) and all(map(_is_plain, each.values())) for each in sets):
-                yield pattern, tuple({name: _as_argument(each[name]) for name in each} for each in sets)
+            if all(isinstance(item, dict) and all(map(_is_plain, item.values())) for item in sets):
+                yield pattern, tuple({name: _as_argument(item[name]) for name in item} for item in sets)
             else:
                 self._wrong(
                     ("arguments", pattern),
@@ -257,7 +257,7 @@ def _fits(option: Option, value: object) -> bool:
     if kind is float:
         return isinstance(value, (int, float)) and not isinstance(value, bool)
     if kind is list:
-        return isinstance(value, list) and all(isinstance(each, str) for each in value)
+        return isinstance(value, list) and all(isinstance(item, str) for item in value)
     return isinstance(value, kind) and isinstance(value, bool) == (kind is bool)
 
 

@@ -123,7 +123,7 @@ class OfFile:
             chain.append(frame)
             frame = frame.around
         number = 0 if frame is None else numbers[id(frame)]
-        for each in reversed(chain):
-            number = self._places.setdefault((each.macro, id(each.site), number), len(self._places) + 1)
-            numbers[id(each)] = number
+        for outer in reversed(chain):
+            number = self._places.setdefault((outer.macro, id(outer.site), number), len(self._places) + 1)
+            numbers[id(outer)] = number
         return number

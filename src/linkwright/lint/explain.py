@@ -19,7 +19,9 @@ from linkwright.loading.lean_patterns import lazy_pattern
 PAGES = Path(__file__).parent / "pages"
 _SECTION = lazy_pattern(r"^## ([A-Z]+[0-9]{3}): (.+?)\n(.*?)(?=^## [A-Z]+[0-9]{3}: |\Z)", re.MULTILINE | re.DOTALL)
 
-_HEADINGS: dict[str, str] = {each: each for each in (phrase("## Why"), phrase("## Example"), phrase("## Use instead"))}
+_HEADINGS: dict[str, str] = {
+    heading: heading for heading in (phrase("## Why"), phrase("## Example"), phrase("## Use instead"))
+}
 """The lines of a rule's docstring that are the same in all; the text between them is in English only."""
 
 
@@ -104,7 +106,7 @@ def toml(value: OptionValue) -> str:
     if isinstance(value, str):
         return f'"{value}"'
     if isinstance(value, list):
-        return f"[{', '.join(toml(each) for each in value)}]"
+        return f"[{', '.join(toml(item) for item in value)}]"
     return repr(value)
 
 

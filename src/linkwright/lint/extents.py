@@ -62,7 +62,7 @@ class Extents:
     @cached_property
     def measured(self) -> list[tuple[Link, Inertial, Bounds]]:
         """The links whose body turns, can be measured and is not a marker, with the body's box in the link's frame."""
-        turning = (each for each in self.heavy if self._bodies.turns(each[0].name))
+        turning = (item for item in self.heavy if self._bodies.turns(item[0].name))
         boxes = ((link, inertial, self.body_bounds(link)) for link, inertial in turning)
         return [(link, inertial, box) for link, inertial, box in boxes if box is not None and box.diagonal > MARKER]
 

@@ -104,9 +104,9 @@ def _names(pattern: str, path: str) -> bool:
     if pattern.endswith("/"):
         pattern, above = pattern.rstrip("/"), above[:-1]
     if "/" not in pattern:
-        return any(fnmatchcase(each.rpartition("/")[2], pattern) for each in above)
+        return any(fnmatchcase(item.rpartition("/")[2], pattern) for item in above)
     pattern = pattern.lstrip("/").removeprefix("**/")
-    return any(fnmatchcase(each, pattern) for each in above)
+    return any(fnmatchcase(item, pattern) for item in above)
 
 
 def _is_built(package: PackageContext, name: str) -> bool:

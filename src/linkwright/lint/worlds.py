@@ -162,7 +162,7 @@ def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator
                 owner=described(element),
                 reason=found.reason,
             )
-            named = (each for each in element.walk() if each.tag in _ADDRESSES)
+            named = (child for child in element.walk() if child.tag in _ADDRESSES)
             place = next((element for element in named if element.text().strip() == geometry.uri), element)
             yield _warning("SDF162", message, place, found.hint).but(severity=found.severity)
 

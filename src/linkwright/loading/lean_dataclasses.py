@@ -220,7 +220,7 @@ class _StandardAttribute:
             defaults = {name: value for name, value in default.items() if value is not _MISSING}
             return dataclasses.field(init=entry.init, repr=entry.repr, compare=entry.compare, **defaults)
 
-        cls = next(each for each in owner.__mro__ if vars(each).get(self._name) is self)
+        cls = next(item for item in owner.__mro__ if vars(item).get(self._name) is self)
         fields = [(name, each.type, standard_field(each)) for name, each in vars(cls)[_FIELDS].items()]
         twin = dataclasses.make_dataclass(cls.__name__, fields, frozen=vars(cls)[_OPTIONS][0])
         value = vars(twin)[self._name]

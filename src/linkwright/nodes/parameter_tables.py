@@ -282,15 +282,15 @@ def one_of(*words: str) -> Check:
     """A validator: one of some words, or a list of such."""
 
     def check(name: str, value: Any) -> Phrase | None:
-        for each in (value,) if isinstance(value, str) else value:
-            if each not in words:
+        for item in (value,) if isinstance(value, str) else value:
+            if item not in words:
                 text = phrase(
                     "Parameter '{name}' with the value '{value}' is not one of: {words}",
                     name=name,
-                    value=each,
+                    value=item,
                     words=", ".join(words),
                 )
-                hint = did_you_mean(each, words)
+                hint = did_you_mean(item, words)
                 return text if hint is None else joined((text, hint), "; ")
         return None
 

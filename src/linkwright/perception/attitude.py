@@ -55,7 +55,7 @@ def attitude(acceleration: Vector3, magnetic: Vector3 | None, world: World) -> Q
     Returns:
         The orientation; None if the measurements have no usable direction.
     """
-    x, y, z = (each * world.up for each in acceleration)
+    x, y, z = (value * world.up for value in acceleration)
     if hypot(x, y, z) < _FREE_FALL:
         return None
     if magnetic is None:
@@ -123,7 +123,7 @@ class MadgwickFilter:
             level = hypot(x, y)
             north = (0.0, level, z) if self.world is World.ENU else (level, 0.0, z)
             slope = _sum4(slope, self._slope_of(north, seen), 1.0)
-        length = sqrt(sum(each * each for each in slope))
+        length = sqrt(sum(value * value for value in slope))
         return _scaled4(slope, 1.0 / length) if length > 1e-12 else None
 
     def _slope_of(self, direction: Vector3, seen: Vector3) -> Quaternion:

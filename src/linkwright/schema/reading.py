@@ -59,7 +59,7 @@ def _flat_reader(rule: ElementRule, version: Version) -> ElementReader:
 
     def explain(element: Element, owner: Element, report: Report) -> Any:
         found = [_read_value(element, rule, value, version, owner, report) for value in values]
-        if any(each is UNREADABLE for each in found):
+        if any(item is UNREADABLE for item in found):
             return UNREADABLE
         fields = zip((value.target for value in values), found, strict=True)
         value = tuple(found) if make is None else make(**dict(fields))

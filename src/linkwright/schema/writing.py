@@ -34,7 +34,7 @@ def write_element(rule: ElementRule, instance: Any, complete: Completion | None 
     for child in rule.children:
         element.children += _inner(child, instance, complete)
     if rule.nests:
-        element.children += (write_element(rule, each, complete) for each in rule.value_in(instance))
+        element.children += (write_element(rule, item, complete) for item in rule.value_in(instance))
     if complete is not None and not rule.is_inline:
         complete(element, rule, instance)
     return element
@@ -47,9 +47,9 @@ def _inner(rule: ElementRule, instance: Any, complete: Completion | None) -> Ite
             yield element
         return
     inner = rule.value_in(instance)
-    for each in inner if rule.many else (inner,):
-        if each is not None and (each != rule.default or (rule.located and each is not rule.default)):
-            yield write_element(rule, each, complete)
+    for item in inner if rule.many else (inner,):
+        if item is not None and (item != rule.default or (rule.located and item is not rule.default)):
+            yield write_element(rule, item, complete)
 
 
 def _text(attribute: AttributeRule, instance: Any) -> str | None:

@@ -99,8 +99,8 @@ class Frames:
             pending[name] = None
             name = self._base(name)
         found = self._poses.get(name, IDENTITY)
-        for each in reversed(pending):
-            found = self._poses[each] = compose(found, self._in_base(each))
+        for item in reversed(pending):
+            found = self._poses[item] = compose(found, self._in_base(item))
         return found
 
     def placed(self, pose: RawPose, absent: str = "") -> Transform:

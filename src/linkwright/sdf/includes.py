@@ -108,7 +108,7 @@ class _Resolver:
     def model(self, model: Model, path: Path, chain: tuple[Path, ...]) -> Model:
         if not (model.models or model.includes):
             return model
-        inner = [self.model(each, path, chain) for each in model.models]
+        inner = [self.model(nested, path, chain) for nested in model.models]
         parts: list[tuple[Include, Model]] = []
         left = []
         names = _names(model.links, model.joints, model.frames, inner)

@@ -33,7 +33,7 @@ def merged(whole: Model, part: Model) -> Model:
         pose = RawPose(pose_of(compose(transform_of(pose.pose), invert(inside))), pose.relative_to)
     anchor = part.canonical_link or (part.links[0].name if part.links else "")
     pose = RawPose(pose.pose, pose.relative_to or MODEL)
-    frames = (Frame(frame, anchor, pose), *(_attached(_moved(each, frame), frame) for each in part.frames))
+    frames = (Frame(frame, anchor, pose), *(_attached(_moved(other, frame), frame) for other in part.frames))
     return replace(
         whole,
         links=(*whole.links, *(_moved(link, frame) for link in part.links)),

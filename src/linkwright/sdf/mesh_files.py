@@ -23,7 +23,7 @@ def shapes_of(model: Model) -> Iterator[Visual | Collision]:
 def mesh_files(models: Iterable[Model], finder: ResourceFinder) -> tuple[Path, ...]:
     """The existing files of the meshes and heightmaps of models, each once."""
     found: dict[Path, None] = {}
-    for shape in (each for model in models for each in shapes_of(model)):
+    for shape in (item for model in models for item in shapes_of(model)):
         if isinstance(shape.geometry, Mesh | Heightmap) and shape.element is not None and shape.element.source:
             path = finder.file(shape.geometry.uri, Path(shape.element.source.name).parent)
             if not isinstance(path, Missing):

@@ -50,7 +50,7 @@ class Optics:
         down = (np.arange(self.height) + 0.5 - self.cy) / self.fy
         x: Array
         y: Array
-        x, y = (each.ravel() for each in np.meshgrid(across, down))
+        x, y = (item.ravel() for item in np.meshgrid(across, down))
         if self.distortion is not None:
             x, y = undistorted(self.distortion, x, y)
         rays: Array = np.stack([x, y, np.ones_like(x)], axis=-1)

@@ -33,8 +33,8 @@ def _check(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
     if isinstance(owner, Model):
         yield from _model(owner, frames)
     placed: tuple[Link | Frame | Model, ...] = (*links, *owner.frames, *owner.models)
-    for each in placed:
-        yield from _pose(each.pose, each.element, frames)
+    for item in placed:
+        yield from _pose(item.pose, item.element, frames)
     for frame in owner.frames:
         if frame.attached_to and not _is_known(frame.attached_to, frames):
             yield _unknown(frame.element, "attached_to", frame.attached_to, frames)

@@ -96,7 +96,7 @@ class SdfReport(Findings):
 
     def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:
         """Report a missing required child."""
-        candidates = [each for each in element.elements() if each.tag not in rule.child_rules]
+        candidates = [child for child in element.elements() if child.tag not in rule.child_rules]
         like = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
         misspelt = next((candidate for candidate in candidates if candidate.tag in like), None)
         hint = phrase("add <{tag}>...</{tag}>", tag=child.tag)
@@ -129,7 +129,7 @@ class SdfReport(Findings):
         known = [child.tag for child in rule.children]
         others: list[Element] = []
         for element, is_harmless in zip(elements, harmless, strict=True):
-            if any(element is each for each in self._misspelt):
+            if any(element is child for child in self._misspelt):
                 continue
             hint = did_you_mean(element.tag, known)
             if hint is None and is_harmless:

@@ -359,7 +359,7 @@ def _is_ours(folder: Path) -> bool:
 def _in_other_case(path: Path) -> Path | None:
     """The file whose name differs from a missing one's in upper and lower case alone, or None."""
     with suppress(OSError):
-        return next((each for each in path.parent.iterdir() if each.name.casefold() == path.name.casefold()), None)
+        return next((entry for entry in path.parent.iterdir() if entry.name.casefold() == path.name.casefold()), None)
     return None
 
 
@@ -369,13 +369,15 @@ def _made_from(template: Path, path: Path) -> Missing:
 
 
 def _no_file(path: Path) -> Missing:
-    template = next((each for each in (path.with_name(path.name + end) for end in _TEMPLATES) if each.is_file()), None)
+    template = next(
+        (entry for entry in (path.with_name(path.name + end) for end in _TEMPLATES) if entry.is_file()), None
+    )
     if template is not None:
         return _made_from(template, path)
     hint = None
     with suppress(OSError):
         kind = _kind(path)
-        names = sorted(each.name for each in path.parent.iterdir() if _kind(each) == kind)
+        names = sorted(entry.name for entry in path.parent.iterdir() if _kind(entry) == kind)
         hint = did_you_mean(path.name, names)
         if names and hint is None:
             hint = phrase("there are: {names}", names=joined(names[:8]))

@@ -52,7 +52,7 @@ def changes_nothing(child: Element, parent: Element, static_links: frozenset[int
 
 def _numbers(text: str) -> list[float]:
     try:
-        return [float(each) for each in text.split()]
+        return [float(item) for item in text.split()]
     except ValueError:
         return []
 

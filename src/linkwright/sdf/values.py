@@ -195,7 +195,7 @@ def readable(kind: Callable[..., Any]) -> Callable[..., Any]:
     def make(**parts: Any) -> Any:
         return kind(
             **{
-                name: tuple(each for each in part if each is not None and each is not UNREADABLE)
+                name: tuple(item for item in part if item is not None and item is not UNREADABLE)
                 if isinstance(part, tuple)
                 else part
                 for name, part in parts.items()

@@ -52,7 +52,7 @@ def _changed(value: V, kind: type[Any], change: Callable[[Any], Any]) -> V:
     if isinstance(value, kind):
         return cast("V", change(value))
     if isinstance(value, tuple):
-        parts = [_changed(each, kind, change) for each in value]
+        parts = [_changed(item, kind, change) for item in value]
         if all(new is old for new, old in zip(parts, value, strict=True)):
             return value
         return cast("V", type(value)(*parts) if hasattr(value, "_fields") else tuple(parts))

@@ -93,7 +93,7 @@ def _key(poses: list[Transform], index: int, stretch: float) -> _Key:
     tangent = (stretch * (after[0] - before[0]), stretch * (after[1] - before[1]), stretch * (after[2] - before[2]))
     turn = poses[index][3:]
     back = quaternion_inverse(turn)
-    ahead, behind = (_log(quaternion_multiply(back, each[3:])) for each in (after, before))
+    ahead, behind = (_log(quaternion_multiply(back, item[3:])) for item in (after, before))
     bent = _exp((-0.25 * (ahead[0] + behind[0]), -0.25 * (ahead[1] + behind[1]), -0.25 * (ahead[2] + behind[2])))
     return _Key((x, y, z), turn, tangent, quaternion_multiply(turn, bent))
 

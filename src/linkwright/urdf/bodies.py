@@ -94,12 +94,12 @@ class Bodies:
                 continue
             seen.add(name)
             group = [name]
-            for each in group:
-                more = [other for other in neighbours[each] if other in massless and other not in seen]
+            for item in group:
+                more = [other for other in neighbours[item] if other in massless and other not in seen]
                 seen.update(more)
                 group += more
-            if any(links[each].visuals or links[each].collisions for each in group):
-                found.update(other for each in group for other in neighbours[each] if other not in massless)
+            if any(links[item].visuals or links[item].collisions for item in group):
+                found.update(other for item in group for other in neighbours[item] if other not in massless)
         return frozenset(found)
 
     @cached_property

@@ -125,7 +125,7 @@ class UrdfReport(Findings):
         self, element: Element, rule: ElementRule, child: ElementRule, owner: Element, kind: str = ""
     ) -> None:
         """Report that a required child is missing; `kind` is the type of a joint if only such joints need it."""
-        candidates = [each for each in element.elements() if each.tag not in rule.child_rules]
+        candidates = [child for child in element.elements() if child.tag not in rule.child_rules]
         like = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
         misspelt = next((candidate for candidate in candidates if candidate.tag in like), None)
         hint = phrase(

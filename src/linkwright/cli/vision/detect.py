@@ -117,10 +117,10 @@ def _read(name: str) -> NDArray[np.uint8]:
 def _data(found: Detections) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
     for index in range(len(found)):
-        box = [round(float(each), 2) for each in found.boxes[index]]
+        box = [round(float(value), 2) for value in found.boxes[index]]
         row: dict[str, object] = {"class": found.name(index), "score": round(float(found.scores[index]), 4), "box": box}
         if found.corners is not None:
-            row["corners"] = [[round(float(each), 2) for each in point] for point in found.corners[index]]
+            row["corners"] = [[round(float(value), 2) for value in point] for point in found.corners[index]]
         rows.append(row)
     return rows
 

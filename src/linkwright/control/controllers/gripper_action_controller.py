@@ -229,7 +229,7 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
     def command_interfaces(self) -> InterfaceNames:
         """The position of the joint, and the interfaces of the greatest effort and velocity that are named."""
         parameters = self.parameters
-        more = [each for each in (parameters.max_effort_interface, parameters.max_velocity_interface) if each]
+        more = [name for name in (parameters.max_effort_interface, parameters.max_velocity_interface) if name]
         return [f"{parameters.joint}/{POSITION}", *more]
 
     def _stay(self) -> None:

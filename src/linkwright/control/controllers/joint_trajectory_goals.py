@@ -69,7 +69,7 @@ def _objection_to_points(points: Sequence[Any], count: int, *, integrated: bool)
                 f"it is {before / NANOSECONDS_PER_SECOND:f} and {time / NANOSECONDS_PER_SECOND:f} respectively"
             )
         before = time
-        lists = {each: getattr(point, each) for each in ("positions", "velocities", "accelerations")}
+        lists = {field: getattr(point, field) for field in ("positions", "velocities", "accelerations")}
         if not any(len(values) for values in lists.values()) and integrated:
             return f"Point #{number} has neither positions nor velocities nor accelerations."
         for name, values in lists.items():
@@ -125,16 +125,16 @@ def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, log: Ca
     """
     tolerances = default
     for field, given in (("path_tolerance", goal.path_tolerance), ("goal_tolerance", goal.goal_tolerance)):
-        for each in given:
-            if each.name not in joints:
-                log(f"joint '{each.name}' specified in goal.{field} does not exist. Using default tolerances.")
+        for tolerance in given:
+            if tolerance.name not in joints:
+                log(f"joint '{tolerance.name}' specified in goal.{field} does not exist. Using default tolerances.")
                 return default
-            index = joints.index(each.name)
+            index = joints.index(tolerance.name)
             known = (tolerances.path if field == "path_tolerance" else tolerances.goal)[index]
             try:
-                changed = known.overridden(each.position, each.velocity, each.acceleration)
+                changed = known.overridden(tolerance.position, tolerance.velocity, tolerance.acceleration)
             except ValueError:
-                log(f"joint '{each.name}' specified in goal.{field} has a negative tolerance that is not -1.")
+                log(f"joint '{tolerance.name}' specified in goal.{field} has a negative tolerance that is not -1.")
                 log("Using default tolerances.")
                 return default
             change = tolerances.with_path if field == "path_tolerance" else tolerances.with_goal

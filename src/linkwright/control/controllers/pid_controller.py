@@ -81,7 +81,7 @@ class PidController(Controller[Parameters]):
 
     def _measured_names(self) -> list[str]:
         parameters = self.parameters
-        return [f"{each}/{kind}" for kind in parameters.reference_and_state_interfaces for each in parameters.measured]
+        return [f"{name}/{kind}" for kind in parameters.reference_and_state_interfaces for name in parameters.measured]
 
     def on_configure(self) -> None:
         """Make the topics and the service."""

@@ -200,7 +200,7 @@ class ImuBroadcaster(SensorBroadcaster[ImuParameters]):
         """Orientation, angular velocity and linear acceleration."""
         turn = [f"orientation.{axis}" for axis in "xyzw"]
         rest = [f"{kind}.{axis}" for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
-        return [f"{self.parameters.sensor_name}/{each}" for each in (*turn, *rest)]
+        return [f"{self.parameters.sensor_name}/{item}" for item in (*turn, *rest)]
 
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
         """An IMU message with the covariances of the parameters."""

@@ -115,8 +115,8 @@ class SteeringController(Controller[P], Generic[P]):
     def command_interfaces(self) -> InterfaceNames:
         """Velocities of the driven joints, then positions of the steered ones."""
         parameters = self.parameters
-        return [f"{each}/{VELOCITY}" for each in parameters.traction] + [
-            f"{each}/{POSITION}" for each in parameters.steering
+        return [f"{name}/{VELOCITY}" for name in parameters.traction] + [
+            f"{name}/{POSITION}" for name in parameters.steering
         ]
 
     def state_interfaces(self) -> InterfaceNames:

@@ -136,7 +136,7 @@ class _Reader:
             message = phrase("<ros2_control> '{name}' names no plugin that drives it", name=name)
             self._report("CTL112", message, element, phrase("write <hardware><plugin>mock_components/GenericSystem"))
             return None
-        joints = [self._component(each, "joint") for each in element.elements("joint")]
+        joints = [self._component(child, "joint") for child in element.elements("joint")]
         names = [joint.name for joint in joints]
         for each, written in zip(joints, element.elements("joint"), strict=True):
             if each.name not in self._robot.joints:
@@ -152,8 +152,8 @@ class _Reader:
             element.attributes.get("is_async", "").strip() in _TRUE,
             _parameters(hardware),
             tuple(joint for joint in joints if joint.name in self._robot.joints),
-            tuple(self._component(each, "sensor") for each in element.elements("sensor")),
-            tuple(self._component(each, "gpio") for each in element.elements("gpio")),
+            tuple(self._component(child, "sensor") for child in element.elements("sensor")),
+            tuple(self._component(child, "gpio") for child in element.elements("gpio")),
         )
 
     def _component(self, element: Element, kind: str) -> ComponentDescription:
@@ -169,7 +169,7 @@ class _Reader:
 
     def _mimic(self, name: str, element: Element, parameters: Mapping[str, str]) -> MimicDescription | None:
         if "mimic" in parameters:
-            multiplier, offset = (parameters.get(each, "") for each in ("multiplier", "offset"))
+            multiplier, offset = (parameters.get(item, "") for item in ("multiplier", "offset"))
             return MimicDescription(
                 parameters["mimic"],
                 1.0 if not multiplier else self._number(multiplier, element),
@@ -182,14 +182,14 @@ class _Reader:
 
     def _interfaces(self, element: Element, tag: str) -> tuple[InterfaceDescription, ...]:
         found = {}
-        for each in element.elements(tag):
-            parameters = _parameters(each)
+        for child in element.elements(tag):
+            parameters = _parameters(child)
             low, high, initial = (
-                self._number(parameters[name], each) if parameters.get(name, "").strip() else nan
+                self._number(parameters[name], child) if parameters.get(name, "").strip() else nan
                 for name in ("min", "max", "initial_value")
             )
-            name = each.attributes.get("name", "")
-            limited = _is_limited(element) and _is_limited(each)
+            name = child.attributes.get("name", "")
+            limited = _is_limited(element) and _is_limited(child)
             found[name] = InterfaceDescription(name, low, high, initial, limited, parameters)
         return tuple(found.values())
 
@@ -216,4 +216,4 @@ def _is_limited(element: Element) -> bool:
 def _parameters(element: Element | None) -> dict[str, str]:
     if element is None:
         return {}
-    return {each.attributes.get("name", ""): each.text().strip() for each in element.elements("param")}
+    return {child.attributes.get("name", ""): child.text().strip() for child in element.elements("param")}

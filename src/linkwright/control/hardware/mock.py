@@ -76,7 +76,7 @@ class GenericSystem(Hardware):
             if self._offset_interface and state.kind == self._offset_interface and state.component in self._joints
         ]
         # A thousand times a second each lookup counts: only dynamics and mimicry need the state of a joint.
-        tied = {each for joint, followed, _ in self._followers for each in (joint, followed)}
+        tied = {other for joint, followed, _ in self._followers for other in (joint, followed)}
         joints = [joint for joint in self._joints.values() if self._dynamic or joint in tied]
         free = [joint for joint in self._joints.values() if not self._dynamic and joint not in tied]
         self._shown = [(state, joint.values, state.kind) for joint in joints for state in joint.shown]
@@ -108,8 +108,8 @@ class GenericSystem(Hardware):
             return
         for name in self._joints:
             begin = f"{name}/"
-            asked = [each.removeprefix(begin) for each in start if each.startswith(begin)]
-            modes = [each for each in asked if each in _MODES]
+            asked = [name.removeprefix(begin) for name in start if name.startswith(begin)]
+            modes = [item for item in asked if item in _MODES]
             if asked and not modes:
                 raise HardwareError(
                     f"Joint '{name}' has to have '{POSITION}', '{VELOCITY}', or '{ACCELERATION}' interface!"

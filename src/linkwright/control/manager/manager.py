@@ -100,8 +100,8 @@ class ControllerManager:
             logger.error(f"Loader for controller '{name}' (type '{kind}') not found.")  # noqa: TRY400 - `_log_error` says why
             self._log_error(error)
             logger.info("Available classes:")
-            for each in controller_types():
-                logger.info(f"  {each}")
+            for kind in controller_types():
+                logger.info(f"  {kind}")
             return False
         controller = self._made(made, name)
         if controller is None:
@@ -501,7 +501,7 @@ class ControllerManager:
 
     def _users_of(self, hardware: Sequence[Hardware]) -> list[Loaded]:
         """The active controllers that use hardware, and those that command them."""
-        names = {each for component in hardware for each in self.resources.names_of(component)}
+        names = {name for component in hardware for name in self.resources.names_of(component)}
         found = [
             loaded
             for loaded in self._active

@@ -52,7 +52,7 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
     for message in dict.fromkeys(str(finding.message) for finding in left_out):
         manager.get_logger().warning(f"{name}: {message}; the parameter is left out")
     ros = parse(
-        ["--ros-args", *(each for each in words_of(manager, f"{name}.node_options_args") if each != "--ros-args")]
+        ["--ros-args", *(word for word in words_of(manager, f"{name}.node_options_args") if word != "--ros-args")]
     )
     values |= ros.parameters_for(full_name)
     remappings = [*ros.remappings_for(name), *process.remappings]
@@ -72,4 +72,4 @@ def words_of(node: Node, name: str) -> list[str]:
     value = node.get_parameter_or(name).value
     if not value:
         return []
-    return [value] if isinstance(value, str) else [str(each) for each in value]
+    return [value] if isinstance(value, str) else [str(item) for item in value]

@@ -79,9 +79,9 @@ class SwitchPlanner:
                 switch.from_chained += [
                     each for each in self._following(self._controllers[name]) if each not in switch.from_chained
                 ]
-        switch.activate = [each for each in switch.activate if self._may(each, self._objection_to_activation(each))]
+        switch.activate = [item for item in switch.activate if self._may(item, self._objection_to_activation(item))]
         switch.deactivate = [
-            each for each in switch.deactivate if self._may(each, self._objection_to_deactivation(each), "deactivate")
+            item for item in switch.deactivate if self._may(item, self._objection_to_deactivation(item), "deactivate")
         ]
         for name in (*switch.to_chained, *switch.from_chained):
             if self._controllers[name].is_active and name not in switch.deactivate:

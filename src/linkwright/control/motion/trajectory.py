@@ -108,7 +108,7 @@ class Trajectory:
             return self._end
         index = self._index
         if not starts[index] <= time_ns < starts[index + 1]:
-            index = next(each for each in range(len(self.points)) if time_ns < starts[each + 1])
+            index = next(index for index in range(len(self.points)) if time_ns < starts[index + 1])
             self._index = index
         passed = max(index - 1, 0)
         return Sample(self._state(index, time_ns), passed, starts[passed + 1], ended=False)

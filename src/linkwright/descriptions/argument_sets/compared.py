@@ -42,7 +42,7 @@ def empty_defaults(documents: Iterable[Document]) -> tuple[str, ...]:
     """Return the arguments whose default is an empty text, which often means that callers must give a value."""
     elements = (element for document in documents for element in document.root.walk())
     declared = (element.attributes for element in elements if element.tag == "xacro:arg")
-    return tuple(dict.fromkeys(each["name"] for each in declared if "name" in each and each.get("default") == ""))
+    return tuple(dict.fromkeys(item["name"] for item in declared if "name" in item and item.get("default") == ""))
 
 
 def _names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:

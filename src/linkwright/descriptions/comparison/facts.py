@@ -235,7 +235,7 @@ def pairs_of(
 
     def pair(matches: Callable[[int, int], bool]) -> None:
         for before in tuple(left):
-            after = next((each for each in right if matches(before, each)), None)
+            after = next((value for value in right if matches(before, value)), None)
             if after is not None:
                 left.remove(before)
                 right.remove(after)
@@ -245,9 +245,9 @@ def pairs_of(
     pair(lambda before, after: old[before].label != "" and old[before].label == new[after].label)
     pair(lambda _before, _after: True)
     return [
-        *sorted(found, key=lambda each: each[1] or 0),
-        *((each, None) for each in left),
-        *((None, each) for each in right),
+        *sorted(found, key=lambda item: item[1] or 0),
+        *((value, None) for value in left),
+        *((None, value) for value in right),
     ]
 
 
@@ -257,8 +257,8 @@ def _angle(ours: Sequence[float], theirs: Sequence[float]) -> float:
 
 
 def _unit(vector: Sequence[float]) -> tuple[float, ...]:
-    length = sqrt(sum(each * each for each in vector))
-    return tuple(each / length for each in vector) if length > 0.0 else tuple(vector)
+    length = sqrt(sum(value * value for value in vector))
+    return tuple(value / length for value in vector) if length > 0.0 else tuple(vector)
 
 
 def _distance(ours: Iterable[float], theirs: Iterable[float]) -> float:

@@ -107,7 +107,7 @@ class Definitions:
     def _values(self) -> list[tuple[tuple[str, ...], Place]]:
         """The scalars of the YAML files, each with the keys that lead to it."""
         if self._scalars is None:
-            self._scalars = [each for path in self._others for each in _scalars_of(path, self._overlay)]
+            self._scalars = [item for path in self._others for item in _scalars_of(path, self._overlay)]
         return self._scalars
 
 

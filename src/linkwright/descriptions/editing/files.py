@@ -151,8 +151,8 @@ def _write(new: Mapping[str, bytes], known: Mapping[str, bytes]) -> None:
         try:
             write_whole_file(path, content)
         except OSError as error:
-            for each in written:
-                write_whole_file(each, known[each])
+            for path in written:
+                write_whole_file(path, known[path])
             message = phrase(
                 "cannot write '{path}': {reason}", path=display_path(path), reason=foreign(error.strerror or error)
             )

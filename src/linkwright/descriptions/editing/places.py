@@ -162,7 +162,7 @@ def _terms(node: ast.expr, inner: Place) -> Iterator[Candidate]:
 
 def _is_angle_of_degrees(node: ast.expr) -> bool:
     """Return whether an expression is something like ``30*pi/180``, a product with the degrees in front."""
-    return _names(node) <= _OF_PI and "pi" in _names(node) and any(_number(each) == 180 for each in ast.walk(node))
+    return _names(node) <= _OF_PI and "pi" in _names(node) and any(_number(part) == 180 for part in ast.walk(node))
 
 
 def _signed_term(node: ast.BinOp, inner: Place) -> Candidate | None:

@@ -99,12 +99,12 @@ class _Planner:
         """Return the attributes to edit, and their numbers."""
         request = self._request
         for given in (request.xyz, request.rpy):
-            if given is not None and not all(isfinite(each) and abs(each) <= _LARGEST for each in given):
+            if given is not None and not all(isfinite(value) and abs(value) <= _LARGEST for value in given):
                 raise EditRefusedError(
                     Diagnostic("EDIT102", phrase("these numbers are not finite, or too large for a robot"))
                 )
         if request.xyz is not None:
-            if request.tag == "axis" and not any(abs(each) > EXACT for each in request.xyz):
+            if request.tag == "axis" and not any(abs(value) > EXACT for value in request.xyz):
                 message = phrase("an axis needs a direction: 0 0 0 has none")
                 raise EditRefusedError(Diagnostic("EDIT102", message))
             yield "xyz", list(request.xyz)
@@ -283,7 +283,7 @@ class _Planner:
         if element.source is None:
             raise EditRefusedError(_not_written(element))
         document: Document = parse(element.source.text, element.source.name)
-        found = next((each for each in document.root.walk() if each.offset == element.offset), None)
+        found = next((child for child in document.root.walk() if child.offset == element.offset), None)
         if found is None:
             raise EditRefusedError(_not_written(element))
         return found

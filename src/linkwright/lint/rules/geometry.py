@@ -124,7 +124,7 @@ class HugeSize(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         largest = self.option(subject, "largest", float)
         for link, shape in () if is_scenery(subject) else shapes_of(subject):
-            name, size = max(sizes_of(shape.geometry), key=lambda each: each[1], default=("", 0.0))
+            name, size = max(sizes_of(shape.geometry), key=lambda item: item[1], default=("", 0.0))
             if size > largest:
                 what = type(shape.geometry).__name__.lower()
                 yield self.report(

@@ -81,7 +81,7 @@ class MissingCollision(Rule):
 def _is_between(body: Body, bodies: Bodies, lacking: list[Body]) -> bool:
     """Return whether what holds a body and something that it holds have collision shapes."""
     above = bodies.of(body.joint.parent) if body.joint is not None else None
-    below = [each for each in bodies.all if each.joint is not None and each.joint.parent in body.links]
+    below = [other for other in bodies.all if other.joint is not None and other.joint.parent in body.links]
     return above not in (None, *lacking) and any(body not in lacking for body in below)
 
 

@@ -160,7 +160,7 @@ class DensityTooLow(Rule):
             mass = bodies.mass(body)
             volume = sum(volume_of(geometry) for geometry in shapes if not isinstance(geometry, Mesh))
             if WEIGHTLESS <= mass < LIGHTEST_DENSITY * volume:
-                link, inertial = max(heavy, key=lambda each: each[1].mass)
+                link, inertial = max(heavy, key=lambda item: item[1].mass)
                 yield self.report(
                     phrase(
                         "link '{name}' would have a density of {mass:.2g} kg/m3, less than air",
@@ -324,7 +324,7 @@ class InertiaTooLarge(Rule):
     def _finding(
         self, link: Link, inertial: Inertial, bounds: Bounds, limit: float, others: Sequence[str]
     ) -> Diagnostic:
-        name = max(DIAGONAL, key=lambda each: getattr(inertial, each))
+        name = max(DIAGONAL, key=lambda item: getattr(inertial, item))
         largest = getattr(inertial, name)
         usual = _uniform(bounds, inertial.mass)
         possible = phrase("{mass:g} kg within them have at most {limit:.2g} kg m2", mass=inertial.mass, limit=limit)
@@ -402,7 +402,7 @@ class InertiaTooSmall(Rule):
 def _without_placeholders(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
     """The measured links but those of which `PlaceholderInertia` says that their inertia was never computed."""
     copied = subject.once(placeholders) if subject.extents.measured else set()
-    return (each for each in subject.extents.measured if each[0].name not in copied)
+    return (item for item in subject.extents.measured if item[0].name not in copied)
 
 
 def _is_at_the_joint(subject: Subject, link: Link, inertial: Inertial) -> bool:
@@ -434,7 +434,7 @@ def _is_made_up(inertial: Inertial) -> bool:
 
 def _unit_hint(ratio: float) -> Phrase | None:
     """A hint when a value is as many times too large as another unit would make it, within a factor of 3."""
-    factor, unit = min(_UNITS, key=lambda each: max(each[0] / ratio, ratio / each[0]))
+    factor, unit = min(_UNITS, key=lambda item: max(item[0] / ratio, ratio / item[0]))
     if max(factor / ratio, ratio / factor) > 3:
         return None
     return phrase("if it is in {unit}, divide it by {factor:.0f}", unit=unit, factor=factor)

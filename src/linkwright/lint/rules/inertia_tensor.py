@@ -219,7 +219,7 @@ class TriangleInequality(_TensorRule):
 
     def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
         diagonal = not (inertial.ixy or inertial.ixz or inertial.iyz)
-        first, second = (each for each in DIAGONAL if each != flaw.attribute)
+        first, second = (item for item in DIAGONAL if item != flaw.attribute)
         message = phrase("one moment of inertia of link '{name}' is larger than the other two together", name=name)
         notes = [_principal_moments(inertial)]
         if diagonal:

@@ -164,7 +164,7 @@ class LaunchedFileMissing(Rule):
         package = subject.package
         if package is None:
             return
-        made = {each for file in package.launch_files.values() for each in file.made}
+        made = {item for file in package.launch_files.values() for item in file.made}
         for file in package.launch_files.values():
             for shared in file.paths:
                 if (shared.package, shared.path) not in made:

@@ -261,7 +261,7 @@ def _own_executables(package: PackageContext) -> frozenset[str] | None:
         return None
     folder = f"lib/{package.name}/"
     copied = [file.destination for file in setup.installed_files(package.folder) if file.destination.startswith(folder)]
-    return frozenset((*(entry.executable for entry in setup.entry_points), *(Path(each).stem for each in copied)))
+    return frozenset((*(entry.executable for entry in setup.entry_points), *(Path(name).stem for name in copied)))
 
 
 def _is_known(name: str, package: PackageContext, subject: Subject) -> bool:

@@ -126,8 +126,8 @@ class DescriptionNotTyped(Rule):
                 path=path,
                 reason=foreign(reason),
             )
-            for each in found:
-                yield self.report(message, span=each.span, source=file.source, hint=each.hint, fix=each.fix)
+            for item in found:
+                yield self.report(message, span=item.span, source=file.source, hint=item.hint, fix=item.fix)
 
 
 class LaunchArgumentUndeclared(LaunchRule):

@@ -320,7 +320,7 @@ def _in_known_package(subject: Subject, path: Path | None) -> str | None:
 def file_hint(path: Path, endings: Sequence[str]) -> Phrase:
     """A hint on a missing file: files with one of the endings, all in small letters."""
     try:
-        names = sorted(each.name for each in path.parent.iterdir() if each.suffix.lower() in endings)
+        names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix.lower() in endings)
     except OSError:
         return phrase("there is no folder '{parent}'", parent=display_path(path.parent))
     near = did_you_mean(path.name, names)

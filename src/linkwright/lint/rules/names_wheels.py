@@ -168,7 +168,7 @@ class WheelHasLimits(Rule):
         if robot is None:
             return
         turning = [joint for joint in robot.joints.values() if joint.type == "continuous"]
-        carrying = {each.parent for joint in turning for each in (joint, *joints_above(robot, joint))}
+        carrying = {other.parent for joint in turning for other in (joint, *joints_above(robot, joint))}
         for wheel in wheels(subject, "revolute"):
             joint = wheel.joint
             if joint.child in carrying or "wheel" not in joint.child.lower() or _is_wide(joint):

@@ -96,7 +96,7 @@ class WheelsNotLevel(Rule):
         tolerance = self.option(subject, "tolerance", float)
         driven = [contact for contact in found if contact.is_wheel]
         ground = min(contact.place[2] for contact in driven)
-        lowest = min(driven, key=lambda each: each.place[2]).link
+        lowest = min(driven, key=lambda item: item.place[2]).link
         springing = _springing(subject)
         for contact in found:
             gap = contact.place[2] - ground

@@ -125,7 +125,7 @@ class TangentPlane:
         """A point in metres as latitude and longitude in degrees and altitude in metres."""
         ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
         axes = self._axes()
-        x, y, z = (sum(axis[each] * along for axis, along in zip(axes, point, strict=True)) for each in range(3))
+        x, y, z = (sum(axis[index] * along for axis, along in zip(axes, point, strict=True)) for index in range(3))
         return _geodetic(ox + x, oy + y, oz + z)
 
     def _axes(self) -> tuple[Vector3, Vector3, Vector3]:

@@ -221,9 +221,9 @@ def _finished(reading: Reading, used: Used, *, two_d: bool) -> Reading:
 
 def _known_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
     """Return a pose with zeros and no rotation for values that are not finite, and which of the 15 values remain."""
-    x, y, z = (each if isfinite(each) else 0.0 for each in pose[:3])
+    x, y, z = (value if isfinite(value) else 0.0 for value in pose[:3])
     known = _finite(used, POSITION, np.array(pose[:3]))
-    if all(isfinite(each) for each in pose[3:]):
+    if all(isfinite(value) for value in pose[3:]):
         return (x, y, z, *pose[3:]), known
     return (x, y, z, *IDENTITY[3:]), tuple(each and not 3 <= index < 6 for index, each in enumerate(known))
 
@@ -231,7 +231,7 @@ def _known_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
 def _finite(used: Used, part: slice, values: Vector) -> Used:
     """Which values are used, without those that are not finite."""
     flags = list(used)
-    flags[part] = [bool(each) for each in np.array(used[part]) & np.isfinite(values)]
+    flags[part] = [bool(value) for value in np.array(used[part]) & np.isfinite(values)]
     return tuple(flags)
 
 

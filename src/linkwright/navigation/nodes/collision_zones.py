@@ -126,7 +126,7 @@ class Zone:
         corners = self._corners(f"{part}.points")
         if corners is None:
             raise bad_value(f"{self.name}.{part}.points", "", self._node.get_name())
-        between = [float(self._value(f"{part}.{each}", 0.0)) for each in _RANGES]
+        between = [float(self._value(f"{part}.{item}", 0.0)) for item in _RANGES]
         direction = None
         if self._value("holonomic", False):
             direction = (

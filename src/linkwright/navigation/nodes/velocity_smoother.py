@@ -144,7 +144,7 @@ class _ManagedSmoother(ManagedNode):
         if lengths not in ({len(_PLANAR)}, {len(_AXES)}):
             return phrase("{names} must all have 3 entries (x, y, yaw) or all 6", names=joined(list(_LIMITS)))
         for name, sign in (("max_velocity", 1), ("min_velocity", -1), ("max_accel", 1), ("max_decel", -1)):
-            if any(each * sign < 0.0 for each in value(name)):
+            if any(item * sign < 0.0 for item in value(name)):
                 return (
                     phrase("{name} must not be negative", name=name)
                     if sign > 0

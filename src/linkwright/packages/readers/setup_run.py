@@ -41,10 +41,10 @@ _COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
     ast.NotIn: lambda item, items: item not in items,
 }
 _BUILTINS: dict[str, Callable[..., Any]] = {
-    **{each.__name__: each for each in (len, list, tuple, set, dict, str, zip, sorted, any, all, bool, int, min, max)},
-    **{each.__name__: each for each in (enumerate, reversed, map, filter)},
+    **{call.__name__: call for call in (len, list, tuple, set, dict, str, zip, sorted, any, all, bool, int, min, max)},
+    **{call.__name__: call for call in (enumerate, reversed, map, filter)},
     "range": lambda *numbers: bounded(list(range(*numbers)[:20_001])),
-    "sum": lambda items, start=0: [each for item in items for each in item] if start == [] else sum(items, start),
+    "sum": lambda items, start=0: [entry for item in items for entry in item] if start == [] else sum(items, start),
     "print": lambda *_, **__: None,
 }
 

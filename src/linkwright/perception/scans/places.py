@@ -116,7 +116,7 @@ class PolygonFilter(ScanFilter):
     _corners: NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
-        numbers = [float(each) for each in _NUMBER.findall(self.polygon)]
+        numbers = [float(value) for value in _NUMBER.findall(self.polygon)]
         if len(numbers) < 6 or len(numbers) % 2:
             message = phrase("polygon '{text}' has no three corners", text=self.polygon)
             hint = phrase("such as '[[0.2, 0.2], [0.2, -0.2], [-0.2, 0.0]]'")

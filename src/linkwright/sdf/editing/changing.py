@@ -73,10 +73,10 @@ def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
     changes = list(changes)
     values: list[Replacement] = []
     poses: dict[str, Pose] = {}
-    for each in changes:
-        values += _values(world.entity(each.name), each)
-        if each.pose is not None:
-            poses[each.name] = pose_in_world(each.pose)
+    for edit in changes:
+        values += _values(world.entity(edit.name), edit)
+        if edit.pose is not None:
+            poses[edit.name] = pose_in_world(edit.pose)
     world = _with_poses(world, poses, values)
     names = {change.name: change.new_name for change in changes if change.new_name not in (None, change.name)}
     return _with_names(world, {old: new for old, new in names.items() if new is not None})
@@ -278,7 +278,7 @@ def _same_values(owner: Element, new: Element) -> list[Replacement]:
 
 
 def _coloured(entity: Entity, colour: Sequence[float]) -> list[Replacement]:
-    if len(colour) != 4 or not all(isfinite(each) and 0 <= each <= 1 for each in colour):
+    if len(colour) != 4 or not all(isfinite(value) and 0 <= value <= 1 for value in colour):
         raise EditError(phrase("a colour has four numbers from 0 to 1: red green blue alpha"))
     if entity.kind == "light" and not isinstance(entity.written, Include):
         return writing.set_child(entity.element, "diffuse", colour)

@@ -122,8 +122,8 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
 
 def renamed_references_outside(world: WorldText, inside: frozenset[str], group_name: str) -> list[Replacement]:
     """Return the edits that adapt references from outside a group to its members."""
-    names = {each: f"{group_name}{SEPARATOR}{each}" for each in inside}
-    ranges = [writing.range_of(world.entity(each).element) for each in inside]
+    names = {name: f"{group_name}{SEPARATOR}{name}" for name in inside}
+    ranges = [writing.range_of(world.entity(name).element) for name in inside]
     return [
         renamed_reference
         for renamed_reference in renamed_references(world, names)

@@ -100,7 +100,7 @@ def _colour(material: Material | None) -> Color | None:
 
 def is_size(kind: str, size: tuple[float, ...]) -> bool:
     """Return whether numbers are a valid size of a shape."""
-    return len(size) == COUNTS[kind] and all(isfinite(each) and 1e-6 <= each <= 1e6 for each in size)
+    return len(size) == COUNTS[kind] and all(isfinite(value) and 1e-6 <= value <= 1e6 for value in size)
 
 
 def wedge(size: tuple[float, ...]) -> Polyline:

@@ -130,7 +130,7 @@ class WorldText:
         world, state = self.world, self.world.states[-1] if self.world.states else None
         gone = state.deletions.names if state is not None else ()
         beside: tuple[Actor | Frame | Joint, ...] = (*world.actors, *world.frames, *world.joints)
-        return self.reserved.union({WORLD, *self.entities, *(each.name for each in beside), *gone})
+        return self.reserved.union({WORLD, *self.entities, *(item.name for item in beside), *gone})
 
     @property
     def state(self) -> Element | None:
@@ -202,8 +202,8 @@ class WorldText:
         found: list[Model | Light | Include] = [*self._written.models, *self._written.lights, *self._written.includes]
         if state is not None:
             found += [*state.insertions.models, *state.insertions.lights]
-        for each in sorted(found, key=lambda each: 0 if each.element is None else each.element.offset):
-            entity = self._entity(each)
+        for item in sorted(found, key=lambda item: 0 if item.element is None else item.element.offset):
+            entity = self._entity(item)
             if entity is not None and entity.name not in seen and entity.name not in gone:
                 seen.add(entity.name)
                 yield entity.name, entity

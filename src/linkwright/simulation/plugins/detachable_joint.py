@@ -111,7 +111,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
 
     def _attach(self) -> None:
         simulation = self.simulation
-        parent, child = (simulation.link_pose(each) for each in (self._parent, self._child))
+        parent, child = (simulation.link_pose(item) for item in (self._parent, self._child))
         simulation.scene.weld(self._parent, self._child, compose(invert(parent), child))
         self._renew()
         self._publish_state(attached=True)

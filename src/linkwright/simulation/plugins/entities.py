@@ -97,7 +97,7 @@ class Entities:
         """
         name, frame = self.model(state.name), self.frame(state.reference_frame)
         self._simulation.set_model_pose(name, compose(frame, transform_in(state.pose)))
-        linear, angular = (rotate(frame[3:], numbers(each)) for each in (state.twist.linear, state.twist.angular))
+        linear, angular = (rotate(frame[3:], numbers(item)) for item in (state.twist.linear, state.twist.angular))
         self._simulation.set_model_velocity(name, linear, angular)
 
     def answer_get(self, service: str, request: Any, response: Any, log: Callable[[Phrase], object]) -> Any:

@@ -36,7 +36,7 @@ class SpeedLimits:
 
     def limiter(self, kind: str) -> SpeedLimiter:
         """The limiter of one kind of velocity, ``linear`` or ``angular``."""
-        return SpeedLimiter(*(self._bounds(kind, each) for each in ("velocity", "acceleration", "jerk")))
+        return SpeedLimiter(*(self._bounds(kind, item) for item in ("velocity", "acceleration", "jerk")))
 
     def _bounds(self, kind: str, derivative: str) -> tuple[float, float]:
         special = (getattr(self, f"{side}_{kind}_{derivative}") for side in ("min", "max"))

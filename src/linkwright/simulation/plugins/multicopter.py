@@ -215,7 +215,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         model, data = simulation.model, simulation.data
         body = simulation.body(self._body)
         root = int(model.body_rootid[body])
-        parts = [each for each in range(model.nbody) if int(model.body_rootid[each]) == root]
+        parts = [index for index in range(model.nbody) if int(model.body_rootid[index]) == root]
         masses = model.body_mass[parts]
         centre = masses @ data.xipos[parts] / masses.sum()
         total = np.zeros((3, 3))
@@ -285,7 +285,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
 def _attitude(turn: Array, acceleration: Array) -> Array:
     """The axes of a body whose thrust gives an acceleration, and whose heading stays."""
     up = -acceleration / max(float(np.linalg.norm(acceleration)), 1e-9)
-    ahead = next((each for each in turn.T if np.sum(np.cross(each, up) ** 2) >= _PARALLEL), turn[:, 0])
+    ahead = next((item for item in turn.T if np.sum(np.cross(item, up) ** 2) >= _PARALLEL), turn[:, 0])
     left = np.cross(up, ahead)
     left /= np.linalg.norm(left)
     return np.column_stack((np.cross(left, up), left, up))

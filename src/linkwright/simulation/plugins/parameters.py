@@ -121,7 +121,7 @@ def _truth(text: str) -> bool:
 
 
 def _vector(text: str) -> Vector3:
-    x, y, z = (float(each) for each in text.split())
+    x, y, z = (float(item) for item in text.split())
     return x, y, z
 
 

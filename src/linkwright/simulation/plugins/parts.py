@@ -86,9 +86,9 @@ def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, plac
             (PartKind.COLLISION, link.collisions),
             (PartKind.SENSOR, link.sensors),
         ):
-            for each in fixed:
-                pose = frames.in_link(each.pose, link.name)
-                yield Part(kind, f"{name}{SEPARATOR}{each.name}", name, partial(_same, pose))
+            for item in fixed:
+                pose = frames.in_link(item.pose, link.name)
+                yield Part(kind, f"{name}{SEPARATOR}{item.name}", name, partial(_same, pose))
     for inner in model.models:
         name, inside = f"{path}{SEPARATOR}{inner.name}", frames.inside(inner.name)
         first = next((link.name for link in inner.links), "")

@@ -245,15 +245,15 @@ class SimulatedPlugin(Generic[P]):
     def _found(self, name: str, known: Collection[str], code: str) -> str:
         """Find a name as it is, below the model, or below one of the nested models."""
         begin = f"{self.place.path}{SEPARATOR}" if self.place.path else ""
-        mine = [each for each in known if each.startswith(begin)]
+        mine = [name for name in known if name.startswith(begin)]
         for candidate in (f"{begin}{name}", name):
             if candidate in mine:
                 return candidate
-        ending = [each for each in mine if each.endswith(f"{SEPARATOR}{name}")]
+        ending = [item for item in mine if item.endswith(f"{SEPARATOR}{name}")]
         if len(ending) == 1:
             return ending[0]
         element = self.place.element
-        names = [each.removeprefix(begin) for each in mine]
+        names = [item.removeprefix(begin) for item in mine]
         if code == "SIM133":
             message = phrase("plugin '{plugin}': there is no link '{name}'", plugin=self.place.name, name=name)
         else:

@@ -56,7 +56,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             response.link_names = [begin + link.name for link in model.links]
             response.collision_names = [collision.name for link in model.links for collision in link.collisions]
             response.joint_names = [joint.name for joint in model.joints]
-            response.child_model_names = [each.name for each in model.models]
+            response.child_model_names = [nested.name for nested in model.models]
             response.is_static = model.static
             return "GetModelProperties: got properties"
 

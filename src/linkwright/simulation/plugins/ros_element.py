@@ -108,7 +108,7 @@ def _namespaces(element: Element | None) -> Iterator[str]:
     for inside in element.elements("ros"):
         yield from (element.text() for element in inside.elements("namespace"))
     for tag in ("robotNamespace", "robot_namespace"):
-        yield from (each.text() for each in element.elements(tag))
+        yield from (child.text() for child in element.elements(tag))
 
 
 def _as_name(name: str) -> str:

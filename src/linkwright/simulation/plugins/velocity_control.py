@@ -64,5 +64,5 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         if self._wanted is None:
             return
         turn = self.simulation.model_pose(self.place.path)[3:]
-        linear, angular = (rotate(turn, each) for each in self._wanted)
+        linear, angular = (rotate(turn, item) for item in self._wanted)
         self.simulation.set_model_velocity(self.place.path, linear, angular)

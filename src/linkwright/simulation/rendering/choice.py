@@ -28,9 +28,9 @@ def make_renderer(simulation: Simulation, way: str = "") -> Renderer:
         return _made(simulation, way)
     asked = os.environ.get("MUJOCO_GL", "").lower()
     ways = (asked, *WAYS) if asked in BACKENDS else WAYS[2:] if asked in ("off", "disable", "disabled") else WAYS
-    for each in ways:
+    for item in ways:
         try:
-            return _made(simulation, each)
+            return _made(simulation, item)
         except Exception:  # noqa: BLE001, PERF203, S112 - a missing library fails in many ways
             continue
     raise AssertionError("MuJoCo's rays need nothing, and never fail")

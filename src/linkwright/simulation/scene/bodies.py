@@ -233,7 +233,7 @@ def _worked_out(link: Link, frames: Frames) -> Inertial | None:
 def _colour(visual: Visual, usual: Color) -> list[float]:
     material = visual.material
     red, green, blue, alpha = (material.diffuse if material is not None else None) or usual
-    return [min(max(each, 0.0), 1.0) for each in (red, green, blue, alpha * (1.0 - visual.transparency))]
+    return [min(max(value, 0.0), 1.0) for value in (red, green, blue, alpha * (1.0 - visual.transparency))]
 
 
 def set_first(element: Any, name: str, value: float) -> None:
@@ -249,5 +249,5 @@ def hinge_anchors(placed: PlacedJoint, distance: float) -> list[Vector3]:
     """Two points on the axis of a joint, in the world, which hold it where nothing turns about another axis."""
     x, y, z = placed.pose[:3]
     _, direction = placed.axes[0]
-    dx, dy, dz = (distance * each for each in rotate(placed.pose[3:], direction))
+    dx, dy, dz = (distance * value for value in rotate(placed.pose[3:], direction))
     return [(x, y, z), (x + dx, y + dy, z + dz)]

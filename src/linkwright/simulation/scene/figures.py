@@ -175,7 +175,7 @@ def _first_matrix(skin: Element) -> Any:
     source = next((element for element in skin.elements("source") if element.attributes.get("id") == wanted), None)
     array = None if source is None else source.first("float_array")
     try:
-        numbers = [float(each) for each in array.text().split()[:_NUMBERS_OF_A_MATRIX]] if array is not None else []
+        numbers = [float(item) for item in array.text().split()[:_NUMBERS_OF_A_MATRIX]] if array is not None else []
     except ValueError:
         return None
     if len(numbers) < _NUMBERS_OF_A_MATRIX or not np.isfinite(numbers).all():

@@ -359,7 +359,7 @@ class Scene:
         models = {model_of(parent), model_of(child)}
         if len(models) > 1:
             links = ([held.link for held in self.models[model].structure.links] for model in sorted(models))
-            touching = ([link.name for link in each if link.link.collisions] for each in links)
+            touching = ([link.name for link in item if link.link.collisions] for item in links)
             for number, (one, other) in enumerate(product(*touching)):
                 self.spec.add_exclude(name=f"{name}{number}", bodyname1=one, bodyname2=other)
 

@@ -38,7 +38,7 @@ def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any |
     kinds = load_mujoco().mjtGeom
     match shape:
         case Box(size) if min(size) > 0:
-            kind, sizes = kinds.mjGEOM_BOX, [each / 2 for each in size]
+            kind, sizes = kinds.mjGEOM_BOX, [value / 2 for value in size]
         case Sphere(radius) if radius > 0:
             kind, sizes = kinds.mjGEOM_SPHERE, [radius, 0, 0]
         case Cylinder(radius, length) if radius > 0 and length > 0:

@@ -120,7 +120,7 @@ def _within(path: str, name: str) -> str:
 
 def _direction(axis: Vector3) -> Vector3:
     """Return the direction of an axis: z by default, as in libsdformat; `check` reports that."""
-    return axis if sum(each * each for each in axis) > _LEAST**2 else (0.0, 0.0, 1.0)
+    return axis if sum(value * value for value in axis) > _LEAST**2 else (0.0, 0.0, 1.0)
 
 
 def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Structure:

@@ -77,7 +77,7 @@ def _sheet(side: Array, count: int) -> Triangles:
 def _rings(rings: Sequence[tuple[float, float, float]]) -> Triangles:
     """Solids of revolution about z: radius, height and texture row of each ring, from the top."""
     turns = np.linspace(0.0, 2 * pi, _AROUND + 1)
-    radius, height, down = (np.repeat(each, _AROUND + 1) for each in np.array(rings).T)
+    radius, height, down = (np.repeat(item, _AROUND + 1) for item in np.array(rings).T)
     turn = np.tile(turns, len(rings))
     positions = np.stack([radius * np.sin(turn), radius * np.cos(turn), height], axis=1)
     return _woven(positions, np.stack([turn / (2 * pi), down], axis=1), _AROUND)

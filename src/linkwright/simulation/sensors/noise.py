@@ -89,7 +89,7 @@ class VectorNoise:
     """
 
     def __init__(self, noise: NoiseXyz, generator: np.random.Generator) -> None:
-        self._sources = [NoiseSource(each, generator) for each in (noise.x, noise.y, noise.z)]
+        self._sources = [NoiseSource(part, generator) for part in (noise.x, noise.y, noise.z)]
         self.variances: Array = np.array([source.variance for source in self._sources])
         """The squares of the standard deviations: shape (3,)."""
         self.covariance: Array = np.diag(self.variances).ravel()

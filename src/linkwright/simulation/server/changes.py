@@ -58,7 +58,7 @@ class Changes:
 
     def with_all(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
         """These changes, with all unchanged models replaced where they are."""
-        others = {*self.gone, *(each.name for each in self.renewed)}
+        others = {*self.gone, *(change.name for change in self.renewed)}
         poses = {name: self.moved.get(name, each.pose) for name, each in running.items() if name not in others}
         rest = (
             Coming(running[name].model, name, pose, namespaces.get(name, ""), here=name not in self.moved)
@@ -131,7 +131,7 @@ def check(world: World, simulation: Simulation, coming: Sequence[Coming], finder
         LinkwrightError: SIM104, SIM105, SIM140 they cannot.
     """
     models = {model.name: model.model for model in simulation.scene.models.values()}
-    count_links((models | {each.name: each.model for each in coming}).values())
+    count_links((models | {change.name: change.model for change in coming}).values())
     trial = simulation.beside(replace(world, models=(), states=()), finder)
     come_into(trial, coming)
     return trial.scene.diagnostics
@@ -144,7 +144,7 @@ def come_into(simulation: Simulation, coming: Sequence[Coming]) -> None:
         LinkwrightError: SIM102 there is a model of such a name; SIM104, SIM105, SIM140 one cannot be simulated.
     """
     came: list[str] = []
-    by_name = {each.name: each for each in coming}
+    by_name = {change.name: change for change in coming}
     try:
         for name in simulation.scene.in_order(list(by_name)):
             each = by_name[name]

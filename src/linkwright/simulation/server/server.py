@@ -190,11 +190,11 @@ class SimulationServer:
             changes = changes.with_all(simulation.scene.models, self._namespaces)
         changes = changes.with_connected(simulation.scene.models, self._namespaces)
         allow(check(wanted, simulation, (*changes.renewed, *changes.new), finder))
-        renewed = tuple(replace(each, motion=motion_of(simulation, each.name)) for each in changes.renewed)
+        renewed = tuple(replace(change, motion=motion_of(simulation, change.name)) for change in changes.renewed)
         simulation.set_world(world, finder)
         simulation.place(changes.moved)
         self._exchange(changes.gone, (*renewed, *changes.new))
-        self.report(overlaps(simulation, {*changes.moved, *(each.name for each in changes.new)}))
+        self.report(overlaps(simulation, {*changes.moved, *(change.name for change in changes.new)}))
         self._of_world = {model.name for model in wanted.models}
         if not alike(before.plugins, wanted.plugins):
             self._end(self._plugins.pop(_WORLD, []))
@@ -205,8 +205,8 @@ class SimulationServer:
         simulation = self.simulation
         count = len(simulation.scene.diagnostics)
         before: dict[str, list[SimulatedPlugin[object]]] = {}
-        gone, coming = tuple(gone), (*coming, *self._hanging_on({*gone, *(each.name for each in coming)}))
-        leaving = {*gone, *(each.name for each in coming)}
+        gone, coming = tuple(gone), (*coming, *self._hanging_on({*gone, *(change.name for change in coming)}))
+        leaving = {*gone, *(change.name for change in coming)}
         for name in [name for name in reversed(simulation.scene.models) if name in leaving]:
             before[name] = self._plugins.pop(name, [])
             self._end(before[name])
@@ -214,21 +214,21 @@ class SimulationServer:
         self._forget_findings(leaving)
         if coming:
             come_into(simulation, coming)
-        for each in coming:
-            if each.motion is not None:
-                resume(simulation, each.name, each.motion, here=each.here)
+        for change in coming:
+            if change.motion is not None:
+                resume(simulation, change.name, change.motion, here=change.here)
         self.report(simulation.scene.diagnostics[count:])
-        for each in coming:
-            self._namespaces[each.name] = each.namespace
-            places = of_model(simulation.world, each.model, each.name)
-            continues = each.here and each.motion is not None
-            self._load(each.name, places, each.namespace, before[each.name] if continues else ())
+        for change in coming:
+            self._namespaces[change.name] = change.namespace
+            places = of_model(simulation.world, change.model, change.name)
+            continues = change.here and change.motion is not None
+            self._load(change.name, places, change.namespace, before[change.name] if continues else ())
         self._changed()
 
     def _hanging_on(self, names: Collection[str]) -> Iterator[Coming]:
         """The models connected to others by joints of the world, to be added again where they are."""
         models = self.simulation.scene.models
-        for name in {each: None for one in names & models.keys() for each in self.simulation.scene.hanging_on(one)}:
+        for name in {item: None for one in names & models.keys() for item in self.simulation.scene.hanging_on(one)}:
             if name not in names:
                 motion = motion_of(self.simulation, name)
                 scene_model, namespace = models[name], self._namespaces.get(name, "")
@@ -314,7 +314,7 @@ class SimulationServer:
                     unknown |= dict.fromkeys(_kinds(place))
                 else:
                     self._begin(owner, found, place, namespace, before)
-        new = [each for each in unknown if each not in self._logged]
+        new = [name for name in unknown if name not in self._logged]
         self._logged.update(new)
         if new:
             names = joined(new)

@@ -189,7 +189,7 @@ class Services:
         def push() -> str:
             link = self._entities.link(request.link_name)
             turn = self._entities.frame(request.reference_frame)[3:]
-            force, torque = (rotate(turn, numbers(each)) for each in (request.wrench.force, request.wrench.torque))
+            force, torque = (rotate(turn, numbers(item)) for item in (request.wrench.force, request.wrench.torque))
             duration = request.duration.nanoseconds
             start = request.start_time.nanoseconds
             begin = max(start, self._server.simulation.time)

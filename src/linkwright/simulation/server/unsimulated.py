@@ -23,7 +23,7 @@ def unsimulated(world: World) -> list[str]:
 
 def unsimulated_in(model: Model) -> list[str]:
     """The elements of a model that are not simulated."""
-    elements = (each.element for each in (model, *_inside(model)))
+    elements = (part.element for part in (model, *_inside(model)))
     return _named(element for element in elements if element is not None)
 
 

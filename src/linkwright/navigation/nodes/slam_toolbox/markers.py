@@ -24,8 +24,8 @@ def graph_markers(graph: PoseGraph, frame: str, stamp: Any) -> Any:
     for number, (shape, size, colour, where) in enumerate(
         (
             (kind.SPHERE_LIST, _BALL, (1.0, 0.0, 0.0), points),
-            (kind.LINE_LIST, _LINE, (0.0, 0.0, 1.0), [points[each] for each in chain.from_iterable(in_a_row)]),
-            (kind.LINE_LIST, _LINE, (0.0, 0.8, 0.0), [points[each] for each in chain.from_iterable(others)]),
+            (kind.LINE_LIST, _LINE, (0.0, 0.0, 1.0), [points[index] for index in chain.from_iterable(in_a_row)]),
+            (kind.LINE_LIST, _LINE, (0.0, 0.8, 0.0), [points[index] for index in chain.from_iterable(others)]),
         )
     ):
         marker = kind()

@@ -323,7 +323,7 @@ class Toolbox:
         self._look()
         if self._stamp_ns is None or not self.settings.transform_period:
             return
-        x, y, yaw = (float(each) for each in self._map_to_odom)
+        x, y, yaw = (float(value) for value in self._map_to_odom)
         pose: Transform = (x, y, 0.0, *quaternion_from_rpy((0.0, 0.0, yaw)))
         settings, stamp_ns = self.settings, self._stamp_ns + self.settings.transform_timeout_ns
         batch = TransformBatch((settings.map_frame,), (settings.odom_frame,), stamp_ns, np.array([pose]))

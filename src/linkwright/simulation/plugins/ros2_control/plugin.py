@@ -90,7 +90,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         self._loaded = False
         node.get_logger().info("Loading controller_manager")
         topics = dict.fromkeys(
-            node.handle.resolve_topic_name(each) for each in ("robot_description", "~/robot_description")
+            node.handle.resolve_topic_name(item) for item in ("robot_description", "~/robot_description")
         )
         for topic in topics:
             self._manager_node.subscribe("std_msgs/msg/String", topic, self._on_description, DESCRIPTION_QOS)

@@ -85,7 +85,7 @@ def _in_order(network: Network) -> list[nn.Conv2d]:
     """The convolutions in the order of the computation."""
     found: list[nn.Conv2d] = []
     layers = [module for module in network.modules() if isinstance(module, nn.Conv2d)]
-    hooks = [each.register_forward_hook(lambda layer, _, __: found.append(layer)) for each in layers]
+    hooks = [module.register_forward_hook(lambda layer, _, __: found.append(layer)) for module in layers]
     with torch.no_grad():
         network(torch.zeros(1, 3, 32, 32, device=layers[0].weight.device))
     for hook in hooks:

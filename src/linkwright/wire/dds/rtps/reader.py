@@ -69,7 +69,7 @@ class _Writer:
     def start_at(self, number: int) -> None:
         if number > self.low:
             self.low = number
-            self.later = {each for each in self.later if each >= number}
+            self.later = {value for value in self.later if value >= number}
             self.incomplete = {each: part for each, part in self.incomplete.items() if each >= number}
         self.close_up()
 
