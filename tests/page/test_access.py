@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.page.access import Gate, security_headers
-from linkwright.page.kept_tokens import new_token
+from linkwright.page.port_tokens import new_token
 
 
 @pytest.fixture

@@ -25,10 +25,10 @@ def text(*parts: str) -> str:
     return f'<sdf version="1.7"><world name="test">{GROUND}{"".join(parts)}</world></sdf>'
 
 
-async def load(it, tmp_path, *parts: str, message: str = "", **flags: bool):
+async def load(it, tmp_path, *parts: str, content: str = "", **flags: bool):
     """Load another text for the file of the world."""
     resource = get_message("simulation_interfaces/msg/Resource")
-    world = resource(uri=str(tmp_path / "a.world"), resource_string=message or text(*parts))
+    world = resource(uri=str(tmp_path / "a.world"), resource_string=content or text(*parts))
     return await it.ask("simulation_interfaces/srv/LoadWorld", "/load_world", world_resource=world, **flags)
 
 
@@ -152,7 +152,7 @@ async def test_plugins_of_what_has_not_changed_run_on_and_those_of_others_restar
 
 
 @pytest.mark.parametrize(
-    ("expected", "result", "message"),
+    ("content", "result", "message"),
     [
         ("<sdf", 103, "a.world:1:1: "),
         (text(box("one", "0 0 what 0 0 0")), 103, "a.world:1:"),
@@ -163,7 +163,7 @@ async def test_plugins_of_what_has_not_changed_run_on_and_those_of_others_restar
         (text("<includ/>"), 106, "<includ> in <world> is not read"),
     ],
 )
-async def test_a_world_that_cannot_be_had_changes_nothing(tmp_path, expected, result, message):
+async def test_a_world_that_cannot_be_had_changes_nothing(tmp_path, content, result, message):
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as it:
         simulation = it.simulator.server.simulation
         xml = f'<sdf version="1.7">{box("spawned", "0 0 0 0 0 0")}</sdf>'
@@ -171,7 +171,7 @@ async def test_a_world_that_cannot_be_had_changes_nothing(tmp_path, expected, re
         await steps(it, 100)
         simulation.refresh()
         before = simulation.world, simulation.revision, simulation.data.qpos.tolist(), simulation.data.qvel.tolist()
-        answer = await load(it, tmp_path, said=expected, fail_on_unsupported_element=True)
+        answer = await load(it, tmp_path, content=content, fail_on_unsupported_element=True)
         assert answer.result.result == result
         assert message in answer.result.error_message
         simulation.refresh()

@@ -19,7 +19,7 @@ _PROGRESS_STEP = 1000
 
 
 @dataclass(frozen=True, slots=True)
-class KeptTopic:
+class SavedTopic:
     """The type and quality of service of a topic in memory.
 
     Attributes:
@@ -32,7 +32,7 @@ class KeptTopic:
 
 
 def save_messages(
-    path: Path, topics: Mapping[str, KeptTopic], messages: Sequence[Recorded], on_progress: Callable[[float], object]
+    path: Path, topics: Mapping[str, SavedTopic], messages: Sequence[Recorded], on_progress: Callable[[float], object]
 ) -> None:
     """Write messages into a new recording.
 

@@ -52,12 +52,12 @@ class TopicSelection:
     @property
     def is_empty(self) -> bool:
         """Whether it selects nothing at all."""
-        return not (self._takes_what_comes or self.names or self.services)
+        return not (self._accepts_unnamed or self.names or self.services)
 
     @property
     def is_complete_with(self) -> frozenset[str] | None:
         """The topics after which discovery may stop; None where new ones may always match."""
-        return None if self._takes_what_comes else self.named
+        return None if self._accepts_unnamed else self.named
 
     @property
     def named(self) -> frozenset[str]:
@@ -65,7 +65,7 @@ class TopicSelection:
         return frozenset((*self.names, *(name + EVENT_TOPIC_SUFFIX for name in self.services)))
 
     @property
-    def _takes_what_comes(self) -> bool:
+    def _accepts_unnamed(self) -> bool:
         return bool(self.everything or self.every_service or self.types or self.pattern)
 
     def takes(self, name: str, type_name: str) -> bool:

@@ -83,7 +83,7 @@ class Network:
         if reason:
             message = phrase("{network} cannot be joined", network=self.label)
             raise LinkwrightError(Diagnostic("CLI454", message, notes=(Note(reason),)))
-        graph = Graph(on_log=log, on_namesakes=_nobody_minds)
+        graph = Graph(on_log=log, on_namesakes=_ignore_names)
         transport = kind.open(self.domain_id, bridge_id, graph.get_logger(self.kind))
         graph.attach(transport)
         side = Side(self.label, graph, transport, bridge_id, needs_hashes=kind.needs_hashes)
@@ -117,5 +117,5 @@ def read_network(text: str) -> Network:
     return Network(kind, settings({**os.environ, "ROS_DOMAIN_ID": domain} if colon else None).domain_id)
 
 
-def _nobody_minds(_names: frozenset[str]) -> None:
+def _ignore_names(_names: frozenset[str]) -> None:
     """Nodes of a bridge have the names of others by intent."""

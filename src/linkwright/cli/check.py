@@ -21,7 +21,7 @@ from linkwright.diagnostics import (
     phrase,
     print_diagnostics,
 )
-from linkwright.diagnostics.alike import alike_together
+from linkwright.diagnostics.alike import group_similar
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
 from linkwright.diagnostics.translation import localized
 from linkwright.loading.lean_dataclasses import dataclass, field
@@ -318,7 +318,7 @@ def _print_diff(paths: Sequence[Path], words: _Words, *, unsafe: bool) -> int:
 def _print(found: Sequence[Diagnostic], form: str, *, everything: bool) -> None:
     if form == "text":
         with suppress(OSError):  # as with `print_message`
-            print_diagnostics(found if everything else alike_together(found), sys.stderr)
+            print_diagnostics(found if everything else group_similar(found), sys.stderr)
     else:
         sys.stdout.write(format_diagnostics(found, form))
 

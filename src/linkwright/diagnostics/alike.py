@@ -13,7 +13,7 @@ _PLACES = 2
 """So many places are named besides the first."""
 
 
-def alike_together(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+def group_similar(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Return the diagnostics for people: of similar ones only the first, with a count of the others.
 
     Alike are those of one code and severity whose messages differ in nothing but names and numbers.

@@ -33,7 +33,7 @@ _GIVEN_BY_USERS = "XAC214"
 _NO_LINK = "URDF150"
 _OF_WHOLE_ROBOTS = frozenset({_NO_LINK, "URDF152", "URDF160"})
 """Findings about missing elements that may be in the including file."""
-_ASIDE = lazy_pattern(
+_MINOR = lazy_pattern(
     r"tests?\d*|(.+[_-])?(old|bak|past|deprecated|discard(ed)?|(archived?|backups?)([_-].*)?)"
     r"|vendor(ed)?|(third|3rd)[_-]?party",
     re.IGNORECASE,
@@ -79,9 +79,9 @@ def reported(
     """
     if examined.file in targets.named:
         return examined.diagnostics
-    is_aside = _is_put_aside(examined.file, paths) or _is_generated(examined.file, targets.files)
+    is_minor = _is_in_minor_folder(examined.file, paths) or _is_generated(examined.file, targets.files)
     is_part = _is_unused_part(examined, others)
-    found = _without_those_of_source(examined, others, _of_a_folder(examined.diagnostics, is_aside=is_aside))
+    found = _without_those_of_source(examined, others, _of_a_folder(examined.diagnostics, is_minor=is_minor))
     return (diagnostic for diagnostic in found if not (is_part and diagnostic.code in _OF_WHOLE_ROBOTS))
 
 
@@ -90,7 +90,7 @@ def reported_of_package(found: Iterable[Diagnostic], paths: Sequence[Path]) -> I
     roots = [path.absolute() for path in paths]
     for diagnostic in found:
         is_error = diagnostic.severity is Severity.ERROR
-        if diagnostic.span is None or is_error or not _is_put_aside(Path(diagnostic.span.file), roots):
+        if diagnostic.span is None or is_error or not _is_in_minor_folder(Path(diagnostic.span.file), roots):
             yield diagnostic
 
 
@@ -106,7 +106,7 @@ def _package_of(file: Path) -> Path | None:
     return None if package is None else package[1]
 
 
-def _of_a_folder(found: Iterable[Diagnostic], *, is_aside: bool) -> Iterator[Diagnostic]:
+def _of_a_folder(found: Iterable[Diagnostic], *, is_minor: bool) -> Iterator[Diagnostic]:
     """Yield what matters in a file that was not named.
 
     Of tests and what is put aside, these are errors alone, and not that a package is not on this machine.
@@ -115,10 +115,10 @@ def _of_a_folder(found: Iterable[Diagnostic], *, is_aside: bool) -> Iterator[Dia
         if diagnostic.code == _GIVEN_BY_USERS:
             yield diagnostic.but(severity=Severity.INFO)
             continue
-        if is_aside and diagnostic.code == MISSING_PACKAGE:
+        if is_minor and diagnostic.code == MISSING_PACKAGE:
             continue
         is_info = diagnostic.severity is Severity.INFO
-        if diagnostic.severity is Severity.ERROR or not (is_aside or (is_info and diagnostic.code in _OF_NAMED_FILES)):
+        if diagnostic.severity is Severity.ERROR or not (is_minor or (is_info and diagnostic.code in _OF_NAMED_FILES)):
             yield diagnostic
 
 
@@ -146,10 +146,10 @@ def _is_unused_part(examined: Examined, others: Sequence[Examined]) -> bool:
     return any(other.parts is not None and other.parts[0] == folder and missing <= other.parts[1] for other in others)
 
 
-def _is_put_aside(file: Path, paths: Sequence[Path]) -> bool:
+def _is_in_minor_folder(file: Path, paths: Sequence[Path]) -> bool:
     """Return whether a file is in a folder of tests or discarded files, below the folder that is checked."""
     below = [file.relative_to(path).parts[:-1] for path in paths if file.is_relative_to(path)]
-    return any(_ASIDE.fullmatch(part) for parts in below for part in parts)
+    return any(_MINOR.fullmatch(part) for parts in below for part in parts)
 
 
 def _is_generated(file: Path, files: Sequence[Path]) -> bool:

@@ -163,7 +163,7 @@ class DescriptionFeature(PageFeature):
         self._answers[key] = task
         task.add_done_callback(lambda done: self._answers.pop(key) if self._answers.get(key) is done else None)
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Forget its questions."""
         for (asking, _), task in list(self._answers.items()):
             if asking is page:

@@ -38,7 +38,7 @@ class DisplaysFeature(PageFeature):
             else:
                 display.receive(message)
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Forget the panels of a page; images fit those of the others."""
         for display, sizes in list(self._sizes.items()):
             if sizes.pop(page, None) is not None:

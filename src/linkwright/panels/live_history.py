@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from linkwright.bag.history import History
     from linkwright.bag.moments import Recorded
     from linkwright.bag.playback import Playback
-    from linkwright.bag.saving import KeptTopic
+    from linkwright.bag.saving import SavedTopic
     from linkwright.diagnostics import LinkwrightError
     from linkwright.graph import Subscription
     from linkwright.rviz.context import ViewerContext
@@ -120,18 +120,18 @@ class LiveHistory:
         # A turn of the loop later: listeners to the time jump drop the past data first, then the present is shown.
         asyncio.get_running_loop().call_soon(self._show_present)
 
-    def topics(self) -> dict[str, KeptTopic]:
+    def topics(self) -> dict[str, SavedTopic]:
         """Return the topics whose messages are stored, with the profiles of their present publishers."""
-        from linkwright.bag.saving import KeptTopic
+        from linkwright.bag.saving import SavedTopic
 
         graph = self._context.node.graph
         found = {}
         for name, keeper in list(self._recorded.items()):
             offered = [endpoint.qos_profile for endpoint in graph.get_publishers_info_by_topic(name)]
-            found[name] = KeptTopic(keeper.type_name, tuple(offered or [keeper.qos_profile]))
+            found[name] = SavedTopic(keeper.type_name, tuple(offered or [keeper.qos_profile]))
         return found
 
-    def part(self, topics: Mapping[str, KeptTopic], start_ns: int, end_ns: int, *, simulated: bool) -> list[Recorded]:
+    def part(self, topics: Mapping[str, SavedTopic], start_ns: int, end_ns: int, *, simulated: bool) -> list[Recorded]:
         """Return the stored messages between two times, with those that its beginning needs, as in a recording.
 
         Args:
@@ -276,5 +276,5 @@ class LiveHistory:
         self.changed()
 
 
-def _is_latched(topic: KeptTopic) -> bool:
+def _is_latched(topic: SavedTopic) -> bool:
     return all(profile.durability is DurabilityPolicy.TRANSIENT_LOCAL for profile in topic.offered)

@@ -89,7 +89,7 @@ class OnDemandFeatures(PageFeature):
             if feature.refuses_recordings:
                 self._create(feature)
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Stop watching after the last page."""
         if self._listening and len(self.context.pages) == 0:
             self._stop()

@@ -54,7 +54,7 @@ class PageFeature:
     """Handles some of the messages of pages.
 
     A feature must cost nothing while no page uses it: keep what a page subscribed to per page, and drop it in
-    `page_gone`.
+    `page_closed`.
 
     Args:
         viewer: the viewer that it belongs to.
@@ -105,7 +105,7 @@ class PageFeature:
     def receive(self, page: Page, message: Any) -> None:
         """Handle a request, a message of one of its classes."""
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Handle the end of a page."""
 
     def keep_unsaved(self) -> list[Diagnostic]:

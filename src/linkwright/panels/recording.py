@@ -32,7 +32,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from linkwright.bag import BagWriter, Recorder
-    from linkwright.bag.saving import KeptTopic
+    from linkwright.bag.saving import SavedTopic
     from linkwright.graph.time.clock import JumpHandle
     from linkwright.panels.live_history import LiveHistory
 
@@ -170,7 +170,7 @@ class RecordingFeature(PageFeature):
         self._publish_later()
 
     async def _write(
-        self, live: LiveHistory, topics: dict[str, KeptTopic], path: Path, start_ns: int, end_ns: int
+        self, live: LiveHistory, topics: dict[str, SavedTopic], path: Path, start_ns: int, end_ns: int
     ) -> None:
         from linkwright.bag.saving import save_messages
 

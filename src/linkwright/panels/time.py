@@ -72,9 +72,9 @@ class TimeFeature(PageFeature):
                 self._watching.setdefault(page, None)
                 self._tick()
             else:
-                self.page_gone(page)
+                self.page_closed(page)
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Stop sending the page clocks."""
         self._watching.pop(page, None)
 

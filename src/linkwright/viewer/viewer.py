@@ -97,7 +97,7 @@ class Viewer:
         )
         config.options.set(("Fixed Frame",), frame.value)
         self._receivers: dict[type, Callable[[Page, Any], object]] = {}
-        self._audience = Audience(self._opening, self._receivers, self._page_gone, self._node.get_logger())
+        self._audience = Audience(self._opening, self._receivers, self._page_closed, self._node.get_logger())
         shared: dict[str, Any] = {"meshes": self._server.meshes, "downloads": self._server.downloads}
         if beside is not None:  # served content with ids that are unique among its viewers
             served = beside.context
@@ -282,9 +282,9 @@ class Viewer:
         """Return the messages of all features about a configuration."""
         return [message for feature in self._features for message in feature.configured(manager)]
 
-    def _page_gone(self, page: Page) -> None:
+    def _page_closed(self, page: Page) -> None:
         for feature in self._features:
-            feature.page_gone(page)
+            feature.page_closed(page)
         self.managers.leave(page)
 
     # --- what happens to managers ------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from __future__ import annotations
 from linkwright.loading.lean_typing import Any, TypeAlias
 from linkwright.xacro.limits import LONG
 from linkwright.xmltree import Comment, Document, Element, Node, Text
-from linkwright.xmltree.nodes import KeptText
+from linkwright.xmltree.nodes import CachedText
 
 PREFIX = "xacro:"
 _DECLARATION = "xmlns:xacro"
@@ -51,7 +51,7 @@ class Run:
         self.height = height
 
 
-class Plan(KeptText):
+class Plan(CachedText):
     """The plan of one element.
 
     Attributes:

@@ -121,7 +121,7 @@ class Element:
         return self.source.span(*found) if found else self.span()
 
 
-class KeptText:
+class CachedText:
     """The text that an element was written as, kept for the next time.
 
     Attributes:

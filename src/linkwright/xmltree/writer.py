@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.xmltree.nodes import Comment, Document, Element, KeptText, LazyCopy, Node, ProcessingInstruction, Text
+from linkwright.xmltree.nodes import CachedText, Comment, Document, Element, LazyCopy, Node, ProcessingInstruction, Text
 
 _INDENT = "  "
 _DEEPEST = 3_000
@@ -117,7 +117,7 @@ def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None], indent: str 
 def _text_of_original(copy: LazyCopy, indent: str) -> str:
     """The text of a copy that was never accessed."""
     cache, original = copy.plan, copy.original
-    if isinstance(cache, KeptText) and cache.written is not None and cache.written[0] == indent:
+    if isinstance(cache, CachedText) and cache.written is not None and cache.written[0] == indent:
         return cache.written[1]
     while isinstance(original, LazyCopy) and original.original is not None:
         original = original.original
@@ -125,7 +125,7 @@ def _text_of_original(copy: LazyCopy, indent: str) -> str:
     pieces: list[str] = []
     _write_nodes([original], pieces.append, indent)
     text = "".join(pieces)
-    if isinstance(cache, KeptText):
+    if isinstance(cache, CachedText):
         cache.written = (indent, text)
     return text
 

@@ -14,7 +14,7 @@ from linkwright.sdf.cameras import Camera, Clip, Distortion, ImageFormat, Intrin
 from linkwright.sdf.optics import Optics, distorted, optics_of, undistorted
 from linkwright.simulation.rendering import opengl
 from linkwright.simulation.rendering.choice import WAYS, make_renderer
-from linkwright.simulation.rendering.renderer import Wanted
+from linkwright.simulation.rendering.renderer import Channels
 from linkwright.simulation.simulation import Simulation
 from tests.simulation.sensors.rooms import block
 from tests.simulation.worlds import model, simulated
@@ -52,7 +52,7 @@ def make(request: pytest.FixtureRequest):
 
 def test_walls_are_as_far_as_they_are(make):
     simulation = simulated(block("wall", "3.5 0 0 0 0 0", "1 20 20"), block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5"))
-    depth = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.DEPTH).depth
+    depth = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
     assert depth.shape == (120, 160)
     assert depth.dtype == np.float32
     assert depth[60, 60] == pytest.approx(1.75, abs=1e-3)
@@ -62,9 +62,9 @@ def test_walls_are_as_far_as_they_are(make):
 def test_distances_are_the_same_with_colours_and_without(make):
     simulation = simulated(FLOOR, block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5", colour="1 0 0 1"))
     renderer, optics, pose = make(simulation), optics_of(CAMERA), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    both = renderer.render(optics, pose, Wanted.DEPTH | Wanted.COLOUR)
-    alone = renderer.render(optics, pose, Wanted.DEPTH)
-    again = renderer.render(optics, pose, Wanted.DEPTH | Wanted.COLOUR)
+    both = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOUR)
+    alone = renderer.render(optics, pose, Channels.DEPTH)
+    again = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOUR)
     assert (alone.depth == both.depth).all()
     assert alone.colour is None
     assert (again.colour == both.colour).all()
@@ -73,7 +73,7 @@ def test_distances_are_the_same_with_colours_and_without(make):
 def test_the_floor_goes_on_to_the_horizon(make):
     pose = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     optics = optics_of(CAMERA)
-    depth = make(simulated(FLOOR)).render(optics, pose, Wanted.DEPTH).depth
+    depth = make(simulated(FLOOR)).render(optics, pose, Channels.DEPTH).depth
     rows = np.arange(65, 120)
     expected = optics.fy / (rows + 0.5 - optics.cy)
     assert depth[65:, 80] == pytest.approx(expected, abs=1e-3)
@@ -83,28 +83,28 @@ def test_the_floor_goes_on_to_the_horizon(make):
 def test_the_floor_is_where_it_is_whatever_shines_on_it(make):
     pose, optics = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), optics_of(CAMERA)
     lamp = '<light name="lamp" type="point"><pose>3 0 2 0 0 0</pose><diffuse>1 1 1 1</diffuse></light>'
-    under_the_sun = make(simulated(FLOOR)).render(optics, pose, Wanted.DEPTH | Wanted.GEOMS)
-    under_a_lamp = make(simulated(FLOOR, lamp)).render(optics, pose, Wanted.DEPTH | Wanted.GEOMS)
+    under_the_sun = make(simulated(FLOOR)).render(optics, pose, Channels.DEPTH | Channels.GEOMS)
+    under_a_lamp = make(simulated(FLOOR, lamp)).render(optics, pose, Channels.DEPTH | Channels.GEOMS)
     assert under_a_lamp.depth[65:] == pytest.approx(under_the_sun.depth[65:], abs=1e-3)
     assert (under_a_lamp.geoms[65:] == under_the_sun.geoms[65:]).all()
 
 
 def test_a_floor_is_not_seen_from_below(make):
-    rendered = make(simulated(FLOOR)).render(optics_of(CAMERA), (0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0), Wanted.DEPTH)
+    rendered = make(simulated(FLOOR)).render(optics_of(CAMERA), (0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0), Channels.DEPTH)
     assert np.isinf(rendered.depth).all()
 
 
 @pytest.mark.parametrize("place", ["2 2.2 0", "2 -2.2 0", "2 0 1.7", "2 0 -1.7"])
 def test_what_reaches_into_the_image_is_seen(make, place):
     simulation = simulated(block("thing", f"{place} 0 0 0", "0.9 0.9 0.9"))
-    geoms = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.GEOMS).geoms
+    geoms = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.GEOMS).geoms
     assert (geoms >= 0).any()
 
 
 def test_what_is_too_near_or_too_far_is_not_seen(make):
     simulation = simulated(block("near", "0.3 0.1 0 0 0 0", "0.1 0.1 0.1"), block("far", "60 0 0 0 0 0", "1 90 90"))
     optics = optics_of(CAMERA, near=0.5)
-    rendered = make(simulation).render(optics, IDENTITY, Wanted.DEPTH | Wanted.COLOUR)
+    rendered = make(simulation).render(optics, IDENTITY, Channels.DEPTH | Channels.COLOUR)
     assert np.isinf(rendered.depth).all()
     assert (rendered.colour == round(0.7 * 255)).all()
 
@@ -115,7 +115,7 @@ def test_colours_are_those_of_the_things(make):
         block("right", "2 -1 0 0 0 0", "0.1 1 1", colour="0 1 0 1"),
     )
     renderer = make(simulation)
-    colour = renderer.render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR).colour
+    colour = renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOUR).colour
     red, green = colour[60, 40].astype(int), colour[60, 120].astype(int)
     assert red[0] > 50
     assert red[1] == red[2] == 0
@@ -138,7 +138,7 @@ def test_meshes_wear_the_images_of_their_materials(make, tmp_path, kind, request
     image.save(tmp_path / "halves.png")
     simulation = simulated(PANEL.format(folder=tmp_path, kind=kind, image="halves.png"))
     assert not simulation.scene.diagnostics
-    colour = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR).colour.astype(int)
+    colour = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOUR).colour.astype(int)
     left, right = colour[60, 60], colour[60, 100]
     assert left[1] == right[1] == 0
     if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one colour a shape
@@ -185,7 +185,7 @@ def test_simple_shapes_wear_images(make, tmp_path, shape, distance, order, reque
     text = WEARING.format(shape=shape, image=tmp_path / "quarters.png")
     simulation = simulated(text)
     assert not simulation.scene.diagnostics
-    rendered = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR | Wanted.DEPTH)
+    rendered = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOUR | Channels.DEPTH)
     assert rendered.depth[60, 80] == pytest.approx(distance, abs=2e-3)
     if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one colour a shape
         red, green, blue = rendered.colour[60, 80].astype(int)
@@ -213,7 +213,7 @@ def test_things_are_where_a_pinhole_has_them(make, point):
     size = 0.2
     simulation = simulated(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
     optics = optics_of(CAMERA)
-    geoms = make(simulation).render(optics, IDENTITY, Wanted.GEOMS).geoms
+    geoms = make(simulation).render(optics, IDENTITY, Channels.GEOMS).geoms
     rows, columns = np.nonzero(geoms >= 0)
     assert len(rows) > 10
     focal = 160 / (2 * tan(pi / 4))
@@ -228,7 +228,7 @@ def test_a_lens_puts_things_where_its_formula_does(make):
     size, x, y, z = 0.2, 2.0, 1.2, 0.8
     simulation = simulated(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
     optics = optics_of(Camera(horizontal_fov=pi / 2, image=ImageFormat(160, 120), distortion=LENS))
-    geoms = make(simulation).render(optics, IDENTITY, Wanted.GEOMS).geoms
+    geoms = make(simulation).render(optics, IDENTITY, Channels.GEOMS).geoms
     rows, columns = np.nonzero(geoms >= 0)
     (middle,) = optics.project(np.array([[-y, -z, x]]))
     assert columns.mean() + 0.5 == pytest.approx(middle[0], abs=0.5)
@@ -248,7 +248,7 @@ def test_every_shape_is_seen_where_it_ends(make):
             '<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="visual">'
             f"<geometry>{shape}</geometry></visual></link></model>"
         )
-        depth = make(simulated(text)).render(optics_of(CAMERA), IDENTITY, Wanted.DEPTH).depth
+        depth = make(simulated(text)).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
         assert 1.4 < depth[60, 80] < 2.0, shape
         assert np.isinf(depth[0, 0]), shape
 
@@ -257,20 +257,20 @@ def test_models_that_come_and_move_are_seen(make):
     simulation = simulated(FLOOR)
     renderer, optics = make(simulation), optics_of(CAMERA)
     high = (0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 1.0)
-    assert np.isinf(renderer.render(optics, high, Wanted.DEPTH).depth[60, 80])
+    assert np.isinf(renderer.render(optics, high, Channels.DEPTH).depth[60, 80])
     geometry = "<geometry><box><size>1 1 1</size></box></geometry>"
     box = model(f'<model name="box"><link name="link"><visual name="v">{geometry}</visual></link></model>')
     simulation.spawn(box, "box", (3.0, 0.0, 5.0, 0.0, 0.0, 0.0, 1.0))
-    assert renderer.render(optics, high, Wanted.DEPTH).depth[60, 80] == pytest.approx(2.5, abs=1e-3)
+    assert renderer.render(optics, high, Channels.DEPTH).depth[60, 80] == pytest.approx(2.5, abs=1e-3)
     simulation.advance(10**9)
-    assert np.isinf(renderer.render(optics, high, Wanted.DEPTH).depth[60, 80])
+    assert np.isinf(renderer.render(optics, high, Channels.DEPTH).depth[60, 80])
 
 
 def test_a_camera_sees_out_of_its_own_housing(make):
     housing = "<geometry><box><size>0.06 0.06 0.06</size></box></geometry>"
     eye = f'<model name="eye"><link name="link"><visual name="v">{housing}</visual></link></model>'
     simulation = simulated(block("wall", "3 0 0 0 0 0", "1 20 20"), eye)
-    depth = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.DEPTH).depth
+    depth = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
     assert np.abs(depth - 2.5).max() < 1e-3
 
 
@@ -278,8 +278,8 @@ def test_all_ways_make_the_same_image(make):
     wall = block("wall", "4 0 1 0 0 0", "0.1 3 2", colour="0 0 1 1")
     simulation = simulated(FLOOR, block("box", "2 0.4 0.3 0 0 0.5", "0.5 0.5 0.6"), wall)
     pose, optics = (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0), optics_of(CAMERA)
-    exact = make_renderer(simulation, "mujoco").render(optics, pose, Wanted.COLOUR | Wanted.GEOMS)
-    other = make(simulation).render(optics, pose, Wanted.COLOUR | Wanted.GEOMS)
+    exact = make_renderer(simulation, "mujoco").render(optics, pose, Channels.COLOUR | Channels.GEOMS)
+    other = make(simulation).render(optics, pose, Channels.COLOUR | Channels.GEOMS)
     assert (exact.geoms != other.geoms).mean() < 0.01
     apart = np.abs(exact.colour.astype(int) - other.colour.astype(int)).max(axis=-1)
     assert np.median(apart) <= 3
@@ -306,10 +306,10 @@ def drawn(request: pytest.FixtureRequest):
 
         renderer = renderer_of(simulation, request.param)
         try:
-            renderer.render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR)
+            renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOUR)
             (query,) = GL.glGenQueries(1, np.zeros(1, np.uint32))
             GL.glBeginQuery(GL.GL_PRIMITIVES_GENERATED, query)
-            rendered = renderer.render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR | Wanted.DEPTH)
+            rendered = renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOUR | Channels.DEPTH)
             GL.glEndQuery(GL.GL_PRIMITIVES_GENERATED)
             return rendered, int(GL.glGetQueryObjectuiv(query, GL.GL_QUERY_RESULT))
         finally:
@@ -338,7 +338,7 @@ def test_a_lamp_lights_what_is_near(make):
         '<light name="lamp" type="point"><pose>1.5 1 0 0 0 0</pose><attenuation><range>9</range></attenuation></light>'
     )
     simulation = simulated(block("one", "2 1 0 0 0 0", "0.1 1 1"), block("other", "2 -1 0 0 0 0", "0.1 1 1"), lamp)
-    colour = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR).colour
+    colour = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOUR).colour
     assert colour[60, 40, 0] > colour[60, 120, 0] + 20
 
 
@@ -368,7 +368,7 @@ def test_what_rests_and_moves_again_is_where_it_is(make):
 
     def seen():
         """The world now, of a renderer that has seen it before and of one that has not."""
-        return tuple(each.render(optics, IDENTITY, Wanted.DEPTH).depth for each in (renderer, make(simulation)))
+        return tuple(each.render(optics, IDENTITY, Channels.DEPTH).depth for each in (renderer, make(simulation)))
 
     for place in (None, (2.5, -0.5, 0.3, 0.0, 0.0, 0.0, 1.0), (-2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)):
         if place is not None:
@@ -389,6 +389,6 @@ def test_a_box_that_rests_around_a_camera_hides_nothing_from_it(make):
     renderer, optics = make(simulation), optics_of(CAMERA)
     beside = (-2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
     for _ in range(3):
-        assert renderer.render(optics, IDENTITY, Wanted.DEPTH).depth[60, 80] == pytest.approx(3.0, abs=1e-3)
-        assert renderer.render(optics, beside, Wanted.DEPTH).depth[60, 80] == pytest.approx(1.97, abs=1e-3)
+        assert renderer.render(optics, IDENTITY, Channels.DEPTH).depth[60, 80] == pytest.approx(3.0, abs=1e-3)
+        assert renderer.render(optics, beside, Channels.DEPTH).depth[60, 80] == pytest.approx(1.97, abs=1e-3)
         simulation.advance(NANOSECONDS_PER_SECOND // 5)

@@ -8,7 +8,7 @@ import pytest
 from linkwright.sdf.optics import Optics
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.choice import make_renderer
-from linkwright.simulation.rendering.renderer import Wanted, axes_of
+from linkwright.simulation.rendering.renderer import Channels, axes_of
 from linkwright.vision.datasets.arranging import Shot, arrange
 from linkwright.vision.datasets.classes import objects_of, usual_rules
 from linkwright.vision.datasets.labels import box_of, label_image, mask_of, runs_of
@@ -36,7 +36,7 @@ def shots(stage, count):
 
 
 def labelled(stage, shot):
-    geoms = stage.renderer.render(shot.optics, shot.pose, Wanted.GEOMS).geoms
+    geoms = stage.renderer.render(shot.optics, shot.pose, Channels.GEOMS).geoms
     return label_image(stage, shot, geoms, OPTIONS.least_size, OPTIONS.least_visible), geoms
 
 
@@ -90,7 +90,7 @@ def test_whole_boxes_of_balls_are_those_of_their_outlines(stage):
 
 
 def is_covered(stage, shot, prop):
-    geoms = stage.renderer.render(shot.optics, shot.pose, Wanted.GEOMS).geoms
+    geoms = stage.renderer.render(shot.optics, shot.pose, Channels.GEOMS).geoms
     return not np.isin(geoms, prop.geoms).any()
 
 
@@ -106,7 +106,7 @@ def test_labels_are_those_of_another_renderer(stage):
     compared = 0
     for shot in shots(stage, 8):
         labels, _ = labelled(stage, shot)
-        geoms = other.render(shot.optics, shot.pose, Wanted.GEOMS).geoms
+        geoms = other.render(shot.optics, shot.pose, Channels.GEOMS).geoms
         boxes = [box_of(np.isin(geoms, prop.geoms)) for prop in shot.shown]
         for label in labels:
             if min(label.box[2] - label.box[0], label.box[3] - label.box[1]) >= 4:
@@ -168,7 +168,7 @@ def test_a_sign_counts_where_its_plate_is_seen(tmp_path, height, focal, ignored)
         stage.put(stage.props[0], np.zeros(3), np.eye(3))
         optics = Optics(320, 240, focal, focal, 160, 120, 0.03, 30.0)
         shot = Shot(optics, (-2.0, 0.0, height, 0.0, 0.0, 0.0, 1.0), (stage.props[0],), ())
-        geoms = stage.renderer.render(shot.optics, shot.pose, Wanted.GEOMS).geoms
+        geoms = stage.renderer.render(shot.optics, shot.pose, Channels.GEOMS).geoms
         (label,) = label_image(stage, shot, geoms, 12, 0.3)
     finally:
         stage.close()

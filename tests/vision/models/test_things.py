@@ -11,7 +11,7 @@ import pytest
 from linkwright.geometry.single import quaternion_from_rpy
 from linkwright.sdf.optics import Optics
 from linkwright.simulation.rendering.choice import make_renderer
-from linkwright.simulation.rendering.renderer import Wanted
+from linkwright.simulation.rendering.renderer import Channels
 from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation
 from linkwright.vision.detector import Limits
@@ -60,7 +60,7 @@ def look(playground, eye, model):
     x, y, z = simulation.data.geom_xpos[geoms].mean(axis=0) - eye
     turn = quaternion_from_rpy((0.0, atan2(-z, hypot(x, y)), atan2(y, x)))
     optics = Optics(WIDTH, HEIGHT, FOCAL, FOCAL, WIDTH / 2, HEIGHT / 2, 0.05, 30.0)
-    image = renderer.render(optics, (*eye, *turn), Wanted.COLOUR | Wanted.GEOMS)
+    image = renderer.render(optics, (*eye, *turn), Channels.COLOUR | Channels.GEOMS)
     rows, columns = np.nonzero(np.isin(image.geoms, geoms))
     return image.colour, np.array([[columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]], np.float32)
 

@@ -280,11 +280,11 @@ def test_what_was_learnt_until_ctrl_c_is_kept(shapes, tmp_path):
         if epoch.number == 2:
             raise KeyboardInterrupt
 
-    taught = teach(options(shapes, tmp_path), stop_after_two)
-    assert taught.interrupted
-    assert taught.network.is_file()
-    assert "2 of 4" in taught.card.read_text(encoding="utf-8")
-    assert tuple(each.name for each in taught.examinations[0].figures.classes) == NAMES
+    result = teach(options(shapes, tmp_path), stop_after_two)
+    assert result.interrupted
+    assert result.network.is_file()
+    assert "2 of 4" in result.card.read_text(encoding="utf-8")
+    assert tuple(each.name for each in result.examinations[0].figures.classes) == NAMES
 
 
 @pytest.mark.parametrize("shape", [(8, 16, 3, 3), (48, 16, 1, 1)])

@@ -173,15 +173,15 @@ def obstacle_at(certificates) -> Callable[..., str]:
     return ask
 
 
-def test_certificates_that_do_not_fit(logged):
-    assert not logged()
-    assert "the certificate of tls/localhost" in logged(authority="other")
-    assert "is refused here: " in logged(authority="other")
-    assert "not valid for '127.0.0.1'" in logged("127.0.0.1")
-    assert "other.pem': " in logged(certificate="other", key="other")
-    assert "refuses the certificate" in logged(certificate="other", key="other")
-    assert "are not a certificate and its key in PEM" in logged(key="other")
-    assert "missing-key.pem' cannot be read: No such file" in logged(key="missing")
+def test_certificates_that_do_not_fit(obstacle_at):
+    assert not obstacle_at()
+    assert "the certificate of tls/localhost" in obstacle_at(authority="other")
+    assert "is refused here: " in obstacle_at(authority="other")
+    assert "not valid for '127.0.0.1'" in obstacle_at("127.0.0.1")
+    assert "other.pem': " in obstacle_at(certificate="other", key="other")
+    assert "refuses the certificate" in obstacle_at(certificate="other", key="other")
+    assert "are not a certificate and its key in PEM" in obstacle_at(key="other")
+    assert "missing-key.pem' cannot be read: No such file" in obstacle_at(key="missing")
 
 
 def test_who_speaks_no_tls_and_who_does(certificates, silent_port):

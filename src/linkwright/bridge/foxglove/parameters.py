@@ -38,7 +38,7 @@ class Parameters:
                 by_node[node] = [*(by_node.get(node) or ()), parameter]
         else:
             by_node = dict.fromkeys(self._nodes())
-        self._forget_the_gone()
+        self._remove_closed()
         found = await asyncio.gather(*(self._of(node, wanted) for node, wanted in by_node.items()))
         return [
             parameter for parameters in found for parameter in parameters if self._filter.accepts(parameter["name"])
@@ -68,7 +68,7 @@ class Parameters:
         }
         return sorted(services - {own})
 
-    def _forget_the_gone(self) -> None:
+    def _remove_closed(self) -> None:
         for node in self._clients.keys() - set(self._nodes()):
             self._clients.pop(node).destroy()
 

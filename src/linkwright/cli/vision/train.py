@@ -105,13 +105,13 @@ def run(arguments: argparse.Namespace) -> int:
         held_out=tuple(arguments.held_out),
         command=shlex.join(["linkwright", *(word for word in sys.argv[1:] if word != "--resume")]),
     )
-    taught = teach(options, lambda epoch: _report(epoch, options.epochs))
-    for examination in taught.examinations:
+    result = teach(options, lambda epoch: _report(epoch, options.epochs))
+    for examination in result.examinations:
         print(f"{examination.title}: mAP50 {examination.figures.map50:.3f}, mAP50-95 {examination.figures.map:.3f}")
         print("\n".join(table(examination.figures)))
-    print(taught.network)
-    print(taught.card)
-    return INTERRUPTED if taught.interrupted else FINE
+    print(result.network)
+    print(result.card)
+    return INTERRUPTED if result.interrupted else FINE
 
 
 def _report(epoch: Epoch, last: int) -> None:

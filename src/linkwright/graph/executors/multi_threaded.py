@@ -45,16 +45,16 @@ class MultiThreadedExecutor(SpinningExecutor):
             )
         self._workers = Workers(num_threads, "executor", self._work.wake)
         self._faults: deque[BaseException] = deque()
-        self._goes_on = False
+        self._is_spinning = False
         self._admission = threading.Lock()
 
     def spin(self) -> None:
         """Run callbacks until the executor or the context is shut down."""
-        self._goes_on = True
+        self._is_spinning = True
         try:
             super().spin()
         finally:
-            self._goes_on = False
+            self._is_spinning = False
 
     def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
         """Run no further callbacks; wait for those that run, and for the threads to end.
@@ -104,7 +104,7 @@ class MultiThreadedExecutor(SpinningExecutor):
                 self._execute(item)
             except BaseException as fault:  # noqa: BLE001  # raised in the thread that spins
                 self._faults.append(fault)
-            item = self._next_of_worker() if self._goes_on else None
+            item = self._next_of_worker() if self._is_spinning else None
 
     def _next_of_worker(self) -> Any:
         while not (self._is_shutdown or self._faults) and self._context_ok():

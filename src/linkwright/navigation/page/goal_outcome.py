@@ -48,7 +48,7 @@ class GoalOutcomeFeature(PageFeature):
             ]
         return [self._sent]
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Stop listening after the last page."""
         if len(self.context.pages) == 0:
             self.close()

@@ -45,7 +45,7 @@ class EditingFeature(PageFeature):
         if self._worker is None:
             self._worker = asyncio.get_running_loop().create_task(self._work())
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Forget the previews of a page."""
         self._watching.discard(page)
         self._plans.pop(page, None)

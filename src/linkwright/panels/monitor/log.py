@@ -77,7 +77,7 @@ class LogFeature(PageFeature):
             self._readers[page] = _Reader(self._past)
         self._turn.ask()
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Forget the page; unsubscribe after the last one."""
         self._watching.discard(page)
         self._readers.pop(page, None)

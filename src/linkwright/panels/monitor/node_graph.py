@@ -20,13 +20,13 @@ class NodeGraphFeature(PageFeature):
     def receive(self, page: Page, message: WatchNodeGraph) -> None:
         """Start or stop sending the graph to a page."""
         if not message.watched:
-            self.page_gone(page)
+            self.page_closed(page)
             return
         self._sent[page] = current = node_graph(self.context.node.graph)
         page.send(current)
         self.context.graph_changes.watch(self._publish)
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Forget the page."""
         self._sent.pop(page, None)
         if not self._sent:

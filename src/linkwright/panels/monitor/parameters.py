@@ -254,7 +254,7 @@ class ParametersFeature(PageFeature):
         else:
             self._nodes[message.node].dump(page.send)
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Forget the page's requests."""
         if self._requests.pop(page, None) is not None:
             self._update_subscriptions()

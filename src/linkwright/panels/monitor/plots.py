@@ -236,7 +236,7 @@ class PlotsFeature(PageFeature):
             if message.topic is not None:
                 self._ask(page, message.topic)
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Forget the page's series."""
         self._stop_asking(page)
         self._watch(page, [], 0.0)
@@ -245,7 +245,7 @@ class PlotsFeature(PageFeature):
     def close(self) -> None:
         """End all subscriptions."""
         for page in {*self._pages, *self._questions}:
-            self.page_gone(page)
+            self.page_closed(page)
         self._turn.cancel()
         self._timeline.jumped.remove(self._jumped)
         if self._reading is not None:

@@ -30,12 +30,12 @@ class TeleopFeature(PageFeature):
             if pad is not None:
                 pad.drive(message)
             return
-        self.page_gone(page)
+        self.page_closed(page)
         if message.target is not None:
             self._pads[page] = _Pad(self.context.node, message.target, page.send)
             self.context.graph_changes.watch(self._review)
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Stop the robot that the page drives."""
         pad = self._pads.pop(page, None)
         if pad is not None:
@@ -46,7 +46,7 @@ class TeleopFeature(PageFeature):
     def close(self) -> None:
         """Stop all robots."""
         for page in tuple(self._pads):
-            self.page_gone(page)
+            self.page_closed(page)
 
     def _review(self) -> None:
         for pad in self._pads.values():

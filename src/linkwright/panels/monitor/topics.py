@@ -166,7 +166,7 @@ class TopicsFeature(PageFeature):
         if message.listed:
             self._send_lists()
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Forget the page's requests."""
         if self._requests.pop(page, None) is not None:
             self._update_subscriptions()

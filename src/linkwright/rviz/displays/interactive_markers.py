@@ -122,7 +122,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         if not namespace:
             self.set_status_row(_CLIENT, "error", phrase("Error connecting: empty namespace"))
             return
-        self._release = self.context.transforms.use(self._transforms_came)
+        self._release = self.context.transforms.use(self._transforms_received)
         events = ClientEvents(
             lambda markers: self._soon(partial(self._apply_all, markers)),
             lambda update: self._soon(partial(self._apply_update, update)),
@@ -248,7 +248,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         x, y, z, qx, qy, qz, qw = self.context.transforms.pose(reference, frame, 0).tolist()
         return x, y, z, qx, qy, qz, qw
 
-    def _transforms_came(self) -> None:
+    def _transforms_received(self) -> None:
         for name in list(self._unplaced):
             self._show(name)
 

@@ -111,7 +111,7 @@ class MarkerDisplay(StoredMarkersDisplay):
                 self._place_marker(identity, marker)
             self._show()
 
-    def transforms_came(self) -> None:
+    def transforms_received(self) -> None:
         """Place the markers that had no transform before."""
         if self._unplaced:
             for identity in list(self._unplaced):

@@ -169,7 +169,7 @@ class WorldDisplay(TopicDisplay):
         """Place the world again."""
         self._show_poses()
 
-    def transforms_came(self) -> None:
+    def transforms_received(self) -> None:
         """Place the world once the frames of its robots are known; from then on its poses lead."""
         own = self.context.transforms.own(WORLD)
         placed = self._placed[1] is not None if not self._leads else own is not None and own.parent is not None

@@ -89,7 +89,7 @@ class SimulationFeature(PageFeature):
         self._recorded = True
         self._stop()
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Release the models that the page moves, and unsubscribe after the last page."""
         self._drags.pop(page, None)
         if self._listening and len(self.context.pages) == 0:

@@ -23,7 +23,7 @@ from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.optics import Optics
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.lights import PlacedLight, lights_of
-from linkwright.simulation.rendering.renderer import Pixels, RenderedImage, Wanted, axes_of
+from linkwright.simulation.rendering.renderer import Channels, Pixels, RenderedImage, axes_of
 from linkwright.simulation.rendering.triangles import is_endless
 from linkwright.simulation.scene.bodies import COLLISION_GROUP, VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation
@@ -96,7 +96,7 @@ class OpenGlRenderer:
             self._gl.free()
             raise
 
-    def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> RenderedImage:
+    def render(self, optics: Optics, pose: Transform, channels: Channels) -> RenderedImage:
         """Render the current view of a camera."""
         self._gl.make_current()
         hole = optics.pinhole
@@ -104,8 +104,8 @@ class OpenGlRenderer:
         self._renew()
         self._make_room(hole)
         self._update(hole, pose)
-        colour, depth = self._draw(hole, wanted)
-        geoms = self._draw_geoms(hole) if Wanted.GEOMS in wanted else None
+        colour, depth = self._draw(hole, channels)
+        geoms = self._draw_geoms(hole) if Channels.GEOMS in channels else None
         if optics.is_pinhole:
             return RenderedImage(colour, depth, geoms)
         return RenderedImage(
@@ -259,12 +259,12 @@ class OpenGlRenderer:
             ambient = np.zeros(3)
             light.headlight = light.castshadow = 0
 
-    def _draw(self, hole: Optics, wanted: Wanted) -> tuple[Pixels | None, Pixels | None]:
-        if not wanted & (Wanted.COLOUR | Wanted.DEPTH):
+    def _draw(self, hole: Optics, channels: Channels) -> tuple[Pixels | None, Pixels | None]:
+        if not channels & (Channels.COLOUR | Channels.DEPTH):
             return None, None
         rect = self._mujoco.MjrRect(0, 0, hole.width, hole.height)
         colour: Pixels | None = None
-        if Wanted.COLOUR in wanted:
+        if Channels.COLOUR in channels:
             colour = np.empty((hole.height, hole.width, 3), np.uint8)
             self._mujoco.mjr_render(rect, self._scene, self._draw_context)
         else:
@@ -277,7 +277,7 @@ class OpenGlRenderer:
             for channel, shade in enumerate(np.round(background).astype(np.uint8)):
                 np.copyto(colour[:, :, channel], shade, where=nothing)  # a tenth of the time of all three at once
             colour = np.ascontiguousarray(colour[::-1])
-        if Wanted.DEPTH not in wanted:
+        if Channels.DEPTH not in channels:
             return colour, None
         near, far = np.float32(hole.near), np.float32(hole.far)
         raw *= far - near

@@ -14,7 +14,7 @@ from linkwright.sdf.optics import Optics
 from linkwright.simulation.rendering.lights import PlacedLight, lights_of
 from linkwright.simulation.rendering.movable import View
 from linkwright.simulation.rendering.ray_casters import Caster, Hits
-from linkwright.simulation.rendering.renderer import RenderedImage, Wanted, axes_of
+from linkwright.simulation.rendering.renderer import Channels, RenderedImage, axes_of
 from linkwright.simulation.simulation import Simulation
 
 _UNSET = (0.5, 0.5, 0.5, 1.0)
@@ -37,19 +37,19 @@ class RayRenderer:
         self._paints: tuple[Any, ...] = ()
         self._revision = -1
 
-    def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> RenderedImage:
+    def render(self, optics: Optics, pose: Transform, channels: Channels) -> RenderedImage:
         """Render the current view of a camera."""
         axes = axes_of(pose)
         origin, rays = np.array(pose[:3]), optics.directions(axes)
-        hits = self._caster.cast(View(optics, origin, axes, rays), normals=Wanted.COLOUR in wanted)
+        hits = self._caster.cast(View(optics, origin, axes, rays), normals=Channels.COLOUR in channels)
         unseen = ~((hits.distances >= optics.near) & (hits.distances <= optics.far))
         np.copyto(hits.distances, np.inf, where=unseen)
         np.copyto(hits.geoms, -1, where=unseen)
         shape = optics.height, optics.width
         return RenderedImage(
-            self._shaded(hits, origin, rays, axes[:, 2]).reshape(*shape, 3) if Wanted.COLOUR in wanted else None,
-            hits.distances.reshape(shape) if Wanted.DEPTH in wanted else None,
-            hits.geoms.reshape(shape) if Wanted.GEOMS in wanted else None,
+            self._shaded(hits, origin, rays, axes[:, 2]).reshape(*shape, 3) if Channels.COLOUR in channels else None,
+            hits.distances.reshape(shape) if Channels.DEPTH in channels else None,
+            hits.geoms.reshape(shape) if Channels.GEOMS in channels else None,
         )
 
     def close(self) -> None:

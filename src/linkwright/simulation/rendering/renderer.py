@@ -19,7 +19,7 @@ _INTO_LINK = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 """The axes of images in those of links: cameras look along x, with z up."""
 
 
-class Wanted(Flag):
+class Channels(Flag):
     """The requested parts of an image."""
 
     COLOUR = auto()
@@ -48,13 +48,13 @@ class Renderer(Protocol):
     way: Phrase
     """How it does so, for people."""
 
-    def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> RenderedImage:
+    def render(self, optics: Optics, pose: Transform, channels: Channels) -> RenderedImage:
         """Render the current view of a camera.
 
         Args:
             optics: how it projects.
             pose: where it is in the world; it looks along x, with z up.
-            wanted: the requested parts.
+            channels: the requested parts.
         """
 
     def close(self) -> None:

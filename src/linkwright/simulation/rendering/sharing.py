@@ -10,7 +10,7 @@ from linkwright.diagnostics import Phrase
 from linkwright.geometry.single import Transform
 from linkwright.sdf.optics import Optics
 from linkwright.simulation.rendering.choice import make_renderer
-from linkwright.simulation.rendering.renderer import RenderedImage, Renderer, Wanted
+from linkwright.simulation.rendering.renderer import Channels, RenderedImage, Renderer
 from linkwright.simulation.simulation import Simulation
 
 _shared: WeakKeyDictionary[Simulation, SharedRenderer] = WeakKeyDictionary()
@@ -27,7 +27,7 @@ class SharedRenderer:
         self._reported = False
 
     def render(
-        self, optics: Optics, pose: Transform, wanted: Wanted, report: Callable[[Phrase], object]
+        self, optics: Optics, pose: Transform, channels: Channels, report: Callable[[Phrase], object]
     ) -> RenderedImage:
         """Render the camera's current view; before the first image, call `report` with the kind of renderer."""
         if self._renderer is None or self._thread != threading.get_ident():
@@ -35,7 +35,7 @@ class SharedRenderer:
         if not self._reported:
             self._reported = True
             report(self._renderer.way)
-        return self._renderer.render(optics, pose, wanted)
+        return self._renderer.render(optics, pose, channels)
 
     def release(self) -> None:
         """Count one camera fewer; with the last one the renderer is closed."""

@@ -20,7 +20,7 @@ from linkwright.simulation.simulation import Simulation
 
 
 @dataclass(frozen=True, slots=True)
-class Coming:
+class AddedModel:
     """A model that is added.
 
     Attributes:
@@ -53,15 +53,15 @@ class Changes:
 
     gone: tuple[str, ...]
     moved: dict[str, Transform]
-    renewed: tuple[Coming, ...]
-    new: tuple[Coming, ...]
+    renewed: tuple[AddedModel, ...]
+    new: tuple[AddedModel, ...]
 
     def with_all(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
         """These changes, with all unchanged models replaced where they are."""
         others = {*self.gone, *(change.name for change in self.renewed)}
         poses = {name: self.moved.get(name, each.pose) for name, each in running.items() if name not in others}
         rest = (
-            Coming(running[name].model, name, pose, namespaces.get(name, ""), here=name not in self.moved)
+            AddedModel(running[name].model, name, pose, namespaces.get(name, ""), here=name not in self.moved)
             for name, pose in poses.items()
         )
         return replace(self, moved={}, renewed=(*self.renewed, *rest))
@@ -71,8 +71,8 @@ class Changes:
         connected = {name for model in running.values() if model.hangs_on for name in (model.name, *model.hangs_on)}
         again = {name: pose for name, pose in self.moved.items() if name in connected}
         moved = {name: pose for name, pose in self.moved.items() if name not in connected}
-        coming = (Coming(running[name].model, name, pose, namespaces.get(name, "")) for name, pose in again.items())
-        return replace(self, moved=moved, renewed=(*self.renewed, *coming))
+        added = (AddedModel(running[name].model, name, pose, namespaces.get(name, "")) for name, pose in again.items())
+        return replace(self, moved=moved, renewed=(*self.renewed, *added))
 
 
 def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collection[str]) -> Changes:
@@ -88,8 +88,8 @@ def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collectio
     """
     frames = Frames(world)
     moved: dict[str, Transform] = {}
-    renewed: list[Coming] = []
-    new: list[Coming] = []
+    renewed: list[AddedModel] = []
+    new: list[AddedModel] = []
     names: set[str] = set()
     for model in world.models:
         if model.name in names:
@@ -101,27 +101,29 @@ def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collectio
             raise _not_simulated(model.name, error) from error
         before = running.get(model.name)
         if before is None:
-            new.append(Coming(model, model.name, pose))
+            new.append(AddedModel(model, model.name, pose))
         elif model.name not in owned:
             span = None if model.element is None else model.element.span()
             message = phrase("there is already a model '{name}'", name=model.name)
             hint = phrase("it was put into the running simulation: delete it there, or give this one another name")
             raise LinkwrightError(Diagnostic("SIM102", message, span, hint=hint))
         elif before.is_outdated or not alike(_unplaced(before.model), _unplaced(model)):
-            renewed.append(Coming(model, model.name, pose, here=pose == before.pose))
+            renewed.append(AddedModel(model, model.name, pose, here=pose == before.pose))
         elif pose != before.pose:
             moved[model.name] = pose
     gone = tuple(name for name in running if name in owned and name not in names)
     return Changes(gone, moved, tuple(renewed), tuple(new))
 
 
-def check(world: World, simulation: Simulation, coming: Sequence[Coming], finder: ResourceFinder) -> list[Diagnostic]:
+def check(
+    world: World, simulation: Simulation, added: Sequence[AddedModel], finder: ResourceFinder
+) -> list[Diagnostic]:
     """Compile models in a world beside the running simulation, to find out whether they can be simulated.
 
     Args:
         world: the world; its own models are left out.
         simulation: the one that runs.
-        coming: the models.
+        added: the models.
         finder: where meshes are.
 
     Returns:
@@ -131,20 +133,20 @@ def check(world: World, simulation: Simulation, coming: Sequence[Coming], finder
         LinkwrightError: SIM104, SIM105, SIM140 they cannot.
     """
     models = {model.name: model.model for model in simulation.scene.models.values()}
-    count_links((models | {change.name: change.model for change in coming}).values())
+    count_links((models | {change.name: change.model for change in added}).values())
     trial = simulation.beside(replace(world, models=(), states=()), finder)
-    come_into(trial, coming)
+    add_models(trial, added)
     return trial.scene.diagnostics
 
 
-def come_into(simulation: Simulation, coming: Sequence[Coming]) -> None:
+def add_models(simulation: Simulation, added: Sequence[AddedModel]) -> None:
     """Add models to a simulation, all or none.
 
     Raises:
         LinkwrightError: SIM102 there is a model of such a name; SIM104, SIM105, SIM140 one cannot be simulated.
     """
     came: list[str] = []
-    by_name = {change.name: change for change in coming}
+    by_name = {change.name: change for change in added}
     try:
         for name in simulation.scene.in_order(list(by_name)):
             each = by_name[name]

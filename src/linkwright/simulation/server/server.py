@@ -37,7 +37,7 @@ from linkwright.simulation.plugins.registry import (
 )
 from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.scene.scene import SceneModel
-from linkwright.simulation.server.changes import Coming, changes_to, check, come_into, surroundings
+from linkwright.simulation.server.changes import AddedModel, add_models, changes_to, check, surroundings
 from linkwright.simulation.server.ground_contact import stand_up, touches_nothing
 from linkwright.simulation.server.motion import motion_of, resume
 from linkwright.simulation.server.overlaps import overlaps
@@ -148,7 +148,7 @@ class SimulationServer:
         """
         if name in self.simulation.scene.models:
             raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
-        self._exchange((), (Coming(model, name, pose, namespace),))
+        self._exchange((), (AddedModel(model, name, pose, namespace),))
         stand_up(self.simulation, name)
         self.report(overlaps(self.simulation, (name,)))
         self.report(touches_nothing(self.simulation, name), name)
@@ -166,9 +166,9 @@ class SimulationServer:
                 changed.
         """
         before = self._model(name)
-        coming = Coming(model, name, before.pose, self._namespaces.get(name, ""), here=True)
-        check(self.simulation.world, self.simulation, (coming,), self.simulation.finder)
-        self._exchange((), (replace(coming, motion=motion_of(self.simulation, name)),))
+        added = AddedModel(model, name, before.pose, self._namespaces.get(name, ""), here=True)
+        check(self.simulation.world, self.simulation, (added,), self.simulation.finder)
+        self._exchange((), (replace(added, motion=motion_of(self.simulation, name)),))
         self.report(touches_nothing(self.simulation, name), name)
 
     def load(self, world: World, finder: ResourceFinder, allow: Callable[[Sequence[Diagnostic]], object]) -> None:
@@ -200,39 +200,39 @@ class SimulationServer:
             self._end(self._plugins.pop(_WORLD, []))
             self._load(_WORLD, of_world(wanted, self._options.systems), "")
 
-    def _exchange(self, gone: Iterable[str], coming: Sequence[Coming]) -> None:
+    def _exchange(self, gone: Iterable[str], added: Sequence[AddedModel]) -> None:
         """Remove models and add others, those of the same name in their places; connected ones are replaced as well."""
         simulation = self.simulation
         count = len(simulation.scene.diagnostics)
         before: dict[str, list[SimulatedPlugin[object]]] = {}
-        gone, coming = tuple(gone), (*coming, *self._hanging_on({*gone, *(change.name for change in coming)}))
-        leaving = {*gone, *(change.name for change in coming)}
+        gone, added = tuple(gone), (*added, *self._hanging_on({*gone, *(change.name for change in added)}))
+        leaving = {*gone, *(change.name for change in added)}
         for name in [name for name in reversed(simulation.scene.models) if name in leaving]:
             before[name] = self._plugins.pop(name, [])
             self._end(before[name])
             simulation.delete(name)
         self._forget_findings(leaving)
-        if coming:
-            come_into(simulation, coming)
-        for change in coming:
+        if added:
+            add_models(simulation, added)
+        for change in added:
             if change.motion is not None:
                 resume(simulation, change.name, change.motion, here=change.here)
         self.report(simulation.scene.diagnostics[count:])
-        for change in coming:
+        for change in added:
             self._namespaces[change.name] = change.namespace
             places = of_model(simulation.world, change.model, change.name)
             continues = change.here and change.motion is not None
             self._load(change.name, places, change.namespace, before[change.name] if continues else ())
         self._changed()
 
-    def _hanging_on(self, names: Collection[str]) -> Iterator[Coming]:
+    def _hanging_on(self, names: Collection[str]) -> Iterator[AddedModel]:
         """The models connected to others by joints of the world, to be added again where they are."""
         models = self.simulation.scene.models
         for name in {item: None for one in names & models.keys() for item in self.simulation.scene.hanging_on(one)}:
             if name not in names:
                 motion = motion_of(self.simulation, name)
                 scene_model, namespace = models[name], self._namespaces.get(name, "")
-                yield Coming(scene_model.model, name, scene_model.pose, namespace, motion, here=True)
+                yield AddedModel(scene_model.model, name, scene_model.pose, namespace, motion, here=True)
 
     def delete(self, name: str) -> None:
         """Remove a model after its plugins have ended; models that were connected to it by joints stay.

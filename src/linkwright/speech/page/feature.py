@@ -84,17 +84,17 @@ class VoiceFeature(PageFeature):
         elif self._text_input is not None:
             self._text_input.publish(self._text_input.msg_type(data=message.text[:_LONGEST_TEXT]))
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """End the speech of a page."""
         self._cut.discard(page)
-        self._words.page_gone(page)
+        self._words.page_closed(page)
         self._talk(page, Talk("off"))
         self._watch(page, watched=False)
 
     def close(self) -> None:
         """Destroy the publishers and subscriptions."""
         for page in {*self._watchers, *self._budgets}:
-            self.page_gone(page)
+            self.page_closed(page)
 
     # --- sound -------------------------------------------------------------------------------------------------
 

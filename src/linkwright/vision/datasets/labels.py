@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.sdf.optics import Optics
-from linkwright.simulation.rendering.renderer import Pixels, Wanted, axes_of
+from linkwright.simulation.rendering.renderer import Channels, Pixels, axes_of
 from linkwright.vision.datasets.arranging import Shot
 from linkwright.vision.datasets.stage import Prop, Stage
 
@@ -123,7 +123,7 @@ def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box,
     width, height = max(int((right - left) * scale), 1), max(int((bottom - top) * scale), 1)
     middle = (optics.cx - left) * scale, (optics.cy - top) * scale
     part = Optics(width, height, optics.fx * scale, optics.fy * scale, *middle, optics.near, optics.far)
-    geoms = _alone(stage, prop, lambda: stage.renderer.render(part, shot.pose, Wanted.GEOMS).geoms)
+    geoms = _alone(stage, prop, lambda: stage.renderer.render(part, shot.pose, Channels.GEOMS).geoms)
     mask = np.isin(geoms, prop.geoms)
     box = box_of(mask)
     if box is None:

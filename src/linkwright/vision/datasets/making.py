@@ -13,7 +13,7 @@ import numpy as np
 from linkwright.diagnostics import Diagnostic, LinkwrightError, missing_extra, phrase
 from linkwright.packages import PackageFinder
 from linkwright.sdf.models import Model
-from linkwright.simulation.rendering.renderer import Wanted
+from linkwright.simulation.rendering.renderer import Channels
 from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation
 from linkwright.vision.datasets.arranging import arrange
@@ -123,7 +123,7 @@ class Studio:
             light(stage, generator)
         if "colours" not in options.kept:
             paint(stage, shot, generator)
-        image = stage.renderer.render(shot.optics, shot.pose, Wanted.COLOUR | Wanted.GEOMS)
+        image = stage.renderer.render(shot.optics, shot.pose, Channels.COLOUR | Channels.GEOMS)
         assert image.colour is not None
         assert image.geoms is not None
         labels = label_image(stage, shot, image.geoms, options.least_size, options.least_visible)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Taught:
+class TrainingResult:
     """The result of a training.
 
     Attributes:
@@ -39,7 +39,7 @@ class Taught:
     interrupted: bool
 
 
-def teach(options: Options, on_epoch: Callable[[Epoch], None]) -> Taught:
+def teach(options: Options, on_epoch: Callable[[Epoch], None]) -> TrainingResult:
     """Train a network, export it, evaluate the file, and write its card beside it.
 
     Args:
@@ -102,7 +102,7 @@ def teach(options: Options, on_epoch: Callable[[Epoch], None]) -> Taught:
         write_whole_file(text, card(options.name, facts, examinations))
     except OSError as error:
         raise _cannot_write(options.output, error) from None
-    return Taught(network, text, tuple(examinations), interrupted)
+    return TrainingResult(network, text, tuple(examinations), interrupted)
 
 
 def judge(model: str, folder: Path, split: str | None) -> Evaluation:

@@ -127,7 +127,7 @@ class TopicDisplay(DataDisplay, ABC):
     """Whether messages are rare, such as plans: if a publisher has sent none yet, that is not a warning."""
 
     FOLLOWS_TRANSFORMS: ClassVar[bool] = False
-    """Whether `transforms_came` is called although messages do not wait: the display places parts of them itself."""
+    """Whether `transforms_received` is called although no messages wait: the display places parts of them itself."""
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
@@ -160,7 +160,7 @@ class TopicDisplay(DataDisplay, ABC):
         """Forget all content: the topic or the Fixed Frame has changed, or time was reset."""
         self.forget()
 
-    def transforms_came(self) -> None:
+    def transforms_received(self) -> None:
         """Handle new transforms."""
         self._try_waiting()
 
@@ -262,7 +262,7 @@ class TopicDisplay(DataDisplay, ABC):
             )
             return
         if self.TRANSFORMED or self.FOLLOWS_TRANSFORMS:
-            self._release = self.context.transforms.use(self.transforms_came)
+            self._release = self.context.transforms.use(self.transforms_received)
         self._report_count()
 
     def _unsubscribe(self) -> None:

@@ -59,7 +59,7 @@ class ModellingFeature(PageFeature):
             self._available = self._is_available()
         return [self._state()]
 
-    def page_gone(self, page: Page) -> None:
+    def page_closed(self, page: Page) -> None:
         """Stop listening after the last page; edits stay."""
         if self._listening and len(self.context.pages) == 0:
             self._listening = False

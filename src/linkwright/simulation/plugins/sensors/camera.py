@@ -33,7 +33,7 @@ from linkwright.simulation.plugins.sensors.images import (
     fill_image,
     limited,
 )
-from linkwright.simulation.rendering.renderer import RenderedImage, Wanted
+from linkwright.simulation.rendering.renderer import Channels, RenderedImage
 from linkwright.simulation.rendering.sharing import shared_renderer
 
 P = TypeVar("P")
@@ -77,7 +77,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         """Release the renderer."""
         self._shared.release()
 
-    def see(self, camera: MountedCamera, wanted: Wanted) -> RenderedImage:
+    def see(self, camera: MountedCamera, wanted: Channels) -> RenderedImage:
         """Render the image of one of its cameras, with noise on the colours."""
         pose = compose(self.simulation.link_pose(self.sensor.link), camera.pose)
         rendered = self._shared.render(camera.optics, pose, wanted, self._log_renderer)
@@ -196,11 +196,11 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         for camera, image, info in zip(self.cameras, self._images, self._infos, strict=True):
             depth, depth_info, cloud = self._depths or (None, None, None)
             has_cloud = cloud is not None and cloud.is_wanted
-            wanted = Wanted(0)
+            wanted = Channels(0)
             if image.is_wanted or has_cloud:
-                wanted |= Wanted.COLOUR
+                wanted |= Channels.COLOUR
             if has_cloud or (depth is not None and depth.is_wanted):
-                wanted |= Wanted.DEPTH
+                wanted |= Channels.DEPTH
             rendered = self.see(camera, wanted) if wanted else RenderedImage(None, None, None)
             if image.is_wanted:
                 self.publish_image(image, camera, rendered, self._frame)
@@ -289,11 +289,11 @@ class GzCamera(CameraPlugin[NoParameters]):
     def measure(self) -> None:
         """Render an image, with the parts whose topics have subscriptions."""
         (camera, *_) = self.cameras
-        wanted = Wanted(0)
+        wanted = Channels(0)
         if any(output is not None and output.is_wanted for output in (self._image, self._cloud)):
-            wanted |= Wanted.COLOUR
+            wanted |= Channels.COLOUR
         if any(output is not None and output.is_wanted for output in (self._depth, self._cloud)):
-            wanted |= Wanted.DEPTH
+            wanted |= Channels.DEPTH
         rendered = self.see(camera, wanted) if wanted else RenderedImage(None, None, None)
         if self._image is not None and self._image.is_wanted:
             self.publish_image(self._image, camera, rendered, self._optical)

@@ -20,7 +20,7 @@ from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.sensors.camera import IMAGE, INFO, CameraPlugin, MountedCamera
 from linkwright.simulation.plugins.sensors.images import Pixels, fill_camera_info, fill_image
-from linkwright.simulation.rendering.renderer import Wanted
+from linkwright.simulation.rendering.renderer import Channels
 from linkwright.simulation.sensors.mount import GeomTable, part_of
 from linkwright.simulation.simulation import Simulation
 
@@ -146,7 +146,7 @@ class GzSegmentation(_LabellingCamera):
         self.publish_info(self._info, camera)
         if not (self._maps.is_wanted or self._coloured.is_wanted):
             return
-        geoms = self.see(camera, Wanted.GEOMS).geoms
+        geoms = self.see(camera, Channels.GEOMS).geoms
         labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)  # type: ignore[arg-type]  # asked for
         if camera.description.segmentation_type in ("instance", "panoptic"):
             high, low = (instances >> 8).astype(np.uint8), (instances & 0xFF).astype(np.uint8)
@@ -185,7 +185,7 @@ class GzBoxes(_LabellingCamera):
         self.publish_info(self._info, camera)
         if not (self._boxes.is_wanted or self._images.is_wanted):
             return
-        wanted = Wanted.GEOMS | (Wanted.COLOUR if self._images.is_wanted else Wanted(0))
+        wanted = Channels.GEOMS | (Channels.COLOUR if self._images.is_wanted else Channels(0))
         rendered = self.see(camera, wanted)
         boxes = list(self._outlines(rendered.geoms))
         if self._boxes.is_wanted:
