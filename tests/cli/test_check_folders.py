@@ -290,7 +290,7 @@ def test_wrong_usage(here, capsys, words, message):
 def test_a_missing_file_is_told(here, capsys):
     write(here, {"b.urdf": GOOD})
     assert main(["check", "c.urdf"]) == 1
-    assert "there are: b.urdf" in capsys.readouterr().err
+    assert "available: b.urdf" in capsys.readouterr().err
 
 
 def test_an_address_is_shown_as_it_was_typed(here, capsys):

@@ -52,18 +52,18 @@ def test_a_missing_file_has_a_hint_whatever_is_beside_it(tmp_path, monkeypatch):
     assert missing_file_hint(tmp_path / "a.urdf") == f"the current folder is '{tmp_path}'"
     (tmp_path / "robot.urdf").touch()
     (tmp_path / "notes.txt").touch()
-    assert missing_file_hint(tmp_path / "a.urdf") == "there are: robot.urdf"
+    assert missing_file_hint(tmp_path / "a.urdf") == "available: robot.urdf"
     assert missing_file_hint(tmp_path / "robto.urdf") == "did you mean 'robot.urdf'?"
     assert missing_file_hint(tmp_path / "robot.urfd") == "did you mean 'robot.urdf'?"
     assert missing_file_hint(tmp_path / "robto.udrf") == "did you mean 'robot.urdf'?"
-    assert missing_file_hint(tmp_path / "notes.urdf") == "there are: robot.urdf"
-    assert missing_file_hint(tmp_path / "x", lambda name: name.endswith(".txt")) == "there are: notes.txt"
+    assert missing_file_hint(tmp_path / "notes.urdf") == "available: robot.urdf"
+    assert missing_file_hint(tmp_path / "x", lambda name: name.endswith(".txt")) == "available: notes.txt"
 
 
 def test_a_longer_ending_may_be_meant(tmp_path):
     (tmp_path / "robot.urdf.xacro").touch()
     assert missing_file_hint(tmp_path / "robot.xacro") == "did you mean 'robot.urdf.xacro'?"
-    assert missing_file_hint(tmp_path / "robot.v2.xacro").startswith("there are: ")
+    assert missing_file_hint(tmp_path / "robot.v2.xacro").startswith("available: ")
 
 
 @pytest.mark.parametrize("address", ["https://example.org/r.urdf", "http://localhost/r.urdf"])

@@ -294,7 +294,7 @@ def test_where_a_model_is_known_or_was_renamed_what_is_missing_is_a_warning_and_
         assert isinstance(found, Missing)
         facts[address.split("/")[2]] = (found.severity.name, str(found.hint))
     assert facts == {
-        "box": ("WARNING", "there are: a.stl"),
+        "box": ("WARNING", "available: a.stl"),
         "old_box": ("WARNING", "the folder that holds 'meshes/a.stl' is called 'box'"),
         "far": ("INFO", "add the folder that holds 'far' to GZ_SIM_RESOURCE_PATH"),
     }

@@ -174,5 +174,5 @@ def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -
         return like
     there = [name for name in names if wanted(name)][:_LISTED]
     if there:
-        return phrase("there are: {names}", names=joined(there))
+        return phrase("available: {names}", names=joined(there))
     return phrase("the current folder is '{current}'", current=os.getcwd())  # noqa: PTH109 - as above

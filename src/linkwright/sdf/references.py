@@ -135,7 +135,7 @@ def _is_known(name: str, frames: Frames) -> bool:
 def _unknown(element: Element | None, attribute: str, name: str, frames: Frames) -> Diagnostic:
     message = phrase("'{attribute}' names '{name}', which does not exist", attribute=attribute, name=name)
     hint = did_you_mean(name, frames.named) or phrase(
-        "there are: {names}", names=joined([*frames.named][:8] or [MODEL])
+        "available: {names}", names=joined([*frames.named][:8] or [MODEL])
     )
     return _error("SDF141", message, element, attribute, hint)
 

@@ -380,5 +380,5 @@ def _no_file(path: Path) -> Missing:
         names = sorted(entry.name for entry in path.parent.iterdir() if _kind(entry) == kind)
         hint = did_you_mean(path.name, names)
         if names and hint is None:
-            hint = phrase("there are: {names}", names=joined(names[:8]))
+            hint = phrase("available: {names}", names=joined(names[:8]))
     return Missing(phrase("there is no '{path}'", path=str(path)), hint)

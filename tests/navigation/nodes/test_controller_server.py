@@ -177,7 +177,7 @@ async def test_an_empty_path_and_an_unknown_controller_are_refused(start, log):
     assert await goal.ends(1.0) == GoalStatus.ABORTED
     logged = [record.text for record in log]
     assert "Path is empty." in logged
-    assert "there is no controller 'Fast'; there are: FollowPath" in logged
+    assert "there is no controller 'Fast'; available: FollowPath" in logged
 
 
 async def test_what_has_no_effect_is_named(start, log):

@@ -327,7 +327,7 @@ def file_hint(path: Path, endings: Sequence[str]) -> Phrase:
     if near or not names:
         return near or phrase("put the file there, or correct the address")
     shown = names[:8] if len(names) <= 8 else [*names[:8], "..."]
-    return phrase("there are: {names}", names=joined(shown))
+    return phrase("available: {names}", names=joined(shown))
 
 
 def normal(path: Path) -> str:

@@ -306,7 +306,7 @@ def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
         return plugins[name]
     if not name and len(plugins) == 1:
         return next(iter(plugins.values()))
-    raise GoalError(code, f"there is no {what} '{name}'; there are: {', '.join(plugins)}")
+    raise GoalError(code, f"there is no {what} '{name}'; available: {', '.join(plugins)}")
 
 
 def _placed(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.float64]:

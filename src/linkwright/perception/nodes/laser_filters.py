@@ -139,7 +139,7 @@ def _filter(node: Node, prefix: str, tree: dict[str, Any]) -> ScanFilter:
         raise _wrong("NODE452", phrase("'{name}' is not given", name=f"{prefix}type"), None)
     entry = known.get(kind) or known.get(_PACKAGE + kind)
     if entry is None:
-        hint = did_you_mean(kind, known) or phrase("there are {known}", known=", ".join(sorted(known)))
+        hint = did_you_mean(kind, known) or phrase("available: {names}", names=", ".join(sorted(known)))
         raise _wrong("NODE451", phrase("there is no filter '{kind}' ({name})", kind=kind, name=f"{prefix}type"), hint)
     table = entry.load()
     hints = get_type_hints(table)
