@@ -78,9 +78,9 @@ class Metadata(MetadataHookInterface):
 
     def update(self, metadata: dict[str, Any]) -> None:
         """Complete the project's metadata."""
-        core = f"linkwright-core=={engine_build.version()}"
-        of_checkout = not (ROOT / "PKG-INFO").exists()
+        of_checkout = not (ROOT / "PKG-INFO").exists()  # a source distribution has that file
         if of_checkout and "LINKWRIGHT_PINNED_CORE" not in os.environ:
-            core = f"linkwright-core @ {CORE.as_uri()}"
-        metadata["dependencies"] = [core if name == "linkwright-core" else name for name in metadata["dependencies"]]
+            pinned = f"linkwright-core=={engine_build.version()}"
+            needed: list[str] = metadata["dependencies"]
+            needed[needed.index(pinned)] = f"linkwright-core @ {CORE.as_uri()}"
         metadata["readme"] = {"content-type": "text/markdown", "text": package_readme.package_readme()}

@@ -79,12 +79,19 @@ def test_versions_that_cannot_be_begun_are_refused(notes, version, reason):
 
 def test_a_version_is_begun_in_all_files_that_name_it(release, tmp_path):
     (tmp_path / "CHANGELOG.md").write_text(CHANGELOG, encoding="utf-8")
-    for file, text in ((release.VERSION, '__version__ = "0.2.0"\n'), (release.RECIPE, '  version: "0.2.0"\n')):
-        (tmp_path / file).parent.mkdir(parents=True)
+    texts = {
+        release.VERSION: '__version__ = "0.2.0"\n',
+        release.RECIPE: '  version: "0.2.0"\n',
+        release.PROJECT: 'dependencies = ["linkwright-core==0.2.0", "other==0.2.0"]\n',
+    }
+    for file, text in texts.items():
+        (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / file).write_text(text, encoding="utf-8")
     release.begin("0.3.0", tmp_path)
     assert release.read_version(tmp_path) == "0.3.0"
     assert (tmp_path / release.RECIPE).read_text(encoding="utf-8") == '  version: "0.3.0"\n'
+    needed = 'dependencies = ["linkwright-core==0.3.0", "other==0.2.0"]\n'
+    assert (tmp_path / release.PROJECT).read_text(encoding="utf-8") == needed
     assert "\n## [0.3.0] - 20" in (tmp_path / "CHANGELOG.md").read_text(encoding="utf-8")
 
 

@@ -33,6 +33,7 @@ SCRATCH = ROOT / ".build" / "release"
 RESULTS = ROOT / "dist"
 VERSION = Path("src", "linkwright", "_version.py")
 RECIPE = Path("packaging", "conda", "recipe.yaml")
+PROJECT = Path("pyproject.toml")
 _GENERATED = ("src/linkwright/page/built", "src/linkwright/standins/stubs")
 _NAMES = ("linkwright_core", "linkwright")
 """The two distributions as their files name them, the engine first."""
@@ -200,9 +201,9 @@ def begin(version: str, root: Path = ROOT) -> None:
     text = release_notes.begun(changelog.read_text(encoding="utf-8"), version, today, read_version(root))
     changelog.write_text(text, encoding="utf-8")
     before = read_version(root)
-    for file in (VERSION, RECIPE):
+    for file, named in ((VERSION, '"{}"'), (RECIPE, '"{}"'), (PROJECT, '"linkwright-core=={}"')):
         source = (root / file).read_text(encoding="utf-8")
-        (root / file).write_text(source.replace(f'"{before}"', f'"{version}"'), encoding="utf-8")
+        (root / file).write_text(source.replace(named.format(before), named.format(version)), encoding="utf-8")
 
 
 def _uv() -> str:

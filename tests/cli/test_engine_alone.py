@@ -6,9 +6,10 @@ import sys
 
 import pytest
 
+from linkwright import __version__
 from linkwright.cli import main
 from tests.places import REPOSITORY
-from tests.toml_files import read_toml
+from tests.toml_files import PROJECT, read_toml
 
 CONTRACT = "The engine imports nothing else; linkwright-core is made of its modules (core/engine_build.py)"
 
@@ -25,6 +26,10 @@ def test_each_room_is_in_the_engine_or_forbidden_to_it() -> None:
     package = REPOSITORY / "src" / "linkwright"
     found = {f"linkwright.{folder.parent.name}" for folder in package.glob("*/__init__.py")} - {"linkwright.cli"}
     assert found == {name for name in engine | others if not name.startswith("linkwright.cli.")}
+
+
+def test_linkwright_needs_the_engine_of_its_own_version() -> None:
+    assert f"linkwright-core=={__version__}" in PROJECT["dependencies"]
 
 
 @pytest.fixture
