@@ -43,7 +43,7 @@ class Peer:
 
 def ours(path: str, arguments: dict[str, str], packages: dict[str, str]) -> dict[str, str]:
     """Our answer, in the same form, with the code of an error."""
-    sources.kept.values.clear()
+    sources.cache.values.clear()
     try:
         return {"text": str(expand(path, arguments, packages=packages))}
     except LinkwrightError as error:

@@ -187,7 +187,7 @@ def _check_printable(error: LinkwrightError) -> None:
 def _save(path: Path, text: str) -> None:
     if _contents.get(path) != text:
         path.write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
-        sources.kept.values.clear()  # a file that changes twice in a tick of the clock would be taken for the old one
+        sources.cache.values.clear()  # a file that changes twice in a tick of the clock would be taken for the old one
         _contents[path] = text
 
 
