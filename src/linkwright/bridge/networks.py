@@ -40,8 +40,6 @@ class _Kind:
 
 def _open_dds(domain_id: int | None, bridge_id: str, logger: Logger) -> BackgroundTransport:
     settings = replace(read_dds_settings(domain_id=domain_id), enclave=f"{ENCLAVE}/{bridge_id}")
-    for warning in settings.warnings:
-        logger.warning(warning)
     return dds.DdsTransport(settings, logger, must_join=True)
 
 

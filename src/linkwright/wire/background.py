@@ -330,14 +330,8 @@ def log_alone(logger: Logger, reason: Phrase) -> None:
 AnyTransport = TypeVar("AnyTransport", bound=BackgroundTransport)
 
 
-class JoinOptions(TypedDict, total=False):
-    """How a graph is joined to others."""
-
-    domain_id: int | None
-    """Takes the place of ROS_DOMAIN_ID."""
-
-    environment: Mapping[str, str] | None
-    """The environment variables; those of the process when left out."""
+class TransportOptions(TypedDict, total=False):
+    """The options of a transport."""
 
     only_looks: bool
     """Whether the graph sees other processes and is not seen by them."""
@@ -346,10 +340,21 @@ class JoinOptions(TypedDict, total=False):
     """Whether the caller raises the transport's `problem`, which is not logged then."""
 
 
+class JoinOptions(TransportOptions, total=False):
+    """How a graph is joined to others."""
+
+    domain_id: int | None
+    """Takes the place of ROS_DOMAIN_ID."""
+
+    environment: Mapping[str, str] | None
+    """The environment variables; those of the process when left out."""
+
+
 def join_with(
     graph: Graph,
     name: str,
-    make: Callable[[Logger, JoinOptions], AnyTransport],
+    read_settings: Callable[..., Any],
+    make: Callable[..., AnyTransport],
     why_not: Callable[[Mapping[str, str] | None], Phrase],
     options: JoinOptions,
 ) -> AnyTransport | None:
@@ -358,9 +363,10 @@ def join_with(
     Args:
         graph: the graph.
         name: the logger that reports why there is none.
-        make: makes the transport; it may raise LinkwrightError.
+        read_settings: reads the settings of an environment and a domain; it may raise LinkwrightError.
+        make: makes the transport from them; it may raise LinkwrightError.
         why_not: gives the reason why an environment has no transport; empty where it has one.
-        options: handed to `make`.
+        options: how the graph is joined.
     """
     logger = graph.get_logger(name)
     environment = options.get("environment")
@@ -370,7 +376,9 @@ def join_with(
             log_alone(logger, reason)
         return None
     try:
-        transport = make(logger, options)
+        settings = read_settings(environment, domain_id=options.get("domain_id"))
+        looks, must_join = options.get("only_looks", False), options.get("must_join", False)
+        transport = make(settings, logger, only_looks=looks, must_join=must_join)
     except LinkwrightError as error:
         log_join_failure(logger, error)
         return None

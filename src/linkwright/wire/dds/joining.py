@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from linkwright.graph.computation_graph import Graph
-    from linkwright.graph.log.logger import Logger
 
 
 def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
@@ -48,12 +47,4 @@ def available(environment: Mapping[str, str] | None = None) -> bool:
 
 def join(graph: Graph, **options: Unpack[JoinOptions]) -> DdsTransport | None:
     """Have a graph seen by other processes over DDS, and see theirs; None where that cannot be."""
-    return join_with(graph, "dds", _make, why_not, options)
-
-
-def _make(logger: Logger, options: JoinOptions) -> DdsTransport:
-    settings = read_settings(options.get("environment"), domain_id=options.get("domain_id"))
-    for warning in settings.warnings:
-        logger.warning(warning)
-    looks, must_join = options.get("only_looks", False), options.get("must_join", False)
-    return DdsTransport(settings, logger, only_looks=looks, must_join=must_join)
+    return join_with(graph, "dds", read_settings, DdsTransport, why_not, options)

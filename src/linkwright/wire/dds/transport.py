@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import os
+from typing import TYPE_CHECKING
 
 from linkwright.graph.log.logger import Logger
-from linkwright.wire.background import BackgroundTransport
+from linkwright.wire.background import BackgroundTransport, TransportOptions
 from linkwright.wire.dds.departures import Departures
 from linkwright.wire.dds.local_sockets import other_processes
 from linkwright.wire.dds.remote import RemoteGraph
 from linkwright.wire.dds.settings import Range, Settings
 from linkwright.wire.engine import Engine
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 SETTLED_AFTER = 0.3
 """Seconds without news after which discovery counts as complete."""
@@ -25,19 +29,16 @@ class DdsTransport(BackgroundTransport):
     Args:
         settings: the domain and how to join it.
         logger: logs problems.
-        only_looks: see `BackgroundTransport`.
-        must_join: see `BackgroundTransport`.
+        options: see `BackgroundTransport`.
     """
 
-    def __init__(
-        self, settings: Settings, logger: Logger, *, only_looks: bool = False, must_join: bool = False
-    ) -> None:
+    def __init__(self, settings: Settings, logger: Logger, **options: Unpack[TransportOptions]) -> None:
+        for warning in settings.warnings:
+            logger.warning(warning)
         self._settings = settings
         self._remote = RemoteGraph()
         self._departures = Departures(self._remote)
-        super().__init__(
-            settings.domain_id, self._remote, self._departures, logger, only_looks=only_looks, must_join=must_join
-        )
+        super().__init__(settings.domain_id, self._remote, self._departures, logger, **options)
 
     def _make_engine(self) -> Engine:
         # Imported in the thread that joins because loading Cyclone takes 0.15 s.

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from linkwright.graph.computation_graph import Graph
-    from linkwright.graph.log.logger import Logger
 
 
 def is_installed() -> bool:
@@ -46,10 +45,4 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
 
 def join(graph: Graph, **options: Unpack[JoinOptions]) -> ZenohTransport | None:
     """Have a graph seen by other processes over Zenoh, and see theirs; None where that cannot be."""
-    return join_with(graph, "zenoh", _make, why_not, options)
-
-
-def _make(logger: Logger, options: JoinOptions) -> ZenohTransport:
-    settings = read_settings(options.get("environment"), domain_id=options.get("domain_id"))
-    looks, must_join = options.get("only_looks", False), options.get("must_join", False)
-    return ZenohTransport(settings, logger, only_looks=looks, must_join=must_join)
+    return join_with(graph, "zenoh", read_settings, ZenohTransport, why_not, options)

@@ -7,13 +7,15 @@ from threading import Event, Lock
 from typing import TYPE_CHECKING, cast
 
 from linkwright.graph.log.logger import Logger
-from linkwright.wire.background import BackgroundTransport
+from linkwright.wire.background import BackgroundTransport, TransportOptions
 from linkwright.wire.engine import Engine
 from linkwright.wire.zenoh.departures import Departures
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.settings import Settings
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from linkwright.wire.zenoh.engine import Engine as ZenohEngine
     from linkwright.wire.zenoh.opening import Patience
 
@@ -36,13 +38,10 @@ class ZenohTransport(BackgroundTransport):
     Args:
         settings: the domain and how to join it.
         logger: logs problems.
-        only_looks: see `BackgroundTransport`.
-        must_join: see `BackgroundTransport`.
+        options: see `BackgroundTransport`.
     """
 
-    def __init__(
-        self, settings: Settings, logger: Logger, *, only_looks: bool = False, must_join: bool = False
-    ) -> None:
+    def __init__(self, settings: Settings, logger: Logger, **options: Unpack[TransportOptions]) -> None:
         self._settings = settings
         self._remote = RemoteGraph()
         self._departures = Departures(self._remote)
@@ -52,9 +51,7 @@ class ZenohTransport(BackgroundTransport):
         self._looks = False
         self._looking = Lock()
         self._looked = Event()
-        super().__init__(
-            settings.domain_id, self._remote, self._departures, logger, only_looks=only_looks, must_join=must_join
-        )
+        super().__init__(settings.domain_id, self._remote, self._departures, logger, **options)
 
     def look_around(self) -> None:
         """Discover the graph outside: until then a client of a router hears only what its own endpoints need."""
