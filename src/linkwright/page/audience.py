@@ -18,17 +18,18 @@ from linkwright.page.protocol.message import (
     BadMessageError,
     PageMessage,
     ServerMessage,
+    address_of,
     decode,
     encode,
     redundancy_key,
 )
 from linkwright.page.protocol.session import ProgramIsLate, Received
-from linkwright.page.protocol.voice import SoundBlock, unpack_sound
 
 if TYPE_CHECKING:
     from aiohttp.web import Request, WebSocketResponse
 
     from linkwright.graph import Logger
+    from linkwright.page.protocol.voice import SoundBlock
 
 MAXIMUM_PAGES = 32
 """Most open pages; more are refused."""
@@ -234,7 +235,7 @@ class Audience(PageGroup):
 
     Args:
         opening: the first messages for a page, the full present state.
-        receivers: the receivers of pages' messages, by class; others are ignored.
+        receivers: the receivers of pages' messages, by the address of the class; others are ignored.
         gone: called when a page has closed.
         logger: logs messages outside of the protocol.
     """
@@ -242,7 +243,7 @@ class Audience(PageGroup):
     def __init__(
         self,
         opening: Callable[[Page], list[Payload]],
-        receivers: Mapping[type, Callable[[Page, Any], object]],
+        receivers: Mapping[str, Callable[[Page, Any], object]],
         gone: Callable[[Page], None],
         logger: Logger,
     ) -> None:
@@ -300,6 +301,8 @@ class Audience(PageGroup):
             if (pause := pace.wait()) > 0:
                 await asyncio.sleep(pause)
             if message.type is web.WSMsgType.BINARY:
+                from linkwright.page.protocol.voice import unpack_sound
+
                 sound = unpack_sound(message.data)
                 if sound is None:
                     await socket.close(code=1003, message=b"pages send text, and sound in blocks")
@@ -321,7 +324,7 @@ class Audience(PageGroup):
                     self._hand_on(page, decoded)
 
     def _hand_on(self, page: Page, message: PageMessage | SoundBlock) -> None:
-        receive = self._receivers.get(type(message))
+        receive = self._receivers.get(address_of(type(message)))
         if receive is None:
             return
         try:

@@ -15,7 +15,7 @@ from typing import Any
 from linkwright.graph import Logger
 from linkwright.loading.extensions import extensions
 from linkwright.page.audience import Page
-from linkwright.page.protocol.message import ServerMessage, tag_of
+from linkwright.page.protocol.message import ServerMessage, address_of, define_later, tag_of
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 GROUP = "linkwright.page_features_on_demand"
@@ -28,17 +28,22 @@ class OnDemand:
 
     Attributes:
         feature: its class, as ``module:class``.
-        receives: the classes of messages that it handles.
+        receives: the classes of messages that it handles, as ``module:class``: a module is imported with the first.
         topics: the topics whose publishers make it necessary.
         until: the message that pages receive while the feature does not exist.
         refuses_recordings: whether it must exist beside a recording that is shown, to refuse requests.
     """
 
     feature: str
-    receives: tuple[type, ...] = ()
+    receives: tuple[str, ...] = ()
     topics: tuple[str, ...] = ()
     until: ServerMessage | None = None
     refuses_recordings: bool = False
+
+
+def messages(module: str, *names: str) -> tuple[str, ...]:
+    """Return the addresses of classes of messages that a module defines."""
+    return tuple(f"{module}:{name}" for name in names)
 
 
 def _declared(logger: Logger) -> Iterator[OnDemand]:
@@ -61,12 +66,14 @@ class OnDemandFeatures(PageFeature):
         super().__init__(viewer)
         self._declared = tuple(_declared(self.context.node.get_logger()))
         self._by_message = {message: feature for feature in self._declared for message in feature.receives}
+        for message in self._by_message:
+            define_later(message)
         self._asleep = {topic: feature for feature in self._declared for topic in feature.topics}
         self._created: set[OnDemand] = set()
         self._listening = False
 
     @property
-    def receives(self) -> tuple[type, ...]:
+    def receives(self) -> tuple[str, ...]:
         """The messages of all features that are not created yet."""
         return tuple(self._by_message)
 
@@ -81,7 +88,7 @@ class OnDemandFeatures(PageFeature):
 
     def receive(self, page: Page, message: Any) -> None:
         """Create the feature that handles the message, and forward it."""
-        self._create(self._by_message[type(message)]).receive(page, message)
+        self._create(self._by_message[address_of(type(message))]).receive(page, message)
 
     def recording_shown(self) -> None:
         """Create the features that refuse requests beside a recording; they are notified next."""

@@ -12,7 +12,7 @@ from linkwright.diagnostics import Diagnostic
 from linkwright.loading.extensions import extensions
 from linkwright.page.audience import Page
 from linkwright.page.outbox import Payload
-from linkwright.page.protocol.message import ServerMessage
+from linkwright.page.protocol.message import ServerMessage, address_of
 from linkwright.rviz.context import ViewerContext
 from linkwright.rviz.visualization.manager import Managers, VisualizationManager
 
@@ -35,12 +35,12 @@ class FeatureHost(Protocol):
     managers: Managers
     live: LiveHistory | None
 
-    def add_feature(self, cls: type[F], receives: Iterable[type] = ()) -> F:
+    def add_feature(self, cls: type[F], receives: Iterable[str] = ()) -> F:
         """Return the feature of a class, which receives all events from now on; the existing one, if any.
 
         Args:
             cls: its class.
-            receives: classes of messages that it receives beside those that its class names.
+            receives: addresses of messages that it receives beside those that its class names.
         """
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
@@ -72,9 +72,9 @@ class PageFeature:
         self.managers = viewer.managers
 
     @property
-    def receives(self) -> tuple[type, ...]:
-        """The messages of pages that this object handles."""
-        return self.RECEIVES
+    def receives(self) -> tuple[str, ...]:
+        """The messages of pages that this object handles, as ``module:class``."""
+        return tuple(map(address_of, self.RECEIVES))
 
     def start(self) -> None:
         """Start: the viewer is listening."""

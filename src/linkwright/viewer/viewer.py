@@ -96,7 +96,7 @@ class Viewer:
             ParameterDescriptor(description="the reference frame of the scene"),
         )
         config.options.set(("Fixed Frame",), frame.value)
-        self._receivers: dict[type, Callable[[Page, Any], object]] = {}
+        self._receivers: dict[str, Callable[[Page, Any], object]] = {}
         self._audience = Audience(self._opening, self._receivers, self._page_gone, self._node.get_logger())
         shared: dict[str, Any] = {"meshes": self._server.meshes, "downloads": self._server.downloads}
         if beside is not None:  # served content with ids that are unique among its viewers
@@ -230,12 +230,12 @@ class Viewer:
     def _timeline(self) -> TimelineFeature:
         return self.add_feature(TimelineFeature)
 
-    def add_feature(self, cls: type[F], receives: Iterable[type] = ()) -> F:
+    def add_feature(self, cls: type[F], receives: Iterable[str] = ()) -> F:
         """Return the feature of a class, which receives all events from now on; the existing one, if any.
 
         Args:
             cls: its class.
-            receives: classes of messages that it receives beside those that its class names.
+            receives: addresses of messages that it receives beside those that its class names.
         """
         found = next((feature for feature in self._features if type(feature) is cls), None)
         if found is None:
@@ -245,7 +245,7 @@ class Viewer:
                 found.start()
         return found
 
-    def _add(self, feature: PageFeature, receives: Iterable[type] = ()) -> None:
+    def _add(self, feature: PageFeature, receives: Iterable[str] = ()) -> None:
         self._features.append(feature)
         self._receivers.update((message, feature.receive) for message in (*feature.receives, *receives))
 

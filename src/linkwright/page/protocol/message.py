@@ -1,6 +1,7 @@
 """The base classes of messages, and their encoding and decoding as text.
 
 To define a message is to register it: the codec and the page's types follow. All messages of pages are validated.
+The module of a message that few pages send can be imported with the first one, see `define_later`.
 """
 
 from __future__ import annotations
@@ -8,6 +9,7 @@ from __future__ import annotations
 import json
 import re
 from functools import cache, lru_cache, partial
+from importlib import import_module
 from typing import Any, ClassVar, Union
 
 import msgspec
@@ -99,9 +101,18 @@ def decode(text: str) -> PageMessage:
         BadMessageError: it is not JSON, its type is unknown, or its fields are not exactly those of the type.
     """
     try:
-        message: PageMessage = _decoder(len(PageMessage.__subclasses__())).decode(text)
+        try:
+            return _decoded(text)
+        except msgspec.ValidationError:
+            if not _define(text):
+                raise
+            return _decoded(text)
     except (msgspec.DecodeError, ValueError, RecursionError) as error:
         raise BadMessageError(str(error)) from None
+
+
+def _decoded(text: str) -> PageMessage:
+    message: PageMessage = _decoder(len(PageMessage.__subclasses__())).decode(text)
     return message
 
 
@@ -114,3 +125,37 @@ def _decoder(_known: int) -> msgspec.json.Decoder[Any]:
         if by_tag.get(tag, cls).__module__ == cls.__module__:  # another package cannot take the name of a message
             by_tag[tag] = cls
     return msgspec.json.Decoder(Union[tuple(by_tag.values())])  # noqa: UP007  # made of a tuple
+
+
+_LATER: dict[str, str] = {}
+"""The modules of messages that are imported with the first message, by its name in JSON."""
+
+
+class _Head(Struct):
+    """The part of a message that names its class."""
+
+    type: str
+
+
+def address_of(message: type) -> str:
+    """Return the address of a class of messages, as ``module:class``."""
+    return f"{message.__module__}:{message.__qualname__}"
+
+
+def define_later(address: str) -> None:
+    """Import the module of a `PageMessage` when the first page sends one.
+
+    Args:
+        address: the address of its class, as ``module:class``.
+    """
+    module, _, name = address.partition(":")
+    _LATER.setdefault(_tag(name), module)
+
+
+def _define(text: str) -> bool:
+    """Define the message that a page sent; False if it is defined, or unknown."""
+    module = _LATER.pop(msgspec.json.decode(text, type=_Head).type, None)
+    if module is None:
+        return False
+    import_module(module)
+    return True

@@ -1,38 +1,27 @@
 """The page features of simulated worlds, which are created on demand."""
 
-from linkwright.page.protocol import modelling, simulation
-from linkwright.panels.on_demand import OnDemand
+from linkwright.page.protocol.modelling import NO_WORLD
+from linkwright.page.protocol.simulation import NO_SIMULATION
+from linkwright.panels.on_demand import OnDemand, messages
+
+_MODELLING = "linkwright.page.protocol.modelling"
+_SIMULATION = "linkwright.page.protocol.simulation"
 
 ON_DEMAND = (
     OnDemand(
         "linkwright.simulation.page.modelling.feature:ModellingFeature",
         (
-            modelling.AddThing,
-            modelling.AskModels,
-            modelling.ChangeThings,
-            modelling.CopyThings,
-            modelling.DeleteThings,
-            modelling.GroupThings,
-            modelling.RedoWorld,
-            modelling.SaveWorld,
-            modelling.SetModelling,
-            modelling.UndoWorld,
-            modelling.UngroupThing,
+            *messages(_MODELLING, "AddThing", "AskModels", "ChangeThings", "CopyThings", "DeleteThings"),
+            *messages(_MODELLING, "GroupThings", "RedoWorld", "SaveWorld", "SetModelling", "UndoWorld", "UngroupThing"),
         ),
         ("/world_description",),
-        until=modelling.NO_WORLD,
+        until=NO_WORLD,
     ),
     OnDemand(
         "linkwright.simulation.page.controls:SimulationFeature",
-        (
-            simulation.ControlSimulation,
-            simulation.SpawnModel,
-            simulation.DeleteModel,
-            simulation.DragModel,
-            simulation.PushLink,
-        ),
+        messages(_SIMULATION, "ControlSimulation", "SpawnModel", "DeleteModel", "DragModel", "PushLink"),
         ("/simulation_state",),
-        until=simulation.NO_SIMULATION,
+        until=NO_SIMULATION,
         refuses_recordings=True,
     ),
 )
