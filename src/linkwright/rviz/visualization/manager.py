@@ -23,8 +23,8 @@ from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.config.schema import Path
 from linkwright.rviz.context import ViewerContext
 from linkwright.rviz.displays.base.display import ViewerDisplay, worst
+from linkwright.rviz.displays.frames import TfDisplay
 from linkwright.rviz.displays.robot_model import RobotModelDisplay
-from linkwright.rviz.displays.tf import TfDisplay
 from linkwright.rviz.frames.stream import FrameStream, FrameView, TimeControl
 from linkwright.rviz.visualization.display_tree import DisplayTree
 from linkwright.rviz.visualization.history import Edit, History
