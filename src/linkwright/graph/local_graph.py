@@ -21,8 +21,7 @@ from linkwright.graph.introspection.graph_queries import GraphQueries
 from linkwright.graph.introspection.namesakes import Namesakes, OnNamesakes
 from linkwright.graph.log.console import print_to_console
 from linkwright.graph.log.levels import LogLevels
-from linkwright.graph.log.logger import Logger
-from linkwright.graph.log.record import LogSink
+from linkwright.graph.log.logger import Logger, LogSink
 from linkwright.graph.loop.dispatcher import LoopDispatcher
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import NodeHandle

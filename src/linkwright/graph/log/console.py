@@ -16,7 +16,7 @@ from pathlib import PurePath
 from typing import TextIO
 
 from linkwright.graph.log.levels import LogLevel
-from linkwright.graph.log.record import LogRecord
+from linkwright.graph.log.logger import LogRecord
 
 DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-from linkwright.graph.log.logger import Logger
-from linkwright.graph.log.record import LogRecord
+from linkwright.graph.log.logger import Logger, LogRecord
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 

@@ -8,8 +8,7 @@ from pathlib import Path
 
 from linkwright.graph.log.console import print_to_console
 from linkwright.graph.log.levels import LogLevel, LogLevels, level_named
-from linkwright.graph.log.logger import Logger
-from linkwright.graph.log.record import LogRecord, LogSink
+from linkwright.graph.log.logger import Logger, LogRecord, LogSink
 
 LEVELS = LogLevels()
 """The levels of all loggers of the process."""
