@@ -11,8 +11,7 @@ from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.endpoints.transport import Transport
 from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError, NodeNotFoundError
 from linkwright.graph.log.console import console_line, print_to_console
-from linkwright.graph.log.levels import LogLevel
-from linkwright.graph.log.logger import Logger, LogRecord, LogSink, log_failure, run_logged
+from linkwright.graph.log.logger import Logger, LogLevel, LogRecord, LogSink, log_failure, run_logged
 from linkwright.graph.loop.entity import Entity, GuardCondition
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.timer import Rate, Timer, TimerInfo

@@ -20,8 +20,7 @@ from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.introspection.graph_queries import GraphQueries
 from linkwright.graph.introspection.namesakes import Namesakes, OnNamesakes
 from linkwright.graph.log.console import print_to_console
-from linkwright.graph.log.levels import LogLevels
-from linkwright.graph.log.logger import Logger, LogSink
+from linkwright.graph.log.logger import Logger, LogLevels, LogSink
 from linkwright.graph.loop.dispatcher import LoopDispatcher
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import NodeHandle

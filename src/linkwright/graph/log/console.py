@@ -15,8 +15,7 @@ from functools import lru_cache
 from pathlib import PurePath
 from typing import TextIO
 
-from linkwright.graph.log.levels import LogLevel
-from linkwright.graph.log.logger import LogRecord
+from linkwright.graph.log.logger import LogLevel, LogRecord
 
 DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
 
