@@ -16,7 +16,7 @@ from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.graph.time.values import Duration
 from linkwright.messages import String, get_interface, type_hash

@@ -14,7 +14,7 @@ from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageI
 from linkwright.graph.endpoints.presence import Presence
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 
 _KNOWN_WITHIN = 2.0
 """Seconds for which a message waits until its publisher is known."""

@@ -15,13 +15,13 @@ from linkwright.graph.log.logger import Logger, LogLevel, LogRecord, LogSink, lo
 from linkwright.graph.loop.entity import Entity, GuardCondition
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.timer import Rate, Timer, TimerInfo
-from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.names.rules import (
     InvalidNameError,
     InvalidNamespaceError,
     InvalidNodeNameError,
     InvalidServiceNameError,
     InvalidTopicNameError,
+    NodeIdentity,
 )
 from linkwright.graph.node import Node
 from linkwright.graph.parameters.errors import (

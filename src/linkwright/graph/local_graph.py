@@ -24,8 +24,8 @@ from linkwright.graph.log.logger import Logger, LogLevels, LogSink
 from linkwright.graph.loop.dispatcher import LoopDispatcher
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.names.remapping import Remappings
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.time.timebase import SystemClock, Timebase
 
 

@@ -22,9 +22,8 @@ from linkwright.graph.loop.entity import GuardCondition
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.loop.self_waits import STRICT
 from linkwright.graph.loop.timer import Rate, Timer
-from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.names.remapping import Remappings
-from linkwright.graph.names.rules import absolute_namespace, check_node_name
+from linkwright.graph.names.rules import NodeIdentity, absolute_namespace, check_node_name
 from linkwright.graph.parameters.node_parameters import NodeParameters
 from linkwright.graph.parameters.parameter import Parameter, ParameterDescriptor
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions, override_qos

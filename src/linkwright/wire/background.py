@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypedDict, TypeVar
 from linkwright.diagnostics import LinkwrightError, Phrase, render
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.log.logger import Logger, run_logged
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.engine import Engine, Work
 from linkwright.wire.outside import Outside
 from linkwright.wire.switch import is_switched_off

@@ -15,7 +15,7 @@ from linkwright.graph.endpoints.presence import Presence
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 
 
 class Transport(Protocol):

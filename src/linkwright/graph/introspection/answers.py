@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import UNKNOWN_QOS, HistoryPolicy, QoSProfile
 
 NamesAndTypes = list[tuple[str, list[str]]]

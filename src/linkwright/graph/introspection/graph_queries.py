@@ -20,8 +20,7 @@ from linkwright.graph.introspection.answers import (
 )
 from linkwright.graph.log.logger import Logger, run_logged
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.names.identity import NodeIdentity
-from linkwright.graph.names.rules import split
+from linkwright.graph.names.rules import NodeIdentity, split
 
 _PUBLISHER, _SUBSCRIPTION = EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION
 _SERVICE, _CLIENT = EndpointKind.SERVICE, EndpointKind.CLIENT

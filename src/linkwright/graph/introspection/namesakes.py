@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Collection
 
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 
 OnNamesakes = Callable[[frozenset[str]], object]
 """Takes the full names of all nodes of ours whose names are shared now; from any thread, one call after another."""

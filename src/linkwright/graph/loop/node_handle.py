@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.loop.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
-from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.names.remapping import Remappings
-from linkwright.graph.names.rules import expand_service_name, expand_topic_name
+from linkwright.graph.names.rules import NodeIdentity, expand_service_name, expand_topic_name
 from linkwright.graph.time.timebase import AlarmSetter, Timebase
 
 if TYPE_CHECKING:

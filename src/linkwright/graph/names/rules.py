@@ -6,6 +6,7 @@ The rules and the wording of the errors are those of rcl and rmw (``validate_top
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from functools import lru_cache
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase, term
@@ -229,3 +230,23 @@ def _substituted(
         return value
 
     return _SUBSTITUTION.sub(substitute, name)
+
+
+@dataclass(frozen=True, slots=True)
+class NodeIdentity:
+    """A node's name in the graph.
+
+    Attributes:
+        name: without namespace.
+        namespace: absolute.
+        enclave: the security enclave, ``/`` where there is none.
+    """
+
+    name: str
+    namespace: str
+    enclave: str = "/"
+
+    @property
+    def full_name(self) -> str:
+        """Namespace and name."""
+        return join(self.namespace, self.name)
