@@ -224,3 +224,26 @@ class ServiceEndpoint(Endpoint):
         wanted = bytes if self.raw else getattr(self.srv_type, half)
         if not isinstance(message, wanted):
             raise TypeError(f"Expected {wanted}, got {type(message)}: the {half.lower()} of '{self.name}'")
+
+
+class Presence(Endpoint):
+    """A subscription or a client that other processes see, and that receives no messages and sends no requests.
+
+    A bridge uses it for a subscription or client in another network, and forwards messages and responses to that one.
+
+    Args:
+        node: its node.
+        info: a subscription or a client.
+
+    Raises:
+        ValueError: `info` is of another kind.
+    """
+
+    raw = True
+
+    def __init__(self, node: NodeHandle, info: EndpointInfo) -> None:
+        if info.kind not in (EndpointKind.SUBSCRIPTION, EndpointKind.CLIENT):
+            raise ValueError(f"{info.kind} cannot be without a part in the graph")
+        self.kind = info.kind
+        self._describe(node, info.type_name, info.name, info.qos)
+        self.type_hash = info.type_hash

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
+from linkwright.graph.endpoints.base import Presence
 from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.info import EndpointInfo
-from linkwright.graph.endpoints.presence import Presence
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription

@@ -13,7 +13,7 @@ from linkwright.wire.dds.services import Pair
 from linkwright.wire.dds.topics import MirroredTopic
 
 if TYPE_CHECKING:
-    from linkwright.graph.endpoints.presence import Presence
+    from linkwright.graph.endpoints.base import Presence
 
 
 def open_presence(presence: Presence, domain: Domain) -> QuietReader | QuietClient:
