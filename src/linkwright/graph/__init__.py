@@ -3,12 +3,12 @@
 from typing import TYPE_CHECKING
 
 from linkwright.graph.computation_graph import Graph
+from linkwright.graph.endpoints.bus import Transport
 from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription
-from linkwright.graph.endpoints.transport import Transport
 from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError, NodeNotFoundError
 from linkwright.graph.log.console import console_line, print_to_console
 from linkwright.graph.log.logger import Logger, LogLevel, LogRecord, LogSink, log_failure, run_logged

@@ -8,13 +8,12 @@ from collections import Counter
 from collections.abc import Callable
 
 from linkwright.graph.endpoints.base import Endpoint, Presence
-from linkwright.graph.endpoints.bus import Bus
+from linkwright.graph.endpoints.bus import Bus, Transport
 from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription
-from linkwright.graph.endpoints.transport import Transport
 from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.introspection.graph_queries import GraphQueries
 from linkwright.graph.introspection.namesakes import Namesakes, OnNamesakes

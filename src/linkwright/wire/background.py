@@ -45,7 +45,7 @@ class Departed(Protocol):
 
 
 class BackgroundTransport(ABC):
-    """The graph of this process on the wire (`linkwright.graph.endpoints.transport.Transport`).
+    """The graph of this process on the wire (`linkwright.graph.endpoints.bus.Transport`).
 
     Threads of its own do the work, so that no method here blocks unless its docstring states it; none of them runs a
     user's callback. A forked process has no part in it: there, nothing goes out and nothing comes in.

@@ -8,9 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from linkwright.graph.endpoints.base import Endpoint
-from linkwright.graph.endpoints.bus import Bus
+from linkwright.graph.endpoints.bus import Bus, Transport
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
-from linkwright.graph.endpoints.transport import Transport
 from linkwright.graph.faults import NodeNotFoundError
 from linkwright.graph.introspection.answers import (
     NamesAndTypes,
