@@ -201,7 +201,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
     form = EchoFormat.of(arguments)
 
     async def job(session: Session) -> int:
-        from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
+        from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX
         from linkwright.messages import get_service
 
         kind = get_service(arguments.service_type or _SERVICES.types_of(session, arguments.service_name)[0])
@@ -224,7 +224,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
 
 def _event_text(event: Any, form: EchoFormat) -> str:
     """Return an event as ros2 prints it: in YAML, with the name of its kind."""
-    from linkwright.graph.endpoints.service_introspection import EventType
+    from linkwright.graph.endpoints.service import EventType
 
     kind = event.info.event_type
     named = EventType(kind).name if kind in iter(EventType) else str(kind)

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.endpoints.service import Service
-from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
+from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX, Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.introspection.node_queries import NodeQueries
 from linkwright.graph.introspection.type_descriptions import PARAMETER as TYPE_DESCRIPTIONS

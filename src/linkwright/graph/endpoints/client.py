@@ -11,8 +11,7 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.endpoints.info import EndpointKind
-from linkwright.graph.endpoints.service import Service, copy_of
-from linkwright.graph.endpoints.service_introspection import EventType, IntrospectedEndpoint, RequestId
+from linkwright.graph.endpoints.service import EventType, IntrospectedEndpoint, RequestId, Service, copy_of
 from linkwright.graph.loop.callback_groups import CallbackGroup
 from linkwright.graph.loop.entity import Entity
 from linkwright.graph.loop.future import Future

@@ -16,7 +16,7 @@ from functools import partial
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph.endpoints.service_introspection import RequestId
+from linkwright.graph.endpoints.service import RequestId
 from linkwright.wire.dds.names import Role, dds_topic
 from linkwright.wire.dds.rtps.participant import RtpsParticipant
 from linkwright.wire.dds.rtps.values import NO_NUMBER, PREFIX, is_reader, read_related_identity, related_identity

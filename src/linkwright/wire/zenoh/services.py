@@ -12,7 +12,7 @@ from weakref import WeakSet
 import zenoh
 from zenoh.handlers import Callback
 
-from linkwright.graph.endpoints.service_introspection import RequestId
+from linkwright.graph.endpoints.service import RequestId
 from linkwright.wire.service_messages import hand_request_on, hand_response_on, written
 from linkwright.wire.zenoh import attachment
 from linkwright.wire.zenoh.tokens import Token
