@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from linkwright.graph.endpoints.content_filter import ContentFilterOptions
     from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, SubscriptionEventCallbacks
     from linkwright.graph.executors import Executor
-    from linkwright.graph.introspection.answers import TopicEndpointInfo
+    from linkwright.graph.introspection.graph_queries import TopicEndpointInfo
 
 M = TypeVar("M")
 

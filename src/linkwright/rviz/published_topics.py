@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linkwright.graph.introspection.answers import UNKNOWN_NODE
+from linkwright.graph.introspection.graph_queries import UNKNOWN_NODE
 
 if TYPE_CHECKING:
     from linkwright.graph import Node

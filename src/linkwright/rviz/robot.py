@@ -20,7 +20,7 @@ from linkwright.geometry.arrays import quaternion_from_matrix
 from linkwright.geometry.single import quaternion_of
 from linkwright.graph import DurabilityPolicy, MessageInfo
 from linkwright.graph.endpoints.info import EndpointInfo
-from linkwright.graph.introspection.answers import UNKNOWN_NODE
+from linkwright.graph.introspection.graph_queries import UNKNOWN_NODE
 from linkwright.messages import String
 from linkwright.packages import PackageFinder
 from linkwright.page.files import IMAGE_TYPES, MESH_TYPES, MeshIndex

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Concatenate, ParamSpec, TypeVar
 
-from linkwright.graph.introspection.answers import TopicEndpointInfo
-from linkwright.graph.introspection.graph_queries import GraphQueries
+from linkwright.graph.introspection.graph_queries import GraphQueries, TopicEndpointInfo
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.names.rules import InvalidNameError, join
 
