@@ -15,8 +15,7 @@ from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.faults import InvalidHandleError
-from linkwright.graph.introspection.graph_queries import GraphQueries
-from linkwright.graph.introspection.namesakes import Namesakes, OnNamesakes
+from linkwright.graph.introspection.graph_queries import GraphQueries, Namesakes, OnNamesakes
 from linkwright.graph.log.console import print_to_console
 from linkwright.graph.log.logger import Logger, LogLevels, LogSink
 from linkwright.graph.loop.dispatcher import LoopDispatcher

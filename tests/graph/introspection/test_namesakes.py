@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.graph import Graph, LogRecord
-from linkwright.graph.introspection.namesakes import Namesakes
+from linkwright.graph.introspection.graph_queries import Namesakes
 from linkwright.graph.names.rules import NodeIdentity
 
 
