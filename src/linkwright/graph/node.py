@@ -23,10 +23,15 @@ from linkwright.graph.loop.self_waits import STRICT
 from linkwright.graph.loop.timer import Rate, Timer
 from linkwright.graph.names.remapping import Remappings
 from linkwright.graph.names.rules import NodeIdentity, absolute_namespace, check_node_name
-from linkwright.graph.parameters.node_parameters import NodeParameters
+from linkwright.graph.parameters.node_parameters import (
+    EVENTS_TOPIC,
+    EVENTS_TYPE,
+    NodeParameters,
+    ParameterEvents,
+    ParameterServices,
+)
 from linkwright.graph.parameters.parameter import Parameter, ParameterDescriptor
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions, override_qos
-from linkwright.graph.parameters.services import EVENTS_TOPIC, EVENTS_TYPE, ParameterEvents, ParameterServices
 from linkwright.graph.parameters.store import ParameterStore
 from linkwright.graph.qos.compatibility import best_available
 from linkwright.graph.qos.profile import PARAMETER_EVENTS_QOS, ROSOUT_QOS, SERVICES_QOS, QoSProfile
