@@ -16,9 +16,8 @@ from linkwright.graph.introspection.type_descriptions import TypeDescriptions, i
 from linkwright.graph.local_graph import LocalGraph
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.log.rosout import LOG_TYPE, ROSOUT_TOPIC, Rosout
-from linkwright.graph.loop.callback_groups import FREE_GROUP, CallbackGroup
 from linkwright.graph.loop.entity import GuardCondition
-from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.loop.node_handle import FREE_GROUP, CallbackGroup, NodeHandle
 from linkwright.graph.loop.self_waits import STRICT
 from linkwright.graph.loop.timer import Rate, Timer
 from linkwright.graph.names.remapping import Remappings

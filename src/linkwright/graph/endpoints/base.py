@@ -12,8 +12,7 @@ from collections.abc import Callable
 from typing import Any, Generic, Protocol, TypeVar
 
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
-from linkwright.graph.loop.callback_groups import CallbackGroup
-from linkwright.graph.loop.node_handle import NodeHandle, Part
+from linkwright.graph.loop.node_handle import CallbackGroup, NodeHandle, Part
 from linkwright.graph.qos.compatibility import resolved
 from linkwright.graph.qos.profile import QoSProfile
 

@@ -12,10 +12,9 @@ from typing import Any, Generic, Protocol, TypeVar
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.graph.endpoints.service import EventType, IntrospectedEndpoint, RequestId, Service, copy_of
-from linkwright.graph.loop.callback_groups import CallbackGroup
 from linkwright.graph.loop.entity import Entity
 from linkwright.graph.loop.future import Future
-from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.loop.node_handle import CallbackGroup, NodeHandle
 from linkwright.graph.qos.profile import QoSProfile
 
 Request = TypeVar("Request")

@@ -12,9 +12,8 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from linkwright.graph.endpoints.base import ServiceEndpoint
 from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.loop.callback_groups import CallbackGroup
 from linkwright.graph.loop.entity import Entity
-from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.loop.node_handle import CallbackGroup, NodeHandle
 from linkwright.graph.qos.compatibility import best_available
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.graph.time.clock import Clock

@@ -12,9 +12,8 @@ from functools import partial
 from types import CoroutineType
 from typing import Any
 
-from linkwright.graph.loop.callback_groups import CallbackGroup
 from linkwright.graph.loop.entity import Entity
-from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.loop.node_handle import CallbackGroup, NodeHandle
 from linkwright.graph.time.timebase import Alarm, Timebase
 
 _CALLS_A_TURN = 256

@@ -15,8 +15,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from linkwright.graph.log.logger import log_failure
-from linkwright.graph.loop.callback_groups import CallbackGroup
-from linkwright.graph.loop.node_handle import Dispatcher, NodeHandle, Part
+from linkwright.graph.loop.node_handle import CallbackGroup, Dispatcher, NodeHandle, Part
 
 T = TypeVar("T")
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any, Protocol
 
-from linkwright.graph.loop.callback_groups import MutuallyExclusiveCallbackGroup
+from linkwright.graph.loop.node_handle import MutuallyExclusiveCallbackGroup
 
 STRICT = "strict_callback_groups"
 """The parameter by which a node has responses wait for the callback group of their client, as in rclpy."""

@@ -12,8 +12,8 @@ from linkwright.graph.parameters.rules import ANY_NODE
 from linkwright.graph.qos.profile import PARAMETER_EVENTS_QOS, SERVICES_QOS, QoSProfile
 
 if TYPE_CHECKING:
-    from linkwright.graph.loop.callback_groups import CallbackGroup
     from linkwright.graph.loop.future import Future
+    from linkwright.graph.loop.node_handle import CallbackGroup
 
 _SERVICES = (
     "describe_parameters",
