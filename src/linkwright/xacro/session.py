@@ -19,9 +19,8 @@ from linkwright.diagnostics import (
 from linkwright.loading.lean_typing import TYPE_CHECKING, Any, Protocol
 from linkwright.xacro import sources
 from linkwright.xacro.expressions import sandbox, symbols
-from linkwright.xacro.expressions.bounded import keys
+from linkwright.xacro.expressions.bounded import RefusalError, keys
 from linkwright.xacro.expressions.expression import compile_expression
-from linkwright.xacro.expressions.refusal import RefusalError
 from linkwright.xacro.expressions.sandbox import Module
 from linkwright.xacro.expressions.scope import Namespace, Scope
 from linkwright.xacro.expressions.substitution import package_fault

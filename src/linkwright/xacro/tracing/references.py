@@ -58,7 +58,7 @@ def references(text: str) -> list[Reference]:
 def shown(value: Any) -> str:
     """A value as Python writes it, cut when it is long."""
     from linkwright.xacro.expressions import sandbox
-    from linkwright.xacro.expressions.refusal import RefusalError
+    from linkwright.xacro.expressions.bounded import RefusalError
 
     try:
         text = repr(value) if isinstance(value, str) else sandbox.as_text(value)
