@@ -12,10 +12,10 @@ from types import GeneratorType
 
 from linkwright.diagnostics import foreign, phrase
 from linkwright.loading.lean_typing import Any
-from linkwright.xacro.expressions.compile_cache import TextCompiler
 from linkwright.xacro.expressions.compiler import FAILURES, Closure, Compiler, failure
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault
+from linkwright.xacro.kept import TextCompiler
 
 _LONGEST = 20_000
 _ITERATORS = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})

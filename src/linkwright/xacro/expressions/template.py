@@ -12,12 +12,12 @@ from linkwright.diagnostics import foreign, phrase
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import RefusalError
-from linkwright.xacro.expressions.compile_cache import TextCompiler
 from linkwright.xacro.expressions.expression import Expression, compile_expression
 from linkwright.xacro.expressions.lexer import Token, TokenKind, tokenize
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.expressions.substitution import substitute
 from linkwright.xacro.faults import Fault
+from linkwright.xacro.kept import TextCompiler
 
 _Part = Callable[["Scope"], Any]
 _BRACKET = len("${")
