@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from linkwright.diagnostics import Span
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import Any
-from linkwright.xacro.expressions.lexer import TokenKind, tokenize
+from linkwright.xacro.expressions.template import TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree.positions import attribute_value_range
 
