@@ -13,9 +13,8 @@ from linkwright.geometry.vectors import Vector3
 from linkwright.loading.lean_dataclasses import replace
 from linkwright.loading.lean_typing import Any
 from linkwright.schema.report import UNREADABLE
-from linkwright.urdf.findings import Findings
 from linkwright.urdf.model import Dynamics, Geometry, Limit
-from linkwright.urdf.report import owner_name
+from linkwright.urdf.report import Findings, owner_name
 from linkwright.urdf.values import degrees_hint, looks_like_degrees, number, numbers
 from linkwright.xmltree import Element
 
