@@ -15,8 +15,7 @@ from itertools import takewhile
 from linkwright.diagnostics import Diagnostic, Note, Phrase, did_you_mean, joined, phrase
 from linkwright.loading.lean_dataclasses import replace
 from linkwright.loading.lean_typing import Any
-from linkwright.schema.reading import reader_of
-from linkwright.schema.report import UNREADABLE
+from linkwright.schema.reading import UNREADABLE, reader_of
 from linkwright.schema.rules import ElementRule, Version
 from linkwright.urdf.model import Joint, Limit, Link, Material, Visual
 from linkwright.urdf.report import BLACK, UrdfReport, owner_name

@@ -18,7 +18,7 @@ from linkwright.diagnostics import (
     term,
 )
 from linkwright.loading.lean_typing import Any
-from linkwright.schema.report import UNREADABLE
+from linkwright.schema.reading import UNREADABLE
 from linkwright.schema.rules import AttributeRule, ElementRule, Version
 from linkwright.urdf.values import (
     COUNTS,
@@ -188,7 +188,7 @@ def owner_name(owner: Element) -> Phrase:
 
 
 class UrdfReport(Findings):
-    """The findings of one reading, with messages for the reader of elements (`linkwright.schema.report`)."""
+    """The findings of one reading, with messages for the reader of elements (`linkwright.schema.reading`)."""
 
     __slots__ = ()
 

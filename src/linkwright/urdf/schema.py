@@ -14,7 +14,7 @@ from linkwright.geometry.single import IDENTITY_POSE, Pose, Quaternion, rpy_from
 from linkwright.geometry.vectors import Vector3
 from linkwright.loading.lean_dataclasses import replace
 from linkwright.loading.lean_typing import Any
-from linkwright.schema.report import UNREADABLE
+from linkwright.schema.reading import UNREADABLE
 from linkwright.schema.rules import AttributeRule, ElementRule, Version
 from linkwright.urdf.model import (
     Calibration,
