@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from msgspec import to_builtins
 
 from linkwright.diagnostics import phrase
-from linkwright.diagnostics.translation.wording import wording
+from linkwright.diagnostics.translation.translate import wording
 from linkwright.page.protocol.binary import pack_data
 from linkwright.page.protocol.configuration import Folder
 from linkwright.page.protocol.displays import (

@@ -2,12 +2,30 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
+from functools import cache
 
 from linkwright.diagnostics.diagnostic import Diagnostic, Note
 from linkwright.diagnostics.phrase import Phrase, Wording, term
 from linkwright.diagnostics.translation.language import asked_language, language
-from linkwright.diagnostics.translation.wording import wording
+from linkwright.loading.lean_typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from gettext import NullTranslations
+
+
+@cache
+def wording(language: str) -> NullTranslations:
+    """Return the catalogue of a language, read once; an empty one in a checkout without a compiled one."""
+    from gettext import GNUTranslations, NullTranslations  # English needs none of it
+
+    try:
+        with open(f"{os.path.dirname(__file__)}/{language}.mo", "rb") as file:  # noqa: PTH120, PTH123 - pathlib is slow to import
+            return GNUTranslations(file)
+    except FileNotFoundError:
+        return NullTranslations()
+
 
 _LABELS = ("error", "warning", "info", "note", "hint", ": ")
 
