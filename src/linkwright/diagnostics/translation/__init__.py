@@ -4,8 +4,18 @@ Messages are written in English where they are reported. A catalogue maps the En
 language; a template that it does not have stays English. Codes, places and the user's own words never change.
 """
 
-from linkwright.diagnostics.translation.language import LANGUAGES, asked_language, language, language_of, set_language
-from linkwright.diagnostics.translation.translate import labels, localized, said_in, translate, translated
+from linkwright.diagnostics.translation.translate import (
+    LANGUAGES,
+    asked_language,
+    labels,
+    language,
+    language_of,
+    localized,
+    said_in,
+    set_language,
+    translate,
+    translated,
+)
 
 __all__ = [
     "LANGUAGES",
