@@ -7,7 +7,7 @@ from math import hypot
 
 from linkwright.geometry.placement import Placement
 from linkwright.geometry.shapes import Box, Capsule, SimpleShape, Sphere
-from linkwright.geometry.vectors import Vector3, added, scaled, subtracted
+from linkwright.geometry.single import Vector3, added, scaled, subtracted
 from linkwright.loading.lean_dataclasses import NamedTuple
 
 FARTHEST = 1e9

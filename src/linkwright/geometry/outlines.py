@@ -14,7 +14,7 @@ from math import isfinite
 from struct import iter_unpack
 
 from linkwright.geometry.bounds import FARTHEST, Bounds
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.loading.lean_typing import Protocol
 
 STEPS = 1 << 20

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from math import acos
 
-from linkwright.geometry.single import Pose, quaternion_of, rotation_matrix
-from linkwright.geometry.vectors import Vector3, dot, subtracted
+from linkwright.geometry.single import Pose, Vector3, dot, quaternion_of, rotation_matrix, subtracted
 from linkwright.loading.lean_dataclasses import NamedTuple
 
 Matrix = tuple[Vector3, Vector3, Vector3]

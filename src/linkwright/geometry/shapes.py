@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import pi, prod
 
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.loading.lean_dataclasses import dataclass
 
 

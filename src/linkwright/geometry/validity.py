@@ -13,7 +13,7 @@ from math import copysign, hypot, isfinite, sqrt
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.bounds import Bounds
 from linkwright.geometry.placement import Matrix
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from functools import cached_property
 from math import sqrt
 
 from linkwright.geometry.placement import Placement, turned
-from linkwright.geometry.vectors import length, scaled
+from linkwright.geometry.single import length, scaled
 from linkwright.inertia import MeshLibrary, estimate
 from linkwright.inference.model import Wheel
 from linkwright.inference.shapes import Shape, lowest, round_shape, shapes_of

@@ -10,8 +10,7 @@ from math import inf, sqrt
 
 from linkwright.diagnostics import phrase
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
-from linkwright.geometry.single import IDENTITY_POSE, Pose, Quaternion, rpy_from_quaternion
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import IDENTITY_POSE, Pose, Quaternion, Vector3, rpy_from_quaternion
 from linkwright.loading.lean_dataclasses import replace
 from linkwright.loading.lean_typing import Any
 from linkwright.schema.reading import UNREADABLE

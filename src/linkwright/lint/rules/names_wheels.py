@@ -13,7 +13,7 @@ from math import cos, radians
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase
 from linkwright.geometry.placement import Placement, placement, turned
-from linkwright.geometry.vectors import dot, length, subtracted
+from linkwright.geometry.single import dot, length, subtracted
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.loading.lean_dataclasses import NamedTuple
