@@ -8,8 +8,7 @@ from math import dist, isfinite
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.bounds import Bounds, bounds_of, union
-from linkwright.geometry.placement import Placement, placement
+from linkwright.geometry.bounds import Bounds, Placement, bounds_of, placement, union
 from linkwright.kinematics import KinematicTree
 from linkwright.rviz.config.model_size import ModelSize
 from linkwright.urdf import Collision, Mesh, Robot, Visual

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import hypot, sqrt
 
 from linkwright.diagnostics import Diagnostic, Note, Span, phrase
-from linkwright.geometry.placement import Placement, placement, turned
+from linkwright.geometry.bounds import Placement, placement, turned
 from linkwright.geometry.polygon import turn
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
