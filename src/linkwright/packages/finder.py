@@ -10,9 +10,8 @@ from linkwright.diagnostics import Phrase, did_you_mean, display_path, is_misspe
 from linkwright.packages import ament, uri
 from linkwright.packages.ament import install_prefix
 from linkwright.packages.errors import PackageNotFoundError
-from linkwright.packages.manifest import enclosing_package
+from linkwright.packages.manifest import SourceScan, enclosing_package
 from linkwright.packages.share_layout import share_of_sources
-from linkwright.packages.sources import SourceScan
 from linkwright.packages.substituted import SUBSTITUTES, substituted_share
 
 START_VARIABLE = "LINKWRIGHT_START"
