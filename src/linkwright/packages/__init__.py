@@ -11,7 +11,7 @@ from linkwright.packages.ament_functions import (
 from linkwright.packages.errors import PackageNotFoundError
 from linkwright.packages.finder import PackageFinder
 from linkwright.packages.manifest import MANIFEST, enclosing_package, package_name
-from linkwright.packages.substituted import is_substitute
+from linkwright.packages.share_layout import is_substitute
 
 __all__ = [
     "MANIFEST",

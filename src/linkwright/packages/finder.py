@@ -11,8 +11,7 @@ from linkwright.packages import ament, uri
 from linkwright.packages.ament import install_prefix
 from linkwright.packages.errors import PackageNotFoundError
 from linkwright.packages.manifest import SourceScan, enclosing_package
-from linkwright.packages.share_layout import share_of_sources
-from linkwright.packages.substituted import SUBSTITUTES, substituted_share
+from linkwright.packages.share_layout import SUBSTITUTES, share_of_sources, substituted_share
 
 START_VARIABLE = "LINKWRIGHT_START"
 """The environment variable by which a launcher tells its processes where its own search for packages began."""
@@ -30,7 +29,7 @@ class PackageFinder:
     4. source trees: the package that contains a start folder and its sibling packages, the packages below
        a start folder, and those below ``src`` of the folders above it;
     5. the packages shipped with Linkwright;
-    6. our substitutes for packages of ROS that launch files include, see `linkwright.packages.substituted`.
+    6. our substitutes for packages of ROS that launch files include, see `linkwright.packages.share_layout`.
 
     Nothing is read from the disk before it is needed, and a search through source trees stops where it meets
     the package.

@@ -5,7 +5,7 @@ Some do not: ``install(DIRECTORY description/urdf DESTINATION share/${PROJECT_NA
 For these a folder of links is made in the user's cache, with the installed files at their installed paths and
 everything else of the sources. So a user of the share folder, a launch file with ``os.path.join`` too, finds
 the files that would exist after a build. Files that need compiling are ours if we have them, see
-`linkwright.packages.substituted`.
+`linkwright.packages.share_layout`.
 """
 
 from __future__ import annotations
@@ -13,14 +13,78 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 from linkwright.files.user_folders import SHARES
-from linkwright.loading.lean_typing import TYPE_CHECKING
-from linkwright.packages.substituted import substituted_files
+from linkwright.loading.extensions import extensions
+from linkwright.packages.ament import install_prefix, share_in_prefix
+from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.readers.installed_file import InstalledFile
 
-if TYPE_CHECKING:
-    from linkwright.packages.readers.installed_file import InstalledFile
+SUBSTITUTES = Path(__file__).parent / "substitutes"
+"""The prefix of the substitutes."""
+
+
+def substituted_share(name: str) -> Path | None:
+    """The share folder of our substitute for a package of ROS; None if there is none."""
+    share = share_in_prefix(SUBSTITUTES, name)
+    if share is None and name in _known_in_part():
+        return SUBSTITUTES / "share" / name
+    return share
+
+
+@cache
+def _known_in_part() -> frozenset[str]:
+    """The packages that we replace in part, by modules, messages or nodes."""
+    ours = Path(__file__).parents[1]
+    found = {file.stem for folder in ("standins/tables", "messages/data") for file in (ours / folder).glob("*.txt")}
+    for group in ("linkwright.nodes", "linkwright.components"):
+        found.update(name.partition("/")[0] for name in extensions(group))
+    return frozenset({*found, "rviz2"})
+
+
+def is_substitute(share: Path) -> bool:
+    """Whether a share folder is our substitute for a missing package of ROS, such as gazebo_ros.
+
+    It has the launch files that others include, but not the rest of that package.
+    """
+    return install_prefix(share) == SUBSTITUTES
+
+
+def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
+    """The files of ours that unbuilt sources of a package lack: path in the share folder -> file.
+
+    A launch file that a build makes, such as ros_gz_sim's ``gz_sim.launch.py``, names programs of that build; ours
+    starts our nodes. Files in the sources take precedence: the names of their nodes lead to ours, and the user may
+    have edited them.
+
+    Args:
+        name: the package.
+        folder: its source folder.
+    """
+    share = share_in_prefix(SUBSTITUTES, name)
+    if share is None or not _compiles(folder):
+        return {}
+    ours = {file.relative_to(share).as_posix(): file for file in sorted(share.rglob("*")) if file.is_file()}
+    return {
+        path: InstalledFile(str(file), f"share/{name}/{path}")
+        for path, file in ours.items()
+        if path != MANIFEST and file.suffix != ".pyc" and not (folder / path).is_file()
+    }
+
+
+def _compiles(folder: Path) -> bool:
+    """Whether a package in its sources has to be compiled."""
+    try:
+        text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return False
+    from linkwright.diagnostics import SourceText
+    from linkwright.packages.readers.cmake import read_cmake
+
+    return bool(read_cmake(SourceText(str(folder / "CMakeLists.txt"), text), folder).compiled)
+
 
 _MARK = os.path.join("", "linkwright", SHARES, "")  # noqa: PTH118 - a part of the path as text
 
