@@ -1,7 +1,6 @@
 """Read files, or texts that are not saved yet, as robots and worlds, with their origins and findings."""
 
-from linkwright.descriptions.description import Description
-from linkwright.descriptions.library import DescriptionLibrary
+from linkwright.descriptions.library import Description, DescriptionLibrary
 from linkwright.descriptions.service import Packages, examine, is_xacro, load
 from linkwright.descriptions.worlds import WorldDescription, examine_world, is_world
 from linkwright.diagnostics.source import TEXT_NAME

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from linkwright.descriptions.description import TRUE_OF_PARTS, Description
+from linkwright.descriptions.library import TRUE_OF_PARTS, Description
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, has_errors, phrase
 from linkwright.diagnostics.source import TEXT_NAME, is_text
 from linkwright.loading.lean_typing import TYPE_CHECKING, Union
