@@ -20,8 +20,7 @@ from linkwright.messages.definitions.interfaces import (
 from linkwright.messages.definitions.library import LIBRARY, not_of_kind
 from linkwright.messages.definitions.names import python_module
 from linkwright.messages.errors import InterfaceNotFoundError
-from linkwright.messages.message import ActionImplementation, ActionType, Message, ServiceType
-from linkwright.messages.time import DurationValue, TimeValue
+from linkwright.messages.message import ActionImplementation, ActionType, DurationValue, Message, ServiceType, TimeValue
 
 _classes: dict[str, Any] = {}
 _lock = threading.RLock()
