@@ -107,7 +107,20 @@ import type {
 } from "./monitor";
 import type { CommandNavigation, GoalOutcome, NavigationState, WatchNavigation } from "./navigation";
 import type { AskPoint, CellGrid, CloudPoints, PointFields } from "./points";
-import type { RecordTopics, RecordingState, SaveMinutes, StopRecording } from "./recording";
+import type {
+  GoLive,
+  Kept,
+  Play,
+  Playhead,
+  RecordTopics,
+  RecordingState,
+  SaveMinutes,
+  SeekTime,
+  SetPlayback,
+  StepTime,
+  StopRecording,
+  Timeline,
+} from "./recording";
 import type { AskProvenance, LinkProvenance, MeshStatus, RobotScene } from "./robot";
 import type { Hello, ProgramIsLate, Received } from "./session";
 import type {
@@ -121,7 +134,6 @@ import type {
   SpawnModel,
 } from "./simulation";
 import type { Clock, ResetTime, SetTime, TimeReset, TimeState, WatchClock } from "./time";
-import type { GoLive, Kept, Play, Playhead, SeekTime, SetPlayback, StepTime, Timeline } from "./timeline";
 import type {
   AddTool,
   ChangeSavedView,
@@ -176,7 +188,6 @@ export * from "./robot";
 export * from "./session";
 export * from "./simulation";
 export * from "./time";
-export * from "./timeline";
 export * from "./views-and-tools";
 export * from "./voice";
 export * from "./voice-words";

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 from linkwright.diagnostics import LinkwrightError, in_one_line
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import ServerMessage
-from linkwright.page.protocol.time import TimeReset
-from linkwright.page.protocol.timeline import (
+from linkwright.page.protocol.recording import (
     GoLive,
     Kept,
     Play,
@@ -22,6 +21,7 @@ from linkwright.page.protocol.timeline import (
     Timeline,
     TimelineTopic,
 )
+from linkwright.page.protocol.time import TimeReset
 from linkwright.panels.live_history import LiveHistory
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
