@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import ClassVar
 
 from linkwright.page.audience import Page
-from linkwright.page.protocol.arguments import NOTHING_ASKED, ArgumentForm, GiveArguments
+from linkwright.page.protocol.description import NOTHING_ASKED, ArgumentForm, GiveArguments
 from linkwright.page.protocol.message import ServerMessage
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
