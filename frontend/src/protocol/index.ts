@@ -68,21 +68,6 @@ import type { ImageFrame, OccupancyMap, PictureSize } from "./images";
 import type { CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints } from "./joints";
 import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, MarkersChanged } from "./markers";
 import type {
-  AddThing,
-  AskModels,
-  ChangeThings,
-  CopyThings,
-  DeleteThings,
-  GroupThings,
-  ModelChoices,
-  ModellingState,
-  RedoWorld,
-  SaveWorld,
-  SetModelling,
-  UndoWorld,
-  UngroupThing,
-} from "./modelling";
-import type {
   AimTeleop,
   AskFields,
   Drive,
@@ -125,14 +110,27 @@ import type {
 import type { AskProvenance, LinkProvenance, MeshStatus, RobotScene } from "./robot";
 import type { Hello, ProgramIsLate, Received } from "./session";
 import type {
+  AddThing,
+  AskModels,
+  ChangeThings,
   ControlSimulation,
+  CopyThings,
   DeleteModel,
+  DeleteThings,
   DragModel,
+  GroupThings,
   ModelAdded,
+  ModelChoices,
+  ModellingState,
   PushLink,
+  RedoWorld,
+  SaveWorld,
+  SetModelling,
   SimulationNotice,
   SimulationStatus,
   SpawnModel,
+  UndoWorld,
+  UngroupThing,
 } from "./simulation";
 import type { Clock, ResetTime, SetTime, TimeReset, TimeState, WatchClock } from "./time";
 import type {
@@ -179,7 +177,6 @@ export * from "./geometry";
 export * from "./images";
 export * from "./joints";
 export * from "./markers";
-export * from "./modelling";
 export * from "./monitor";
 export * from "./navigation";
 export * from "./points";

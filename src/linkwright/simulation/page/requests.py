@@ -1,10 +1,9 @@
 """The page features of simulated worlds, which are created on demand."""
 
-from linkwright.page.protocol.modelling import NO_WORLD
-from linkwright.page.protocol.simulation import NO_SIMULATION
+from linkwright.page.protocol.simulation import NO_SIMULATION, NO_WORLD
 from linkwright.panels.on_demand import OnDemand, messages
 
-_MODELLING = "linkwright.page.protocol.modelling"
+_MODELLING = "linkwright.page.protocol.simulation"
 _SIMULATION = "linkwright.page.protocol.simulation"
 
 ON_DEMAND = (
