@@ -15,7 +15,7 @@ DECLARED = [feature for entry in extensions(GROUP).values() for feature in entry
 PROTOCOL = "linkwright.page.protocol.navigation"
 PROGRAM = f"""
 from linkwright.page.protocol.message import BadMessageError, decode, define_later
-from linkwright.page.protocol.session import Received
+from linkwright.page.protocol.message import Received
 define_later("{PROTOCOL}:WatchNavigation")
 """
 GOOD = """

@@ -67,6 +67,7 @@ import type {
 import type { ImageFrame, OccupancyMap, PictureSize } from "./images";
 import type { CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints } from "./joints";
 import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, MarkersChanged } from "./markers";
+import type { Hello, ProgramIsLate, Received } from "./message";
 import type {
   AimTeleop,
   AskFields,
@@ -108,7 +109,6 @@ import type {
   Timeline,
 } from "./recording";
 import type { AskProvenance, LinkProvenance, MeshStatus, RobotScene } from "./robot";
-import type { Hello, ProgramIsLate, Received } from "./session";
 import type {
   AddThing,
   AskModels,
@@ -177,12 +177,12 @@ export * from "./geometry";
 export * from "./images";
 export * from "./joints";
 export * from "./markers";
+export * from "./message";
 export * from "./monitor";
 export * from "./navigation";
 export * from "./points";
 export * from "./recording";
 export * from "./robot";
-export * from "./session";
 export * from "./simulation";
 export * from "./time";
 export * from "./views-and-tools";

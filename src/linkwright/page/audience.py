@@ -17,13 +17,14 @@ from linkwright.page.outbox import BULK, TRANSFORMS, InPieces, Line, Outbox, Out
 from linkwright.page.protocol.message import (
     BadMessageError,
     PageMessage,
+    ProgramIsLate,
+    Received,
     ServerMessage,
     address_of,
     decode,
     encode,
     redundancy_key,
 )
-from linkwright.page.protocol.session import ProgramIsLate, Received
 
 if TYPE_CHECKING:
     from aiohttp.web import Request, WebSocketResponse

@@ -16,8 +16,7 @@ from linkwright.packages import PackageFinder
 from linkwright.page.audience import Audience, Page
 from linkwright.page.outbox import Payload
 from linkwright.page.page_server import PageServer
-from linkwright.page.protocol.message import ServerMessage, encode
-from linkwright.page.protocol.session import PROTOCOL_VERSION, Hello
+from linkwright.page.protocol.message import PROTOCOL_VERSION, Hello, ServerMessage, encode
 from linkwright.panels.joints import JointsFeature
 from linkwright.panels.page_feature import F, PageFeature, make_features
 from linkwright.panels.timeline import TimelineFeature
