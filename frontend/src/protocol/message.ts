@@ -22,3 +22,24 @@ export interface Received {
   count: number;
   type: "received";
 }
+
+export const TRANSFORMS_KIND = 1;
+
+/** Names and parents (index, -1 for a root) of the frames in the binary frames with this revision. */
+export interface FrameTable {
+  revision: number;
+  names: string[];
+  parents: number[];
+  type: "frame_table";
+}
+
+export const DATA_KIND = 2;
+
+/** Remove a display's content: that with a key, or all of it. */
+export interface DisplayForgotten {
+  display: string;
+  key: string | null;
+  type: "display_forgotten";
+}
+
+export const PIECE_KIND = 4;

@@ -10,7 +10,6 @@ from msgspec import to_builtins
 
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation.translate import wording
-from linkwright.page.protocol.binary import pack_data
 from linkwright.page.protocol.configuration import Folder
 from linkwright.page.protocol.displays import (
     DisplayProperties,
@@ -22,7 +21,7 @@ from linkwright.page.protocol.displays import (
 )
 from linkwright.page.protocol.geometry import PolygonLine
 from linkwright.page.protocol.joints import CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint
-from linkwright.page.protocol.message import BadMessageError, decode, encode, redundancy_key
+from linkwright.page.protocol.message import BadMessageError, decode, encode, pack_data, redundancy_key
 from linkwright.page.protocol.robot import MeshStatus, RobotScene
 from linkwright.page.protocol.views_and_tools import View, ViewChanged
 

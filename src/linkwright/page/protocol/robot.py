@@ -6,10 +6,9 @@ from typing import ClassVar, Literal
 
 from msgspec import field
 
-from linkwright.page.protocol.binary import Floats
 from linkwright.page.protocol.description import LinkInertia
 from linkwright.page.protocol.displays import Place
-from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
+from linkwright.page.protocol.message import Floats, PageMessage, Record, ServerMessage
 
 ShapeKind = Literal[
     "box", "cylinder", "capsule", "sphere", "mesh", "ellipsoid", "cone", "plane", "polyline", "heightmap"

@@ -27,8 +27,8 @@ from linkwright.graph import (
     TransformException,
 )
 from linkwright.messages import TFMessage
-from linkwright.page.protocol.binary import FrameTable, pack_transforms
 from linkwright.page.protocol.displays import StatusRow
+from linkwright.page.protocol.message import FrameTable, pack_transforms
 from linkwright.page.protocol.time import SyncMode
 from linkwright.rviz.config.schema import FIXED_FRAME
 from linkwright.rviz.frames.history import FrameHistory

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from linkwright.page.audience import PageGroup
 from linkwright.page.outbox import Payload, ScaledData, Shrink
-from linkwright.page.protocol.binary import DisplayForgotten, pack_data
 from linkwright.page.protocol.displays import (
     Display,
     DisplayProperties,
@@ -20,7 +19,7 @@ from linkwright.page.protocol.displays import (
     StatusLevel,
     StatusRow,
 )
-from linkwright.page.protocol.message import DataContent, ServerMessage
+from linkwright.page.protocol.message import DataContent, DisplayForgotten, ServerMessage, pack_data
 from linkwright.rviz.config.former_names import former_keys
 from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.rviz_config import DisplayConfig
