@@ -17,8 +17,7 @@ from linkwright.packages import PackageFinder
 from linkwright.panels.comparison.feature import show_old
 from linkwright.panels.export.snapshot import Snapshot, snapshot_of
 from linkwright.rviz.config.rviz_config import RvizConfig
-from linkwright.rviz.robot import has_visuals
-from linkwright.rviz.size import size_of
+from linkwright.rviz.robot import has_visuals, size_of
 from linkwright.urdf import Robot
 from linkwright.viewer.viewer import Viewer
 
