@@ -30,9 +30,9 @@ from linkwright.page.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 from linkwright.page.protocol.description import LinkInertia
 from linkwright.page.protocol.displays import Place
 from linkwright.page.protocol.robot import JointScene, LinkScene, Shape
-from linkwright.rviz.config.model_size import ModelSize
 from linkwright.rviz.config.property_store import PropertyStore, qos_of
 from linkwright.rviz.config.schema import PropertySpec, topic_spec
+from linkwright.rviz.config.views import ModelSize
 from linkwright.rviz.context import ViewerContext
 from linkwright.urdf import Box, Capsule, Collision, Cylinder, Inertial, Link, Material, Mesh, Robot, Sphere, Visual
 from linkwright.xacro.origin import origin_of
