@@ -22,10 +22,9 @@ from linkwright.panels.page_feature import F, PageFeature, make_features
 from linkwright.panels.timeline import TimelineFeature
 from linkwright.rviz.config.locations import keep_unsaved
 from linkwright.rviz.config.rviz_config import RvizConfig
-from linkwright.rviz.context import GraphChanges, ViewerContext
+from linkwright.rviz.context import GraphChanges, PublishedTopics, ViewerContext
 from linkwright.rviz.displays.base.display import ViewerDisplay
 from linkwright.rviz.frames.history import FrameHistory
-from linkwright.rviz.published_topics import PublishedTopics
 from linkwright.rviz.visualization.manager import Managers, VisualizationManager
 
 if TYPE_CHECKING:
