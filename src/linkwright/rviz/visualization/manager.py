@@ -25,8 +25,7 @@ from linkwright.rviz.displays.base.display import ViewerDisplay, worst
 from linkwright.rviz.displays.frames import TfDisplay
 from linkwright.rviz.displays.robot_model import RobotModelDisplay
 from linkwright.rviz.frames.stream import FrameStream, FrameView, TimeControl
-from linkwright.rviz.visualization.display_tree import DisplayTree
-from linkwright.rviz.visualization.history import Edit, History
+from linkwright.rviz.visualization.display_tree import DisplayTree, Edit, History
 
 if TYPE_CHECKING:
     from linkwright.page.outbox import Payload
