@@ -237,7 +237,7 @@ class ModelView:
 
     def _show_form(self) -> None:
         from linkwright.page.protocol.description import NOTHING_ASKED
-        from linkwright.panels.arguments import ArgumentsFeature
+        from linkwright.panels.description import ArgumentsFeature
 
         if self._viewer is not None:
             feature = self._viewer.add_feature(ArgumentsFeature)
