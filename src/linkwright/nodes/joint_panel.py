@@ -9,7 +9,7 @@ from random import Random
 from typing import Literal
 
 from linkwright.graph import Node, log_failure
-from linkwright.nodes.joint_positions import JointPositions
+from linkwright.nodes.joint_state_publisher import JointPositions
 from linkwright.nodes.joint_settings import Dependence
 from linkwright.urdf import JointType
 
