@@ -9,8 +9,8 @@ from random import Random
 from typing import Literal
 
 from linkwright.graph import Node, log_failure
+from linkwright.nodes.joint_layout import Dependence
 from linkwright.nodes.joint_state_publisher import JointPositions
-from linkwright.nodes.joint_settings import Dependence
 from linkwright.urdf import JointType
 
 PanelChange = Literal["sliders", "positions"]

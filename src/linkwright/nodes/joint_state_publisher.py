@@ -31,8 +31,15 @@ from linkwright.graph import (
     Timer,
 )
 from linkwright.messages import Header, JointState, String, Time
-from linkwright.nodes.joint_layout import JointLayout, JointRange, empty_layout, layout_of
-from linkwright.nodes.joint_settings import JointSettings, declare_settings, settings_from
+from linkwright.nodes.joint_layout import (
+    JointLayout,
+    JointRange,
+    JointSettings,
+    declare_settings,
+    empty_layout,
+    layout_of,
+    settings_from,
+)
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.urdf import Robot
 

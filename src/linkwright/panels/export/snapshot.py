@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, foreign, phrase
 from linkwright.geometry.arrays import quaternion_inverse, quaternion_multiply, rotate
 from linkwright.geometry.single import quaternion_of
-from linkwright.nodes.joint_layout import layout_of
-from linkwright.nodes.joint_settings import JointSettings
+from linkwright.nodes.joint_layout import JointSettings, layout_of
 from linkwright.packages import enclosing_package
 from linkwright.page.files import FileRefusedError, MeshFolders
 from linkwright.page.outbox import ScaledData
