@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
 from linkwright.graph import Node, ParameterDescriptor, ParameterType
-from linkwright.nodes.robot_transforms import MOVING_TYPES
+from linkwright.nodes.robot_state_publisher import MOVING_TYPES
 from linkwright.urdf import Joint, JointType, Robot
 
 _DEPENDENT_FIELDS = ("parent", "factor", "offset")

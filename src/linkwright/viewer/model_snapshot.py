@@ -11,7 +11,7 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
 from linkwright.messages import String, TFMessage
 from linkwright.nodes.joint_layout import JointSettings, layout_of
-from linkwright.nodes.robot_transforms import RobotTransforms
+from linkwright.nodes.robot_state_publisher import RobotTransforms
 from linkwright.packages import PackageFinder
 from linkwright.panels.comparison.feature import show_old
 from linkwright.panels.export.snapshot import Snapshot, snapshot_of

@@ -9,7 +9,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS, Node
 from linkwright.messages import JointState, String, TFMessage, deserialize
 from linkwright.nodes.joint_layout import JointSettings, layout_of
-from linkwright.nodes.robot_transforms import RobotTransforms
+from linkwright.nodes.robot_state_publisher import RobotTransforms
 from linkwright.urdf import Robot
 
 _JOINT_STATES = "sensor_msgs/msg/JointState"

@@ -19,7 +19,7 @@ from linkwright.graph import (
 )
 from linkwright.messages import JointState, String, TFMessage, TransformBatch
 from linkwright.nodes.joint_layout import JointSettings, layout_of
-from linkwright.nodes.robot_transforms import MOVING_TYPES, RobotTransforms
+from linkwright.nodes.robot_state_publisher import MOVING_TYPES, RobotTransforms
 from linkwright.urdf import Robot
 
 PREFIX = "old"
