@@ -11,8 +11,7 @@ from linkwright.graph import Graph, Parameter
 from linkwright.graph.command_line.ros_arguments import parse
 from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.messages import get_service
-from linkwright.nodes.options import NodeOptions, RunningNode, SingleNode, create_node, starting
-from linkwright.nodes.registry import COMPONENTS
+from linkwright.nodes.options import COMPONENTS, NodeOptions, RunningNode, SingleNode, create_node, starting
 
 OnLoaded = Callable[[RunningNode, NodeOptions], None]
 

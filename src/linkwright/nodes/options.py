@@ -5,20 +5,24 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, runtime_checkable
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Graph, Node
 from linkwright.graph.command_line.ros_arguments import RosArguments, parse
 from linkwright.graph.names.remapping import Remappings
 from linkwright.graph.names.rules import absolute_namespace, join
 from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.loading.extensions import extensions
 
 if TYPE_CHECKING:
     from linkwright.descriptions import DescriptionLibrary
+    from linkwright.loading.extensions import EntryPoint
     from linkwright.nodes.joint_panel import JointPanel
+
 
 N = TypeVar("N", bound=Node)
 
@@ -181,3 +185,64 @@ def _set_levels(graph: Graph, node: Node, ros: RosArguments) -> None:
         node.get_logger().set_level(ros.log_level)
     for logger, level in ros.log_levels.items():
         graph.get_logger(logger).set_level(level)
+
+
+class NodeRegistry(Mapping[tuple[str, str], Factory]):
+    """Finds the function or class that starts a node, by package and executable.
+
+    Args:
+        group: of the entry points.
+    """
+
+    def __init__(self, group: str) -> None:
+        self._group = group
+
+    @cached_property
+    def entry_points(self) -> dict[tuple[str, str], EntryPoint]:
+        """The entry points, by package and name."""
+        found: dict[tuple[str, str], EntryPoint] = {}
+        for name, entry in extensions(self._group).items():
+            package, _, node = name.partition("/")
+            found[package, node] = entry
+        return found
+
+    def __getitem__(self, key: tuple[str, str]) -> Factory:
+        """The function or class that starts a node.
+
+        Raises:
+            KeyError: there is no such node.
+            LinkwrightError: the package that brings it cannot be imported (NODE002).
+        """
+        entry = self.entry_points[key]
+        try:
+            factory: Factory = entry.load()
+        except Exception as error:
+            package, name = key
+            message = phrase("the node '{package}/{name}' cannot be imported", package=package, name=name)
+            hint = phrase("'{place}' brings it: {problem}", place=entry.distribution, problem=foreign(error))
+            raise LinkwrightError(Diagnostic("NODE002", message, hint=hint)) from error
+        return factory
+
+    def __contains__(self, key: object) -> bool:
+        return key in self.entry_points
+
+    def __iter__(self) -> Iterator[tuple[str, str]]:
+        return iter(self.entry_points)
+
+    def __len__(self) -> int:
+        return len(self.entry_points)
+
+
+def default_name(package: str, executable: str) -> str | None:
+    """Return the default name of a node; None if only the node itself knows it."""
+    with suppress(LinkwrightError, KeyError):
+        name: str | None = getattr(EXECUTABLES[package, executable], "DEFAULT_NAME", None)
+        return name
+    return None
+
+
+EXECUTABLES = NodeRegistry("linkwright.nodes")
+"""The nodes that a launch file or a command can name."""
+
+COMPONENTS = NodeRegistry("linkwright.components")
+"""The nodes that can be composed."""
