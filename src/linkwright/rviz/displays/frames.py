@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from linkwright.graph.names.expressions import Expression
 
 
+FRAME_TIMEOUT = "Frame Timeout"
+"""The property of TF that is the time after which it hides a frame, in seconds."""
+
 _REFERENCE = "Reference Frame"
 
 
@@ -133,7 +136,7 @@ _STATIC = (
     PropertySpec("Marker Scale", "float", 1.0, "Size of names, axes and arrows.", minimum=0.0),
     PropertySpec("Update Interval", "float", 0.0, "Seconds between updates; 0 for every frame.", minimum=0.0),
     PropertySpec(
-        "Frame Timeout",
+        FRAME_TIMEOUT,
         "float",
         15.0,
         "Seconds until a frame without new transforms is removed: grey after the first third, hidden after the second.",
@@ -178,6 +181,8 @@ class TfDisplay(ViewerDisplay):
         """Follow a filter, or the check box over all frames."""
         if path in _FILTERS:
             self.frames_changed()
+        elif path == (FRAME_TIMEOUT,):
+            self.host.fading_changed()
         elif path == _ALL:
             value = self.properties.flag(*_ALL)
             for name in self._boxes():
@@ -186,6 +191,11 @@ class TfDisplay(ViewerDisplay):
         elif path[0] == "Frames" and not self.properties.flag(*path) and self.properties.flag(*_ALL):
             self.properties.set(_ALL, False)
             self.pages.publish(PropertyChanged(self.property_id(_ALL), False))
+
+    def enabled_changed(self) -> None:
+        """Show frames and their status, or none; frames that nobody shows need not fade."""
+        self.host.fading_changed()
+        super().enabled_changed()
 
     def frames_changed(self) -> None:
         """List the frames again, and show the status of each."""

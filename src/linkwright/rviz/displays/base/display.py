@@ -47,6 +47,9 @@ class DisplayHost(Protocol):
     def robot_changed(self, gone: set[str]) -> None:
         """Handle a display's new robot; `gone` are the frames that only the former one had."""
 
+    def fading_changed(self) -> None:
+        """Handle another time after which a display hides frames, or a change of its check box."""
+
 
 Pose = NDArray[np.float64]
 """x, y, z (metres), qx, qy, qz, qw of a frame in the Fixed Frame; shape (7,)."""
