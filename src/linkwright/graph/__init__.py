@@ -58,8 +58,17 @@ from linkwright.graph.qos.profile import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from linkwright.graph.time.clock import Clock, ClockChange, JumpHandle, JumpThreshold, ROSClock, TimeJump
-from linkwright.graph.time.timebase import JumpClock, SystemClock, Timebase
+from linkwright.graph.time.clock import (
+    Clock,
+    ClockChange,
+    JumpClock,
+    JumpHandle,
+    JumpThreshold,
+    ROSClock,
+    SystemClock,
+    Timebase,
+    TimeJump,
+)
 from linkwright.graph.time.values import ClockType, Duration, Time
 from linkwright.graph.transforms.errors import (
     ConnectivityException,

@@ -23,7 +23,7 @@ from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.names.remapping import Remappings
 from linkwright.graph.names.rules import NodeIdentity
-from linkwright.graph.time.timebase import SystemClock, Timebase
+from linkwright.graph.time.clock import SystemClock, Timebase
 
 
 class LocalGraph(GraphQueries):

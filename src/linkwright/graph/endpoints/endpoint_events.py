@@ -27,7 +27,7 @@ from linkwright.graph.loop.entity import Entity
 from linkwright.graph.loop.node_handle import Dispatcher
 from linkwright.graph.qos.compatibility import limit_ns
 from linkwright.graph.qos.profile import LivelinessPolicy, QoSPolicyKind
-from linkwright.graph.time.timebase import Alarm
+from linkwright.graph.time.clock import Alarm
 
 
 class _Watch:

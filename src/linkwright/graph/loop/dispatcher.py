@@ -14,7 +14,7 @@ from typing import Any
 
 from linkwright.graph.loop.entity import Entity
 from linkwright.graph.loop.node_handle import CallbackGroup, NodeHandle
-from linkwright.graph.time.timebase import Alarm, Timebase
+from linkwright.graph.time.clock import Alarm, Timebase
 
 _CALLS_A_TURN = 256
 _SECONDS_A_TURN = 0.002

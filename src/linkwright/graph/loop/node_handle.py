@@ -14,7 +14,7 @@ from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.remapping import Remappings
 from linkwright.graph.names.rules import NodeIdentity, expand_service_name, expand_topic_name
-from linkwright.graph.time.timebase import AlarmSetter, Timebase
+from linkwright.graph.time.clock import AlarmSetter, Timebase
 
 if TYPE_CHECKING:
     from typing_extensions import Self

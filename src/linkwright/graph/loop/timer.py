@@ -10,8 +10,7 @@ from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError
 from linkwright.graph.loop.entity import Entity, accepts
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import CallbackGroup, Dispatcher, NodeHandle
-from linkwright.graph.time.clock import Clock
-from linkwright.graph.time.timebase import Alarm
+from linkwright.graph.time.clock import Alarm, Clock
 from linkwright.graph.time.values import ClockType, Time
 
 
