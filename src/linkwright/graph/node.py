@@ -10,9 +10,8 @@ from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX, Service
 from linkwright.graph.endpoints.subscription import Subscription
-from linkwright.graph.introspection.node_queries import NodeQueries
-from linkwright.graph.introspection.type_descriptions import PARAMETER as TYPE_DESCRIPTIONS
-from linkwright.graph.introspection.type_descriptions import TypeDescriptions, is_usual
+from linkwright.graph.introspection.node_queries import PARAMETER as TYPE_DESCRIPTIONS
+from linkwright.graph.introspection.node_queries import NodeQueries, TypeDescriptions, is_usual
 from linkwright.graph.local_graph import LocalGraph
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.log.rosout import LOG_TYPE, ROSOUT_TOPIC, Rosout
