@@ -24,17 +24,20 @@ from linkwright.graph.names.rules import (
     NodeIdentity,
 )
 from linkwright.graph.node import Node
-from linkwright.graph.parameters.errors import (
+from linkwright.graph.parameters.parameter import (
     InvalidParameterException,
     InvalidParameterTypeException,
     InvalidParameterValueException,
+    Parameter,
     ParameterAlreadyDeclaredException,
+    ParameterDescriptor,
     ParameterException,
     ParameterImmutableException,
     ParameterNotDeclaredException,
+    ParameterType,
     ParameterUninitializedException,
+    SetParametersResult,
 )
-from linkwright.graph.parameters.parameter import Parameter, ParameterDescriptor, ParameterType, SetParametersResult
 from linkwright.graph.qos.compatibility import QoSCompatibility, qos_check_compatible
 from linkwright.graph.qos.profile import (
     ACTION_STATUS_QOS,

@@ -27,7 +27,7 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.files.input_files import read_text
-from linkwright.graph.parameters.errors import ParameterFileNotFoundError
+from linkwright.graph.parameters.parameter import ParameterFileNotFoundError
 from linkwright.graph.parameters.rules import ParameterRules
 
 PARAMETERS_KEY = "ros__parameters"

@@ -6,16 +6,14 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.parameters.errors import (
-    ParameterAlreadyDeclaredException,
-    ParameterException,
-    ParameterNotDeclaredException,
-    ParameterUninitializedException,
-)
 from linkwright.graph.parameters.parameter import (
     PARAMETER_SEPARATOR_STRING,
     Parameter,
+    ParameterAlreadyDeclaredException,
     ParameterDescriptor,
+    ParameterException,
+    ParameterNotDeclaredException,
+    ParameterUninitializedException,
     interface,
     parameter_value_to_python,
     service_type,

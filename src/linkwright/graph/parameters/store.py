@@ -10,16 +10,19 @@ from math import isclose
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.graph.parameters.errors import (
+from linkwright.graph.parameters.parameter import (
     InvalidParameterException,
     InvalidParameterTypeException,
     InvalidParameterValueException,
+    Parameter,
     ParameterAlreadyDeclaredException,
+    ParameterDescriptor,
     ParameterImmutableException,
     ParameterNotDeclaredException,
+    ParameterType,
     ParameterUninitializedException,
+    SetParametersResult,
 )
-from linkwright.graph.parameters.parameter import Parameter, ParameterDescriptor, ParameterType, SetParametersResult
 
 _RELATIVE_TOLERANCE = 1e-6
 """How near floating point values must be to count as equal (rclpy ``Node.PARAM_REL_TOL``)."""
