@@ -33,9 +33,8 @@ from linkwright.wire.joining import middleware
 from linkwright.wire.unfollowed import DISCOVERY_SERVERS, MIDDLEWARE, SECURITY, ZENOH
 
 if TYPE_CHECKING:
-    from linkwright.graph.computation_graph import Graph
     from linkwright.graph.loop.future import Future
-    from linkwright.graph.node import Node
+    from linkwright.graph.node import Graph, Node
 
 _TF, _JOINT_STATE = "tf2_msgs/msg/TFMessage", "sensor_msgs/msg/JointState"
 _TRANSFORMS = ("tf", "tf_static")

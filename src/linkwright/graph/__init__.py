@@ -2,7 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-from linkwright.graph.computation_graph import Graph
 from linkwright.graph.endpoints.bus import Transport
 from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
@@ -23,7 +22,7 @@ from linkwright.graph.names.rules import (
     InvalidTopicNameError,
     NodeIdentity,
 )
-from linkwright.graph.node import Node
+from linkwright.graph.node import Graph, Node
 from linkwright.graph.parameters.parameter import (
     InvalidParameterException,
     InvalidParameterTypeException,

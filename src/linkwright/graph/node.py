@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
-from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from functools import cached_property, partial, wraps
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
 
 from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.publisher import Publisher
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, SubscriptionEventCallbacks
     from linkwright.graph.executors import Executor
     from linkwright.graph.introspection.graph_queries import TopicEndpointInfo
+
 
 M = TypeVar("M")
 
@@ -473,3 +474,27 @@ def _by_name(parameters: Mapping[str, Any] | Sequence[Parameter]) -> Mapping[str
 def _profiles(ask: Callable[[str, bool], list[TopicEndpointInfo]], topic: str) -> Iterator[QoSProfile]:
     """The profiles of the endpoints of a topic, in this process and outside; the graph is asked when one is needed."""
     yield from (endpoint.qos_profile for endpoint in ask(topic, True))
+
+
+P = ParamSpec("P")
+
+
+def _made_by(node_class: Callable[Concatenate[LocalGraph, P], Node]) -> Callable[Concatenate[Graph, P], Node]:
+    """The method that makes a node of a class in a graph, with that class's further arguments."""
+
+    @wraps(node_class, assigned=("__doc__",), updated=())
+    def create_node(graph: Graph, /, *args: P.args, **kwargs: P.kwargs) -> Node:
+        return node_class(graph, *args, **kwargs)
+
+    return create_node
+
+
+class Graph(LocalGraph):
+    """A ROS-like computation graph.
+
+    Made inside a running event loop, it has that loop run the callbacks of its nodes. Made elsewhere, or with
+    `threads`, its nodes have no dispatcher of their own; the executors of `linkwright.graph.executors` are ones. Its
+    arguments are those of `LocalGraph`.
+    """
+
+    create_node = _made_by(Node)

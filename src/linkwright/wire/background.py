@@ -22,12 +22,12 @@ from linkwright.wire.outside import Outside
 from linkwright.wire.switch import is_switched_off
 
 if TYPE_CHECKING:
-    from linkwright.graph.computation_graph import Graph
     from linkwright.graph.endpoints.base import Presence
     from linkwright.graph.endpoints.client import Client
     from linkwright.graph.endpoints.publisher import Publisher
     from linkwright.graph.endpoints.service import Service
     from linkwright.graph.endpoints.subscription import Subscription
+    from linkwright.graph.node import Graph
 
 _JOINED_WITHIN = 10.0
 """Seconds after which the thread that joins is abandoned: an import that Ctrl-C ended may keep its lock for ever."""
