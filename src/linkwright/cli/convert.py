@@ -53,7 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Write or print the converted file; findings go to standard error."""
     from linkwright.descriptions.conversion import as_sdf
-    from linkwright.descriptions.worlds import is_world
+    from linkwright.descriptions.service import is_world
     from linkwright.packages import PackageFinder
 
     path = Path(arguments.file).absolute()

@@ -1,8 +1,7 @@
 """Read files, or texts that are not saved yet, as robots and worlds, with their origins and findings."""
 
 from linkwright.descriptions.library import Description, DescriptionLibrary
-from linkwright.descriptions.service import Packages, examine, is_xacro, load
-from linkwright.descriptions.worlds import WorldDescription, examine_world, is_world
+from linkwright.descriptions.service import Packages, WorldDescription, examine, examine_world, is_world, is_xacro, load
 from linkwright.diagnostics.source import TEXT_NAME
 
 __all__ = [

@@ -183,7 +183,7 @@ def _read(text: str) -> Description:
     except LinkwrightError as error:
         return Description(TEXT_NAME, Document(Element("robot")), Reading(None, error.diagnostics))
     if document.root.tag == "sdf":
-        from linkwright.descriptions.worlds import robot_of_text
+        from linkwright.descriptions.service import robot_of_text
 
         return Description(TEXT_NAME, document, robot_of_text(text, TEXT_NAME))
     return Description(TEXT_NAME, document, read(document))
