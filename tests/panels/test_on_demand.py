@@ -8,10 +8,10 @@ import pytest
 
 from linkwright.loading.extensions import extensions
 from linkwright.page.protocol.message import address_of
-from linkwright.panels.on_demand import GROUP
+from linkwright.panels.page_feature import ON_DEMAND_GROUP
 from tests.imports import loaded_by
 
-DECLARED = [feature for entry in extensions(GROUP).values() for feature in entry.load().ON_DEMAND]
+DECLARED = [feature for entry in extensions(ON_DEMAND_GROUP).values() for feature in entry.load().ON_DEMAND]
 PROTOCOL = "linkwright.page.protocol.navigation"
 PROGRAM = f"""
 from linkwright.page.protocol.message import BadMessageError, decode, define_later

@@ -1,7 +1,7 @@
 """The page features of this room that are created on demand."""
 
 from linkwright.page.protocol.recording import NOTHING_RECORDED
-from linkwright.panels.on_demand import OnDemand, messages
+from linkwright.panels.page_feature import OnDemand, messages
 
 _EDITING = "linkwright.page.protocol.editing"
 _MONITOR = "linkwright.page.protocol.monitor"

@@ -1,6 +1,6 @@
 """The page features of navigation, which are created on demand."""
 
-from linkwright.panels.on_demand import OnDemand, messages
+from linkwright.panels.page_feature import OnDemand, messages
 
 ON_DEMAND = (
     OnDemand(

@@ -1,7 +1,7 @@
 """The page features of simulated worlds, which are created on demand."""
 
 from linkwright.page.protocol.simulation import NO_SIMULATION, NO_WORLD
-from linkwright.panels.on_demand import OnDemand, messages
+from linkwright.panels.page_feature import OnDemand, messages
 
 _MODELLING = "linkwright.page.protocol.simulation"
 _SIMULATION = "linkwright.page.protocol.simulation"

@@ -1,6 +1,6 @@
 """The page feature of spoken commands, which is created on demand."""
 
-from linkwright.panels.on_demand import OnDemand, messages
+from linkwright.panels.page_feature import OnDemand, messages
 
 _VOICE = "linkwright.page.protocol.voice"
 _WORDS = "linkwright.page.protocol.voice_words"
