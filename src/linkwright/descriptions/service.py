@@ -14,7 +14,7 @@ from linkwright.packages import PackageFinder
 from linkwright.urdf import Reading, Robot, read
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xmltree import Document, Element, Overlay
-from linkwright.xmltree.collection import seldom_collected
+from linkwright.xmltree.nodes import seldom_collected
 from linkwright.xmltree.reader import read_bytes
 
 if TYPE_CHECKING:
