@@ -13,8 +13,8 @@ from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.introspection.node_queries import PARAMETER as TYPE_DESCRIPTIONS
 from linkwright.graph.introspection.node_queries import NodeQueries, TypeDescriptions, is_usual
 from linkwright.graph.local_graph import LocalGraph
+from linkwright.graph.log.console import LOG_TYPE, ROSOUT_TOPIC, Rosout
 from linkwright.graph.log.logger import Logger
-from linkwright.graph.log.rosout import LOG_TYPE, ROSOUT_TOPIC, Rosout
 from linkwright.graph.loop.entity import GuardCondition
 from linkwright.graph.loop.node_handle import FREE_GROUP, CallbackGroup, NodeHandle
 from linkwright.graph.loop.self_waits import STRICT
