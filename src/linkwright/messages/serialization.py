@@ -6,8 +6,7 @@ import struct
 from typing import Any, TypeVar
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.messages.cdr.reader import READ_FAULTS, compile_reader
-from linkwright.messages.cdr.values import DataFaultError
+from linkwright.messages.cdr.values import READ_FAULTS, DataFaultError
 from linkwright.messages.classes import class_of
 from linkwright.messages.errors import MessageDataError, data_error
 from linkwright.messages.message import Message, definition_of
@@ -76,6 +75,8 @@ def _reader_for(data: bytes, message_class: type[Any]) -> Any:
     name = message_class.TYPE_NAME
     reader = _big_readers.get(name)
     if reader is None:
+        from linkwright.messages.cdr.reader import compile_reader
+
         reader = _big_readers[name] = compile_reader(definition_of(message_class), class_of, ">")
     return reader
 

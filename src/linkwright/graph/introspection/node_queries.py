@@ -12,7 +12,7 @@ from linkwright.graph.endpoints.base import Endpoint
 from linkwright.graph.introspection.graph_queries import GraphQueries, TopicEndpointInfo
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.names.rules import InvalidNameError, join
-from linkwright.messages import InterfaceNotFoundError, definition_text, get_message, is_before_iron
+from linkwright.messages import InterfaceNotFoundError, get_message, is_before_iron
 
 PARAMETER = "start_type_description_service"
 """The parameter that decides whether a node has the service."""
@@ -95,6 +95,8 @@ def _source(name: str) -> Any:
     _, encoding, own_name = name.split("/")
     if "_" in own_name:
         return _interface("TypeSource")(type_name=name, encoding="implicit")
+    from linkwright.messages import definition_text
+
     return _interface("TypeSource")(type_name=name, encoding=encoding, raw_file_contents=definition_text(name))
 
 
