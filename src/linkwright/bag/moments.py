@@ -7,12 +7,12 @@ from functools import cached_property
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
-from linkwright.bag.lookup import McapLookup
-from linkwright.bag.rows import RowLookup
-
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
     from rosbags.rosbag2 import Reader
+
+    from linkwright.bag.lookup import McapLookup
+    from linkwright.bag.rows import RowLookup
 
 TRANSFORMS, STATIC_TRANSFORMS = "/tf", "/tf_static"
 TRANSFORMS_NS = 2_000_000_000
@@ -97,8 +97,12 @@ class Moments:
         found: list[tuple[Any, McapLookup | RowLookup]] = []
         for each in getattr(storage, "storages", [storage]):
             if hasattr(each, "dbconn"):
+                from linkwright.bag.rows import RowLookup
+
                 found.append((each, RowLookup(each)))
             elif each.chunks:
+                from linkwright.bag.lookup import McapLookup
+
                 found.append((each, McapLookup(each)))
             else:
                 return []
