@@ -1,7 +1,16 @@
 """Read files, or texts that are not saved yet, as robots and worlds, with their origins and findings."""
 
-from linkwright.descriptions.library import Description, DescriptionLibrary
-from linkwright.descriptions.service import Packages, WorldDescription, examine, examine_world, is_world, is_xacro, load
+from linkwright.descriptions.service import (
+    Description,
+    DescriptionLibrary,
+    Packages,
+    WorldDescription,
+    examine,
+    examine_world,
+    is_world,
+    is_xacro,
+    load,
+)
 from linkwright.diagnostics.source import TEXT_NAME
 
 __all__ = [

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from linkwright.descriptions import Description, Packages, examine_world, is_world
 from linkwright.descriptions import examine as examine_description
-from linkwright.descriptions.library import TRUE_OF_PARTS
+from linkwright.descriptions.service import TRUE_OF_PARTS
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, phrase
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.finding import Finding

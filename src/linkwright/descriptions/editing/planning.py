@@ -20,7 +20,7 @@ from linkwright.descriptions.editing.proposals import proposals
 from linkwright.descriptions.editing.refusals import Attempt, refusal
 from linkwright.descriptions.editing.request import EditRequest
 from linkwright.descriptions.editing.snapshot import Snapshot
-from linkwright.descriptions.library import Description
+from linkwright.descriptions.service import Description
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.single import quaternion_from_rpy
 from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
