@@ -192,7 +192,7 @@ def load_viewer() -> None:
 
 
 def _attach_panel(viewer: Viewer, running: RunningNode) -> None:
-    from linkwright.nodes import NodeWithSliders
+    from linkwright.nodes.joint_panel import NodeWithSliders
 
     if isinstance(running, NodeWithSliders):
         viewer.attach_joint_panel(running.panel)

@@ -9,8 +9,7 @@ from linkwright.nodes.options import (
     Factory,
     FinishingNode,
     NodeOptions,
-    NodeWithSliders,
     RunningNode,
 )
 
-__all__ = ["COMPONENTS", "EXECUTABLES", "Factory", "FinishingNode", "NodeOptions", "NodeWithSliders", "RunningNode"]
+__all__ = ["COMPONENTS", "EXECUTABLES", "Factory", "FinishingNode", "NodeOptions", "RunningNode"]

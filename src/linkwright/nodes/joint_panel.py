@@ -6,11 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite
 from random import Random
-from typing import Literal
+from typing import Literal, Protocol, runtime_checkable
 
 from linkwright.graph import Node, log_failure
 from linkwright.nodes.joint_layout import Dependence
 from linkwright.nodes.joint_state_publisher import JointPositions
+from linkwright.nodes.options import RunningNode
 from linkwright.urdf import JointType
 
 PanelChange = Literal["sliders", "positions"]
@@ -40,6 +41,15 @@ class JointSlider:
     mimic: str | None = None
     multiplier: float = 1.0
     offset: float = 0.0
+
+
+@runtime_checkable
+class NodeWithSliders(RunningNode, Protocol):
+    """A node whose joints can be moved by sliders."""
+
+    @property
+    def panel(self) -> JointPanel:
+        """The sliders."""
 
 
 class JointPanel:

@@ -21,7 +21,6 @@ from linkwright.loading.extensions import extensions
 if TYPE_CHECKING:
     from linkwright.descriptions import DescriptionLibrary
     from linkwright.loading.extensions import EntryPoint
-    from linkwright.nodes.joint_panel import JointPanel
 
 
 N = TypeVar("N", bound=Node)
@@ -68,7 +67,7 @@ class NodeOptions:
 
 
 class RunningNode(Protocol):
-    """A running node; some have more, see `FinishingNode` and `NodeWithSliders`."""
+    """A running node; some have more, such as a `FinishingNode`."""
 
     @property
     def node(self) -> Node:
@@ -84,15 +83,6 @@ class FinishingNode(RunningNode, Protocol):
 
     finished: asyncio.Future[int]
     """Receives the exit status when the node is done; the node must then be closed."""
-
-
-@runtime_checkable
-class NodeWithSliders(RunningNode, Protocol):
-    """A node whose joints can be moved by sliders."""
-
-    @property
-    def panel(self) -> JointPanel:
-        """The sliders."""
 
 
 class SingleNode:
