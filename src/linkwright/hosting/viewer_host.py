@@ -192,7 +192,7 @@ def load_viewer() -> None:
 
 
 def _attach_panel(viewer: Viewer, running: RunningNode) -> None:
-    from linkwright.nodes.joint_panel import NodeWithSliders
+    from linkwright.nodes.joint_state_publisher_gui import NodeWithSliders
 
     if isinstance(running, NodeWithSliders):
         viewer.attach_joint_panel(running.panel)

@@ -20,7 +20,7 @@ from linkwright.page.protocol.message import ServerMessage
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 if TYPE_CHECKING:
-    from linkwright.nodes.joint_panel import JointPanel
+    from linkwright.nodes.joint_state_publisher_gui import JointPanel
 
 _LAG = 0.01
 """Delay before positions are sent after a change, seconds, so that its transforms go out first."""

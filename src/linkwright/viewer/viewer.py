@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from linkwright.bag import BagReader, Playback
     from linkwright.descriptions.pairs import Pair
     from linkwright.graph import Node
-    from linkwright.nodes.joint_panel import JointPanel
+    from linkwright.nodes.joint_state_publisher_gui import JointPanel
     from linkwright.page.uploads import Guests
     from linkwright.panels.live_history import LiveHistory
 
