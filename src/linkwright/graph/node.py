@@ -16,8 +16,8 @@ from linkwright.graph.local_graph import LocalGraph
 from linkwright.graph.log.console import LOG_TYPE, ROSOUT_TOPIC, Rosout
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.loop.entity import GuardCondition
+from linkwright.graph.loop.future import STRICT
 from linkwright.graph.loop.node_handle import FREE_GROUP, CallbackGroup, NodeHandle
-from linkwright.graph.loop.self_waits import STRICT
 from linkwright.graph.loop.timer import Rate, Timer
 from linkwright.graph.names.remapping import Remappings
 from linkwright.graph.names.rules import NodeIdentity, absolute_namespace, check_node_name

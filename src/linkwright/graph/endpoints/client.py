@@ -58,7 +58,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     ) -> None:
         Entity.__init__(self, node, callback_group)
         self._describe(node, srv_type, srv_name, qos_profile)
-        self.unblockable = not node.strict_callback_groups  # see `linkwright.graph.loop.self_waits`
+        self.unblockable = not node.strict_callback_groups  # see `linkwright.graph.loop.future`
         self.raw = raw
         self.outside: OutsideService | None = None
         """The server in another process; None while there is none. See `set_outside`."""
