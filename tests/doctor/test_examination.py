@@ -20,7 +20,7 @@ from linkwright.doctor import (
     TransformSeen,
     examine,
 )
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 

@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.messages import String, get_service, type_hash
 

@@ -167,7 +167,7 @@ def run_call(arguments: argparse.Namespace) -> int:
 
 def _check_type(session: Session, name: str, asked: str) -> None:
     """Report a service with another type, instead of waiting for it in vain."""
-    from linkwright.graph.endpoints.info import EndpointKind
+    from linkwright.graph.endpoints.base import EndpointKind
 
     servers = [
         endpoint

@@ -25,8 +25,8 @@ from linkwright.doctor.record import (
     TransformSeen,
     node_of,
 )
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.endpoints.drivers import Dispute, drivers_of, publishers_of
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.names.rules import join
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.wire.joining import middleware

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING
 
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.endpoints.bus import Transport
 from linkwright.graph.endpoints.client import Client
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription

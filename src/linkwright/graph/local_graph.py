@@ -7,10 +7,9 @@ import threading
 from collections import Counter
 from collections.abc import Callable
 
-from linkwright.graph.endpoints.base import Endpoint, Presence
+from linkwright.graph.endpoints.base import Endpoint, EndpointInfo, Presence
 from linkwright.graph.endpoints.bus import Bus, Transport
 from linkwright.graph.endpoints.client import Client
-from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription

@@ -21,7 +21,7 @@ from linkwright.geometry.arrays import Array, quaternion_from_matrix
 from linkwright.geometry.bounds import Bounds, Placement, bounds_of, placement, union
 from linkwright.geometry.single import quaternion_of
 from linkwright.graph import DurabilityPolicy, MessageInfo
-from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.introspection.graph_queries import UNKNOWN_NODE
 from linkwright.kinematics import KinematicTree
 from linkwright.messages import String

@@ -14,7 +14,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, TypedDict, TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Phrase, render
-from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.log.logger import Logger, run_logged
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.engine import Engine, Work

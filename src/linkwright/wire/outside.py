@@ -6,7 +6,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 
-from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.names.rules import NodeIdentity
 
 

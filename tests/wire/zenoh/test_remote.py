@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.tokens import Token

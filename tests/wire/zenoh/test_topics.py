@@ -8,7 +8,7 @@ import time
 
 import zenoh
 
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import (
     LivelinessPolicy,

@@ -9,9 +9,8 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Generic, Protocol, TypeVar
 
-from linkwright.graph.endpoints.base import Endpoint, Presence
+from linkwright.graph.endpoints.base import Endpoint, EndpointInfo, Presence
 from linkwright.graph.endpoints.client import Client
-from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription

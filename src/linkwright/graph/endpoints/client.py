@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any, Generic, Protocol, TypeVar
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.graph.endpoints.service import EventType, IntrospectedEndpoint, RequestId, Service, copy_of
 from linkwright.graph.loop.entity import Entity
 from linkwright.graph.loop.future import Future

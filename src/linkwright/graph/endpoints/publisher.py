@@ -8,8 +8,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from linkwright.graph.endpoints.base import TopicEndpoint
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind, TopicEndpoint
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.log.logger import run_logged
 from linkwright.graph.loop.node_handle import CallbackGroup, NodeHandle

@@ -9,8 +9,7 @@ from functools import partial
 from inspect import isawaitable
 from typing import Any, Generic, NamedTuple, TypeVar
 
-from linkwright.graph.endpoints.base import ServiceEndpoint
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind, ServiceEndpoint
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.loop.entity import Entity
 from linkwright.graph.loop.node_handle import CallbackGroup, NodeHandle

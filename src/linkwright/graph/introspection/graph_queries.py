@@ -9,9 +9,8 @@ from copy import copy
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 
-from linkwright.graph.endpoints.base import Endpoint
+from linkwright.graph.endpoints.base import Endpoint, EndpointInfo, EndpointKind
 from linkwright.graph.endpoints.bus import Bus, Transport
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
 from linkwright.graph.faults import NodeNotFoundError
 from linkwright.graph.log.logger import Logger, run_logged
 from linkwright.graph.loop.node_handle import NodeHandle

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from copy import copy
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 from linkwright.wire.dds.domain import Domain
 from linkwright.wire.dds.services import Pair

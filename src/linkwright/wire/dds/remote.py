@@ -10,7 +10,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Protocol
 
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.wire.dds.discovery_info import NodeEntities, ParticipantEntities

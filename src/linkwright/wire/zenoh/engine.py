@@ -14,7 +14,7 @@ from typing import Any
 
 import zenoh
 
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.messages import InterfaceNotFoundError, type_hash
