@@ -9,8 +9,7 @@ from dataclasses import dataclass, field
 from linkwright.graph import Graph
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.names.remapping import Remappings
-from linkwright.graph.names.rules import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity, Remappings
 from linkwright.wire.background import BackgroundTransport
 
 ENCLAVE = "/linkwright_bridge"

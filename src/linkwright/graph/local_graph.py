@@ -20,8 +20,7 @@ from linkwright.graph.log.logger import Logger, LogLevels, LogSink
 from linkwright.graph.loop.dispatcher import LoopDispatcher
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.names.remapping import Remappings
-from linkwright.graph.names.rules import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity, Remappings
 from linkwright.graph.time.clock import SystemClock, Timebase
 
 

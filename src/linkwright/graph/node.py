@@ -19,8 +19,7 @@ from linkwright.graph.loop.entity import GuardCondition
 from linkwright.graph.loop.future import STRICT
 from linkwright.graph.loop.node_handle import FREE_GROUP, CallbackGroup, NodeHandle
 from linkwright.graph.loop.timer import Rate, Timer
-from linkwright.graph.names.remapping import Remappings
-from linkwright.graph.names.rules import NodeIdentity, absolute_namespace, check_node_name
+from linkwright.graph.names.rules import NodeIdentity, Remappings, absolute_namespace, check_node_name
 from linkwright.graph.parameters.node_parameters import (
     EVENTS_TOPIC,
     EVENTS_TYPE,

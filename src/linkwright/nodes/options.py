@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, runtime_chec
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Graph, Node
 from linkwright.graph.command_line.ros_arguments import RosArguments, parse
-from linkwright.graph.names.remapping import Remappings
-from linkwright.graph.names.rules import absolute_namespace, join
+from linkwright.graph.names.rules import Remappings, absolute_namespace, join
 from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.loading.extensions import extensions
 

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.log.logger import Logger
-from linkwright.graph.names.remapping import Remappings
-from linkwright.graph.names.rules import NodeIdentity, expand_service_name, expand_topic_name
+from linkwright.graph.names.rules import NodeIdentity, Remappings, expand_service_name, expand_topic_name
 from linkwright.graph.time.clock import AlarmSetter, Timebase
 
 if TYPE_CHECKING:
