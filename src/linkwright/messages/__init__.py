@@ -9,8 +9,7 @@ from linkwright.messages.definitions.embedded import add_definitions
 from linkwright.messages.definitions.hashing import type_hash
 from linkwright.messages.distribution import is_before_iron
 from linkwright.messages.errors import DefinitionError, FieldValueError, InterfaceNotFoundError, MessageDataError
-from linkwright.messages.message import ActionType, Message, ServiceType, definition_of
-from linkwright.messages.serialization import deserialize, serialize
+from linkwright.messages.message import ActionType, Message, ServiceType, definition_of, deserialize, serialize
 from linkwright.messages.wellknown import (
     Duration,
     FloatSequence,
