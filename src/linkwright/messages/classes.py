@@ -20,10 +20,10 @@ from linkwright.messages.definitions.interfaces import (
     event_of,
     feedback_message_of,
     get_result_of,
+    python_module,
     send_goal_of,
 )
 from linkwright.messages.definitions.library import LIBRARY, not_of_kind
-from linkwright.messages.definitions.names import python_module
 from linkwright.messages.errors import InterfaceNotFoundError
 from linkwright.messages.message import ActionImplementation, ActionType, DurationValue, Message, ServiceType, TimeValue
 

@@ -17,8 +17,11 @@ from linkwright.messages.definitions.interfaces import (
     Primitive,
     Structure,
     interface_of,
+    is_constant_name,
+    is_field_name,
+    is_interface_name,
+    is_package_name,
 )
-from linkwright.messages.definitions.names import is_constant_name, is_field_name, is_interface_name, is_package_name
 from linkwright.messages.errors import DefinitionError
 
 Value = bool | int | float | str | bytes
