@@ -14,7 +14,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Graph, Node
 from linkwright.graph.command_line.ros_arguments import RosArguments, parse
 from linkwright.graph.names.rules import Remappings, absolute_namespace, join
-from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.loading.extensions import extensions
 
 if TYPE_CHECKING:

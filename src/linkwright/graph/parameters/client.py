@@ -7,8 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.parameters.files import read_parameter_file
-from linkwright.graph.parameters.parameter import Parameter, service_type
-from linkwright.graph.parameters.rules import ANY_NODE
+from linkwright.graph.parameters.parameter import ANY_NODE, Parameter, service_type
 from linkwright.graph.qos.profile import PARAMETER_EVENTS_QOS, SERVICES_QOS, QoSProfile
 
 if TYPE_CHECKING:
