@@ -64,7 +64,6 @@ import type {
   Screw,
 } from "./geometry";
 import type { ImageFrame, OccupancyMap, PictureSize } from "./images";
-import type { CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints } from "./joints";
 import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, MarkersChanged } from "./markers";
 import type { DisplayForgotten, FrameTable, Hello, ProgramIsLate, Received } from "./message";
 import type {
@@ -107,7 +106,18 @@ import type {
   StopRecording,
   Timeline,
 } from "./recording";
-import type { AskProvenance, LinkProvenance, MeshStatus, RobotScene } from "./robot";
+import type {
+  AskProvenance,
+  CenterJoints,
+  JointPositions,
+  Joints,
+  LinkProvenance,
+  MeshStatus,
+  RandomizeJoints,
+  RobotScene,
+  SetJoint,
+  SetJoints,
+} from "./robot";
 import type {
   AddThing,
   AskModels,
@@ -173,7 +183,6 @@ export * from "./editing";
 export * from "./export";
 export * from "./geometry";
 export * from "./images";
-export * from "./joints";
 export * from "./markers";
 export * from "./message";
 export * from "./monitor";

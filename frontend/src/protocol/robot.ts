@@ -3,6 +3,53 @@
 import type { LinkInertia } from "./description";
 import type { Place } from "./displays";
 
+/** A row of the Joints panel. */
+export interface JointControl {
+  name: string;
+  kind: "revolute" | "continuous" | "prismatic";
+  lower: number;
+  upper: number;
+  zero: number;
+  mimic: string | null;
+  multiplier: number;
+  offset: number;
+}
+
+/** The rows of the Joints panel; None closes the panel. */
+export interface Joints {
+  controls: JointControl[] | null;
+  type: "joints";
+}
+
+/** Positions of the Joints panel's joints, rad or m, including mimicking ones. */
+export interface JointPositions {
+  positions: Record<string, number>;
+  type: "joint_positions";
+}
+
+/** The user moved a joint, rad or m. */
+export interface SetJoint {
+  name: string;
+  position: number;
+  type: "set_joint";
+}
+
+/** A pose was recalled, or a sweep advances: several joints at once, rad or m. */
+export interface SetJoints {
+  positions: Record<string, number>;
+  type: "set_joints";
+}
+
+/** The Randomize button. */
+export interface RandomizeJoints {
+  type: "randomize_joints";
+}
+
+/** The Center button. */
+export interface CenterJoints {
+  type: "center_joints";
+}
+
 export type ShapeKind =
   | "box"
   | "cylinder"

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from linkwright.page.audience import Page
-from linkwright.page.protocol.joints import (
+from linkwright.page.protocol.message import ServerMessage
+from linkwright.page.protocol.robot import (
     CenterJoints,
     JointControl,
     JointPositions,
@@ -16,7 +17,6 @@ from linkwright.page.protocol.joints import (
     SetJoint,
     SetJoints,
 )
-from linkwright.page.protocol.message import ServerMessage
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 if TYPE_CHECKING:

@@ -20,9 +20,16 @@ from linkwright.page.protocol.displays import (
     StatusRow,
 )
 from linkwright.page.protocol.geometry import PolygonLine
-from linkwright.page.protocol.joints import CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint
 from linkwright.page.protocol.message import BadMessageError, decode, encode, pack_data, redundancy_key
-from linkwright.page.protocol.robot import MeshStatus, RobotScene
+from linkwright.page.protocol.robot import (
+    CenterJoints,
+    JointPositions,
+    Joints,
+    MeshStatus,
+    RandomizeJoints,
+    RobotScene,
+    SetJoint,
+)
 from linkwright.page.protocol.views_and_tools import View, ViewChanged
 
 FLOATS = st.floats(allow_nan=False, allow_infinity=False)

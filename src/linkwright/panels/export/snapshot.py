@@ -28,9 +28,8 @@ from linkwright.page.files import FileRefusedError, MeshFolders
 from linkwright.page.outbox import ScaledData
 from linkwright.page.protocol.comparison import ComparedDescriptions
 from linkwright.page.protocol.displays import Display, DisplayProperties, Property, Tree
-from linkwright.page.protocol.joints import JointControl, JointPositions, Joints
 from linkwright.page.protocol.message import FrameTable, Hello, ServerMessage, unpack_transforms
-from linkwright.page.protocol.robot import RobotScene
+from linkwright.page.protocol.robot import JointControl, JointPositions, Joints, RobotScene
 from linkwright.page.protocol.views_and_tools import SavedViews, View, ViewClasses, ViewState
 from linkwright.panels.comparison.feature import without_paths
 from linkwright.urdf import Joint, Robot
