@@ -93,20 +93,6 @@ import type {
 import type { CommandNavigation, GoalOutcome, NavigationState, WatchNavigation } from "./navigation";
 import type { AskPoint, CellGrid, CloudPoints, PointFields } from "./points";
 import type {
-  GoLive,
-  Kept,
-  Play,
-  Playhead,
-  RecordTopics,
-  RecordingState,
-  SaveMinutes,
-  SeekTime,
-  SetPlayback,
-  StepTime,
-  StopRecording,
-  Timeline,
-} from "./recording";
-import type {
   AskProvenance,
   CenterJoints,
   JointPositions,
@@ -141,7 +127,26 @@ import type {
   UndoWorld,
   UngroupThing,
 } from "./simulation";
-import type { Clock, ResetTime, SetTime, TimeReset, TimeState, WatchClock } from "./time";
+import type {
+  Clock,
+  GoLive,
+  Kept,
+  Play,
+  Playhead,
+  RecordTopics,
+  RecordingState,
+  ResetTime,
+  SaveMinutes,
+  SeekTime,
+  SetPlayback,
+  SetTime,
+  StepTime,
+  StopRecording,
+  TimeReset,
+  TimeState,
+  Timeline,
+  WatchClock,
+} from "./time";
 import type {
   AddTool,
   ChangeSavedView,
@@ -188,7 +193,6 @@ export * from "./message";
 export * from "./monitor";
 export * from "./navigation";
 export * from "./points";
-export * from "./recording";
 export * from "./robot";
 export * from "./simulation";
 export * from "./time";

@@ -1,11 +1,11 @@
 """The page features of this room that are created on demand."""
 
-from linkwright.page.protocol.recording import NOTHING_RECORDED
+from linkwright.page.protocol.time import NOTHING_RECORDED
 from linkwright.panels.page_feature import OnDemand, messages
 
 _EDITING = "linkwright.page.protocol.editing"
 _MONITOR = "linkwright.page.protocol.monitor"
-_RECORDING = "linkwright.page.protocol.recording"
+_RECORDING = "linkwright.page.protocol.time"
 
 ON_DEMAND = (
     OnDemand(

@@ -13,18 +13,23 @@ from linkwright.diagnostics import LinkwrightError, in_one_line
 from linkwright.graph import Duration, JumpThreshold, TimeJump
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import ServerMessage
-from linkwright.page.protocol.recording import (
+from linkwright.page.protocol.time import (
+    Clock,
     GoLive,
     Kept,
     Play,
     Playhead,
+    ResetTime,
     SeekTime,
     SetPlayback,
+    SetTime,
     StepTime,
     Timeline,
     TimelineTopic,
+    TimeReset,
+    TimeState,
+    WatchClock,
 )
-from linkwright.page.protocol.time import Clock, ResetTime, SetTime, TimeReset, TimeState, WatchClock
 from linkwright.panels.live_history import LiveHistory
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
