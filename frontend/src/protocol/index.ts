@@ -11,6 +11,8 @@ import type {
   ConfigurationSaved,
   ConfigurationText,
   DisplayChoices,
+  DisplayProperties,
+  DisplayStatus,
   DuplicateDisplays,
   Folder,
   GroupDisplays,
@@ -19,12 +21,15 @@ import type {
   NewConfiguration,
   OpenConfiguration,
   Panels,
+  PropertyChanged,
   Redo,
   RemoveDisplays,
   RenameDisplay,
   RevertConfiguration,
   SaveConfiguration,
+  SetProperty,
   ShowPanels,
+  Tree,
   Undo,
 } from "./configuration";
 import type {
@@ -40,7 +45,6 @@ import type {
   InertiaFindings,
 } from "./description";
 import type { PictureBoxes, SolidBoxes } from "./detections";
-import type { DisplayProperties, DisplayStatus, PropertyChanged, SetProperty, Tree } from "./displays";
 import type {
   ApplyEdit,
   AskEditableParts,
@@ -183,7 +187,6 @@ export * from "./comparison";
 export * from "./configuration";
 export * from "./description";
 export * from "./detections";
-export * from "./displays";
 export * from "./editing";
 export * from "./export";
 export * from "./geometry";

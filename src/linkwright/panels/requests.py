@@ -11,7 +11,7 @@ ON_DEMAND = (
     OnDemand(
         "linkwright.panels.displays:DisplaysFeature",
         (
-            "linkwright.page.protocol.displays:SetProperty",
+            "linkwright.page.protocol.configuration:SetProperty",
             "linkwright.page.protocol.robot:MeshStatus",
             "linkwright.page.protocol.markers:MarkerFeedback",
             "linkwright.page.protocol.images:PictureSize",

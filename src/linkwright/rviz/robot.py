@@ -27,8 +27,8 @@ from linkwright.kinematics import KinematicTree
 from linkwright.messages import String
 from linkwright.packages import PackageFinder
 from linkwright.page.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
+from linkwright.page.protocol.configuration import Place
 from linkwright.page.protocol.description import LinkInertia
-from linkwright.page.protocol.displays import Place
 from linkwright.page.protocol.robot import JointScene, LinkScene, Shape
 from linkwright.rviz.config.property_store import PropertyStore, qos_of
 from linkwright.rviz.config.schema import PropertySpec, topic_spec

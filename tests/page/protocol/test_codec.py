@@ -10,10 +10,10 @@ from msgspec import to_builtins
 
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation.translate import wording
-from linkwright.page.protocol.configuration import Folder
-from linkwright.page.protocol.displays import (
+from linkwright.page.protocol.configuration import (
     DisplayProperties,
     DisplayStatus,
+    Folder,
     Property,
     PropertyChanged,
     SetProperty,

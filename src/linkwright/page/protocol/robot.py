@@ -6,8 +6,8 @@ from typing import ClassVar, Literal
 
 from msgspec import field
 
+from linkwright.page.protocol.configuration import Place
 from linkwright.page.protocol.description import LinkInertia
-from linkwright.page.protocol.displays import Place
 from linkwright.page.protocol.message import Floats, PageMessage, Record, ServerMessage
 
 

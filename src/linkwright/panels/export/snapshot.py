@@ -27,7 +27,7 @@ from linkwright.packages import enclosing_package
 from linkwright.page.files import FileRefusedError, MeshFolders
 from linkwright.page.outbox import ScaledData
 from linkwright.page.protocol.comparison import ComparedDescriptions
-from linkwright.page.protocol.displays import Display, DisplayProperties, Property, Tree
+from linkwright.page.protocol.configuration import Display, DisplayProperties, Property, Tree
 from linkwright.page.protocol.message import FrameTable, Hello, ServerMessage, unpack_transforms
 from linkwright.page.protocol.robot import JointControl, JointPositions, Joints, RobotScene
 from linkwright.page.protocol.views_and_tools import SavedViews, View, ViewClasses, ViewState

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
-from linkwright.page.protocol.displays import Property, PropertyValue
+from linkwright.page.protocol.configuration import Property, PropertyValue
 from linkwright.page.protocol.views_and_tools import View, ViewClass
 from linkwright.rviz.config.former_names import modern_class
 from linkwright.rviz.config.property_store import PropertyStore

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Phrase, foreign, phrase
-from linkwright.page.protocol.displays import PropertyChanged, StatusRow
+from linkwright.page.protocol.configuration import PropertyChanged, StatusRow
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import FIXED_FRAME, Path, PropertySpec, Schema, alpha, line_style, line_width, vector
 from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.page.protocol.displays import StatusLevel
+from linkwright.page.protocol.configuration import StatusLevel
 from linkwright.page.protocol.geometry import PointMarks, PolygonLine, RangeCone
 from linkwright.page.protocol.message import DataContent
 from linkwright.page.protocol.points import CellGrid

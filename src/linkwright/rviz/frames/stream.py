@@ -27,7 +27,7 @@ from linkwright.graph import (
     TransformException,
 )
 from linkwright.messages import TFMessage
-from linkwright.page.protocol.displays import StatusRow
+from linkwright.page.protocol.configuration import StatusRow
 from linkwright.page.protocol.message import FrameTable, pack_transforms
 from linkwright.page.protocol.time import SyncMode
 from linkwright.rviz.config.schema import FIXED_FRAME

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from linkwright.diagnostics import phrase
 from linkwright.page.audience import Page, PageGroup
-from linkwright.page.protocol.configuration import EditName
-from linkwright.page.protocol.displays import DisplayStatus, PropertyChanged, StatusRow, Tree
+from linkwright.page.protocol.configuration import DisplayStatus, EditName, PropertyChanged, StatusRow, Tree
 from linkwright.page.protocol.message import FrameTable, ServerMessage
 from linkwright.page.protocol.time import SyncMode, TimeState
 from linkwright.rviz.config.panels import Synchronization, read_synchronization, write_synchronization

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from linkwright.page.audience import PageGroup
 from linkwright.page.outbox import Payload, ScaledData, Shrink
-from linkwright.page.protocol.displays import (
+from linkwright.page.protocol.configuration import (
     Display,
     DisplayProperties,
     DisplayStatus,
