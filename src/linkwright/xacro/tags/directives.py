@@ -9,8 +9,7 @@ from linkwright.diagnostics import did_you_mean, phrase, term
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Container, Directive, Expander, Site, check_attributes, warn_of_global
 from linkwright.xacro.expressions.expression import is_identifier
-from linkwright.xacro.expressions.literals import truth
-from linkwright.xacro.expressions.scope import Namespace, Scope
+from linkwright.xacro.expressions.scope import Namespace, Scope, truth
 from linkwright.xacro.tags.includes import include
 from linkwright.xacro.tags.macro_calls import call_dynamically, define_macro
 from linkwright.xmltree import Element

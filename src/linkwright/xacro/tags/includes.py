@@ -6,8 +6,7 @@ import os
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, display_path, phrase
 from linkwright.xacro.expander import Container, Expander, Site, check_attributes, warn_of_global
-from linkwright.xacro.expressions.literals import truth
-from linkwright.xacro.expressions.scope import Namespace, Scope
+from linkwright.xacro.expressions.scope import Namespace, Scope, truth
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.origin import Frame, trail
 from linkwright.xmltree import Document, Element

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 from linkwright.diagnostics import LinkwrightError, Span
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
-from linkwright.xacro.expressions.literals import literal
-from linkwright.xacro.expressions.scope import Lazy, Scope
+from linkwright.xacro.expressions.scope import Lazy, Scope, literal
 from linkwright.xacro.faults import Fault, attribute_part
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xacro.origin import Frame
