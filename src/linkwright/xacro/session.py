@@ -23,8 +23,7 @@ from linkwright.xacro.expressions.bounded import RefusalError, keys
 from linkwright.xacro.expressions.expression import compile_expression
 from linkwright.xacro.expressions.sandbox import Module
 from linkwright.xacro.expressions.scope import Namespace, Scope
-from linkwright.xacro.expressions.substitution import package_fault
-from linkwright.xacro.expressions.template import compile_template, templates
+from linkwright.xacro.expressions.template import compile_template, package_fault, templates
 from linkwright.xacro.expressions.yamldata import YamlDict, YamlError
 from linkwright.xacro.faults import Fault, attribute_part, text_part
 from linkwright.xacro.limits import Budget, Limits
