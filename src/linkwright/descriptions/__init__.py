@@ -11,7 +11,7 @@ from linkwright.descriptions.service import (
     is_xacro,
     load,
 )
-from linkwright.diagnostics.source import TEXT_NAME
+from linkwright.diagnostics.diagnostic import TEXT_NAME
 
 __all__ = [
     "TEXT_NAME",

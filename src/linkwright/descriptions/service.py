@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, display_path, has_errors, phrase
-from linkwright.diagnostics.source import TEXT_NAME, is_text
+from linkwright.diagnostics.diagnostic import TEXT_NAME, is_text
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_typing import TYPE_CHECKING, Union
 from linkwright.packages import PackageFinder

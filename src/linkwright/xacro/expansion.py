@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.diagnostics.source import TEXT_NAME, is_text
+from linkwright.diagnostics.diagnostic import TEXT_NAME, is_text
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xacro.expander import Expander
 from linkwright.xacro.inputs import Inputs, main_document
