@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, joined, phrase, term
-from linkwright.geometry.bounds import transposed, turned
 from linkwright.geometry.mass import MassProperties
+from linkwright.geometry.shapes import transposed, turned
 from linkwright.geometry.single import Vector3, added, length, rotation_from_z, rpy_from_quaternion, scaled
 from linkwright.inertia import DEFAULT_DENSITY, MeshLibrary, estimate
 from linkwright.inertia.blocks import inertial_parts

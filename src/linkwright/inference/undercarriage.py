@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import sqrt
 
-from linkwright.geometry.bounds import Placement, turned
+from linkwright.geometry.shapes import Placement, turned
 from linkwright.geometry.single import length, scaled
 from linkwright.inertia import MeshLibrary, estimate
 from linkwright.inference.model import Wheel

@@ -14,7 +14,7 @@ from linkwright.urdf import Inertial, Joint, Link, Robot
 from linkwright.xmltree import Document, Element
 
 if TYPE_CHECKING:
-    from linkwright.geometry.bounds import Placement
+    from linkwright.geometry.shapes import Placement
     from linkwright.kinematics import KinematicTree
     from linkwright.lint.contexts import Contexts, OfFile
     from linkwright.lint.extents import Extents

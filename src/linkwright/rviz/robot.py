@@ -18,7 +18,7 @@ import numpy as np
 from linkwright.descriptions import examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.geometry.arrays import Array, quaternion_from_matrix
-from linkwright.geometry.bounds import Bounds, Placement, bounds_of, placement, union
+from linkwright.geometry.shapes import Bounds, Placement, bounds_of, placement, union
 from linkwright.geometry.single import quaternion_of
 from linkwright.graph import DurabilityPolicy, MessageInfo
 from linkwright.graph.endpoints.base import EndpointInfo

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from linkwright.geometry.bounds import rotation
 from linkwright.geometry.mass import MassProperties, combine
+from linkwright.geometry.shapes import rotation
 from linkwright.geometry.single import Pose
 from linkwright.sdf.bodies import Part
 from linkwright.sdf.frames import pose_of
