@@ -4,9 +4,8 @@ from typing import TYPE_CHECKING
 
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.endpoints.bus import Transport
-from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.service import Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError, NodeNotFoundError
 from linkwright.graph.log.console import console_line, print_to_console

@@ -9,9 +9,8 @@ from collections.abc import Callable
 
 from linkwright.graph.endpoints.base import Endpoint, EndpointInfo, Presence
 from linkwright.graph.endpoints.bus import Bus, Transport
-from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.service import Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.introspection.graph_queries import GraphQueries, Namesakes, OnNamesakes

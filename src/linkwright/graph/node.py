@@ -6,9 +6,8 @@ from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
 from functools import cached_property, partial, wraps
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
 
-from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX, Service
+from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX, Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.introspection.node_queries import PARAMETER as TYPE_DESCRIPTIONS
 from linkwright.graph.introspection.node_queries import NodeQueries, TypeDescriptions, is_usual

@@ -23,9 +23,8 @@ from linkwright.wire.switch import is_switched_off
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.base import Presence
-    from linkwright.graph.endpoints.client import Client
     from linkwright.graph.endpoints.publisher import Publisher
-    from linkwright.graph.endpoints.service import Service
+    from linkwright.graph.endpoints.service import Client, Service
     from linkwright.graph.endpoints.subscription import Subscription
     from linkwright.graph.node import Graph
 

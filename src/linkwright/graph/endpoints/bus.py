@@ -10,9 +10,8 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Generic, Protocol, TypeVar
 
 from linkwright.graph.endpoints.base import Endpoint, EndpointInfo, Presence
-from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.service import Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.compatibility import incompatible_policies

@@ -25,8 +25,7 @@ from linkwright.wire.service_messages import hand_request_on, hand_response_on, 
 from linkwright.wire.type_names import dds_type
 
 if TYPE_CHECKING:
-    from linkwright.graph.endpoints.client import Client
-    from linkwright.graph.endpoints.service import Service
+    from linkwright.graph.endpoints.service import Client, Service
     from linkwright.wire.dds.rtps.messages import Data
 
 _REPLY_WAITS = 10.0

@@ -40,8 +40,7 @@ from linkwright.wire.service_messages import hand_request_on, hand_response_on, 
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.base import Endpoint
-    from linkwright.graph.endpoints.client import Client
-    from linkwright.graph.endpoints.service import Service
+    from linkwright.graph.endpoints.service import Client, Service
     from linkwright.wire.dds.rtps.participant import RtpsParticipant
 
 HEADER = struct.Struct("<Qq")

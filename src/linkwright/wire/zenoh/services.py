@@ -18,8 +18,7 @@ from linkwright.wire.zenoh import attachment
 from linkwright.wire.zenoh.tokens import Token
 
 if TYPE_CHECKING:
-    from linkwright.graph.endpoints.client import Client
-    from linkwright.graph.endpoints.service import Service
+    from linkwright.graph.endpoints.service import Client, Service
 
 _WAITS = 600.0
 """Seconds for which a request waits for its reply."""
