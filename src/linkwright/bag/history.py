@@ -16,7 +16,7 @@ from heapq import heappop, heappush
 from queue import SimpleQueue
 from typing import Any, Generic, TypeVar
 
-from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS, TRANSFORMS_NS, Recorded
+from linkwright.bag.names import STATIC_TRANSFORMS, TRANSFORMS, TRANSFORMS_NS, Recorded
 from linkwright.bag.stillness import Content, clock_between
 from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import TFMessage, deserialize

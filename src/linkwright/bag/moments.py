@@ -7,6 +7,8 @@ from functools import cached_property
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
+from linkwright.bag.names import STATIC_TRANSFORMS, TRANSFORMS, TRANSFORMS_NS, Recorded
+
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
     from rosbags.rosbag2 import Reader
@@ -14,19 +16,12 @@ if TYPE_CHECKING:
     from linkwright.bag.lookup import McapLookup
     from linkwright.bag.rows import RowLookup
 
-TRANSFORMS, STATIC_TRANSFORMS = "/tf", "/tf_static"
-TRANSFORMS_NS = 2_000_000_000
-"""The time before a moment in which transforms are used: each message has only some of the frames."""
-
 _MOST_COUNTED = 100_000
 """Messages whose times are looked up, so that they are counted in the part of the recording in which they came."""
 
 _FIRST_WINDOW_NS = 1_000_000_000
 _WIDER = 8
 """The factor between the lengths of two looks back, in files without an index by topic."""
-
-Recorded = tuple[str, int, bytes]
-"""A message: its topic, when it was received, nanoseconds since the epoch, and its CDR bytes."""
 
 
 class Moments:

@@ -10,7 +10,7 @@ import asyncio
 from collections.abc import Callable, Collection, Iterator
 from typing import Protocol
 
-from linkwright.bag.moments import Recorded
+from linkwright.bag.names import Recorded
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.time.clock import Alarm

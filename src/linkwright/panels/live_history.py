@@ -15,7 +15,7 @@ from linkwright.messages import serialize
 
 if TYPE_CHECKING:
     from linkwright.bag.history import History
-    from linkwright.bag.moments import Recorded
+    from linkwright.bag.names import Recorded
     from linkwright.bag.playback import Playback
     from linkwright.bag.saving import KeptTopic
     from linkwright.diagnostics import LinkwrightError

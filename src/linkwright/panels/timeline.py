@@ -34,7 +34,7 @@ from linkwright.panels.live_history import LiveHistory
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 if TYPE_CHECKING:
-    from linkwright.bag.moments import Recorded
+    from linkwright.bag.names import Recorded
     from linkwright.bag.playback import Playback
     from linkwright.bag.reading import BagReader
     from linkwright.graph import JumpHandle

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.bag import BagReader, PublishedRecording
-from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS
+from linkwright.bag.names import STATIC_TRANSFORMS, TRANSFORMS
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS, Node

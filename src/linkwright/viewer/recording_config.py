@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from linkwright.bag import BagReader, BagTopic
-from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS
+from linkwright.bag.names import STATIC_TRANSFORMS, TRANSFORMS
 from linkwright.graph import DurabilityPolicy, ReliabilityPolicy
 from linkwright.messages import TFMessage, deserialize, get_message
 from linkwright.rviz.config.rviz_config import RvizConfig

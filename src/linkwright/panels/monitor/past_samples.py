@@ -13,7 +13,7 @@ from linkwright.messages import deserialize
 from linkwright.panels.monitor.field_paths import FieldPath
 
 if TYPE_CHECKING:
-    from linkwright.bag.moments import Recorded
+    from linkwright.bag.names import Recorded
 
 _NANO = 1e-9
 
