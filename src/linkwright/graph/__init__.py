@@ -10,7 +10,7 @@ from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError, NodeNotFoundError
 from linkwright.graph.log.console import console_line, print_to_console
 from linkwright.graph.log.logger import Logger, LogLevel, LogRecord, LogSink, log_failure, run_logged
-from linkwright.graph.loop.entity import Entity, GuardCondition
+from linkwright.graph.loop.dispatcher import Entity, GuardCondition
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.timer import Rate, Timer, TimerInfo
 from linkwright.graph.names.rules import (

@@ -14,7 +14,7 @@ from linkwright.graph.introspection.node_queries import NodeQueries, TypeDescrip
 from linkwright.graph.local_graph import LocalGraph
 from linkwright.graph.log.console import LOG_TYPE, ROSOUT_TOPIC, Rosout
 from linkwright.graph.log.logger import Logger
-from linkwright.graph.loop.entity import GuardCondition
+from linkwright.graph.loop.dispatcher import GuardCondition
 from linkwright.graph.loop.future import STRICT
 from linkwright.graph.loop.node_handle import FREE_GROUP, CallbackGroup, NodeHandle
 from linkwright.graph.loop.timer import Rate, Timer

@@ -19,7 +19,7 @@ from linkwright.graph.actions.goal import (
     GoalStatus,
     ServerGoalHandle,
 )
-from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.dispatcher import Entity
 from linkwright.graph.loop.node_handle import FREE_GROUP, CallbackGroup, NodeHandle
 from linkwright.graph.loop.timer import Timer
 from linkwright.graph.node import Node

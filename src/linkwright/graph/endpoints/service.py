@@ -14,7 +14,7 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.endpoints.base import EndpointKind, ServiceEndpoint
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.dispatcher import Entity
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import CallbackGroup, NodeHandle
 from linkwright.graph.qos.compatibility import best_available

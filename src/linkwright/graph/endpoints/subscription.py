@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo, TopicEndpoint
-from linkwright.graph.loop.entity import Entity, accepts
+from linkwright.graph.loop.dispatcher import Entity, accepts
 from linkwright.graph.loop.node_handle import CallbackGroup, Dispatcher, NodeHandle
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import deserialize, serialize

@@ -20,7 +20,7 @@ from linkwright.graph.faults import (
     ShutdownException,
     TimeoutException,
 )
-from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.dispatcher import Entity
 from linkwright.graph.loop.future import Future, report_self_wait
 from linkwright.graph.loop.node_handle import NodeHandle
 

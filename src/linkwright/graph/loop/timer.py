@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError
-from linkwright.graph.loop.entity import Entity, accepts
+from linkwright.graph.loop.dispatcher import Entity, accepts
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import CallbackGroup, Dispatcher, NodeHandle
 from linkwright.graph.time.clock import Alarm, Clock
