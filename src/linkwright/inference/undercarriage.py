@@ -20,7 +20,7 @@ from linkwright.inference.shapes import Shape, lowest, round_shape, shapes_of
 from linkwright.lint.frames import placements
 from linkwright.urdf import Joint, Link, Mesh, Robot, parent_joints
 from linkwright.urdf.bodies import Bodies
-from linkwright.xacro.origin import Frame, frames
+from linkwright.xacro.faults import Frame, frames
 
 _CASTER = re.compile(r"cast(?:e|o)r|swivel|ball(?!ast)|idler|passive|omni_?ball", re.IGNORECASE)
 _STEER = re.compile(r"steer|ackermann|knuckle", re.IGNORECASE)

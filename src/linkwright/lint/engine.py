@@ -301,7 +301,7 @@ def _with_trail(diagnostic: Diagnostic) -> Diagnostic:
     """A finding with the macro calls and includes that produced its element."""
     if not isinstance(diagnostic, Finding) or diagnostic.element is None or diagnostic.element.origin is None:
         return diagnostic
-    from linkwright.xacro.origin import origin_of
+    from linkwright.xacro.faults import origin_of
 
     trail = origin_of(diagnostic.element).trail
     return diagnostic.but(notes=(*diagnostic.notes, *trail))

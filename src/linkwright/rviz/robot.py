@@ -35,7 +35,7 @@ from linkwright.rviz.config.schema import PropertySpec, topic_spec
 from linkwright.rviz.config.views import ModelSize
 from linkwright.rviz.context import ViewerContext
 from linkwright.urdf import Box, Capsule, Collision, Cylinder, Inertial, Link, Material, Mesh, Robot, Sphere, Visual
-from linkwright.xacro.origin import origin_of
+from linkwright.xacro.faults import origin_of
 from linkwright.xmltree import Element
 
 _APART = 1e-6

@@ -145,7 +145,7 @@ class Findings:
         span = element.attribute_span(attribute) if attribute else element.span()
         trail: tuple[Note, ...] = ()
         if element.origin is not None:
-            from linkwright.xacro.origin import origin_of
+            from linkwright.xacro.faults import origin_of
 
             trail = origin_of(element).trail
         self._found.append(Diagnostic(code, message, span, severity, (*notes, *trail), hint, element.source))

@@ -13,10 +13,9 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Sp
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import NoReturn
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.faults import Fault, attribute_name
+from linkwright.xacro.faults import Fault, Frame, attribute_name, trail
 from linkwright.xacro.limits import LONG
 from linkwright.xacro.macros import MacroTable
-from linkwright.xacro.origin import Frame, trail
 from linkwright.xacro.plan import (
     COMMENT,
     COPY,

@@ -24,7 +24,7 @@ from linkwright.descriptions.service import Description
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.single import quaternion_from_rpy
 from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
-from linkwright.xacro.origin import Frame
+from linkwright.xacro.faults import Frame
 from linkwright.xmltree import Document, Element, Overlay, parse
 from linkwright.xmltree.patches import inserted, start_tag_of
 

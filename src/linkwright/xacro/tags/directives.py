@@ -11,8 +11,8 @@ from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Container, Directive, Expander, Site, check_attributes, warn_of_global
 from linkwright.xacro.expressions.expression import is_identifier
 from linkwright.xacro.expressions.scope import Namespace, Scope, truth
+from linkwright.xacro.faults import Frame, trail
 from linkwright.xacro.macros import MacroTable
-from linkwright.xacro.origin import Frame, trail
 from linkwright.xacro.tags.macro_calls import call_dynamically, define_macro
 from linkwright.xmltree import Document, Element
 

@@ -6,9 +6,8 @@ from linkwright.diagnostics import Note, counted, did_you_mean, joined, phrase, 
 from linkwright.loading.lean_typing import Any, NoReturn
 from linkwright.xacro.expander import Container, Expander, Site, check_attributes, warn_of_global
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.faults import Fault, attribute_name, definition_elsewhere
+from linkwright.xacro.faults import Fault, Frame, attribute_name, definition_elsewhere
 from linkwright.xacro.macros import Macro, MacroTable, Parameter, parse_parameters
-from linkwright.xacro.origin import Frame
 from linkwright.xacro.plan import PREFIX
 from linkwright.xmltree import Element
 
