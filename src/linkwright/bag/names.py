@@ -1,4 +1,4 @@
-"""What all parts of this room name alike: the files of recordings, the topics of transforms, and messages."""
+"""The names that all parts of this room use: files of recordings, topics of transforms, and messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Read a description: only this module decides whether it is xacro or plain URDF."""
+"""Read descriptions and worlds, each text once. Only this module decides whether a file is xacro or plain URDF."""
 
 from __future__ import annotations
 

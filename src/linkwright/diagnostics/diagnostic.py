@@ -1,4 +1,10 @@
-"""Diagnostics: findings about a user's input, and the exception that carries them."""
+"""Diagnostics: findings about a user's input, their places in source texts, and the exception that carries them.
+
+Source texts and places in them.
+
+Positions inside the program are character offsets, which cost nothing to carry. Lines and columns are computed only for
+a `Span`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""The simple shapes that descriptions are made of, and their volumes; lengths in metres."""
+"""The simple shapes that descriptions are made of: their volumes and their bounds; lengths in metres.
+
+A frame in another one as a rotation matrix and a position, in plain floats.
+
+Rotations are matrices as three rows, from the child frame to the parent frame; lengths are metres. For few frames this
+is quicker than arrays, and it needs no numpy.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A node: the owner of publishers, subscriptions, services, timers and parameters. Its methods have rclpy's names."""
+"""Nodes, and the graph that makes them. Their methods have rclpy's names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,19 @@
-"""Forward kinematics of a whole robot."""
+"""Forward kinematics of a whole robot.
+
+Two ways to compute link frames: one configuration in few steps, many in few passes over memory.
+
+For one configuration overhead dominates, so the number of array operations counts: frames are composed along paths that
+double in length with each step. For many, memory counts: the last axis is that of the configurations, the tree is
+computed level by level for a block of them that fits in the cache, and results are written once.
+
+A robot laid out for computing: its bodies, the constants between them, and its mimic joints.
+
+Links joined by fixed joints move as one. So only moving joints matter: each carries a body, whose own frame is at the
+joint with z along the joint's axis. Then a joint turns its body about z or slides it along z, whatever its axis is:
+
+    body in root = parent body in root * mount * turn or slide
+    link in root = body in root * offset
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""Makes the classes of messages, services and actions, each once, when it is first asked for."""
+"""Makes the classes of messages, services and actions from generated code, each when it is first asked for.
+
+Generating the Python code of a message class: constructor and setters, each as short as its field allows.
+
+Setters and constructors test for the usual case in line (``value.__class__ is float``) and leave all others to
+`linkwright.messages.checks`. A field's property reads its slot by a C function, so a read costs what a read costs.
+"""
 
 from __future__ import annotations
 

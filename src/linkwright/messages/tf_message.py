@@ -3,6 +3,12 @@
 Five hundred joints at 30 Hz are 15 000 transforms a second. As message objects they would cost more than everything
 else in the process together, so a `TFMessage` may carry a `TransformBatch`, the same facts as names and one array, or
 the bytes it was received as, and makes the objects only for a reader who asks for them.
+
+Layouts of transforms between the same frames, whose bytes differ in nothing but stamps and numbers.
+
+A `TransformLayout` knows where those stand. So a message is written by filling a template, and one that was received
+is recognised by comparing the rest with the template; in both directions the time for a transform is a few
+nanoseconds, and no object is made for it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The joints of joint_state_publisher: order, limits, and mimic joints."""
+"""The joints of joint_state_publisher: its parameters, their order and limits, and mimic joints."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""joint_state_publisher_gui: joint_state_publisher with sliders, which the viewer draws."""
+"""joint_state_publisher_gui: joint_state_publisher with sliders, which the viewer draws and moves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,11 @@
-"""Options of a node that is started, and the interfaces of running nodes."""
+"""Nodes that can be started in this process: their options, their interfaces, and their registry.
+
+The nodes that can be started in this process, found by entry points.
+
+They are found through the entry points ``linkwright.nodes`` and ``linkwright.components``, whose names are
+``PACKAGE/EXECUTABLE``, or ``PACKAGE/PLUGIN`` for nodes that containers load. Each points to a `Factory`. Ours are
+declared in ``pyproject.toml``, those of others in their packages. A module is imported when its first node is started.
+"""
 
 from __future__ import annotations
 

@@ -1,11 +1,16 @@
-"""The share folder of a package that is not built, laid out as its build would do it.
+"""The share folder of a package that is not built, laid out as its build would do it; and our substitutes.
 
 Most packages keep their files in the sources as they install them, and their source folder serves as the share folder.
 Some do not: ``install(DIRECTORY description/urdf DESTINATION share/${PROJECT_NAME})``, ``glob('cfg/*')`` to ``config``.
 For these a folder of links is made in the user's cache, with the installed files at their installed paths and
 everything else of the sources. So a user of the share folder, a launch file with ``os.path.join`` too, finds
-the files that would exist after a build. Files that need compiling are ours if we have them, see
-`linkwright.packages.share_layout`.
+the files that would exist after a build. Files that need compiling are ours if we have them.
+
+Our substitutes for packages of ROS that launch files include, such as those of Gazebo and nav2.
+
+They are in the folder ``substitutes``, laid out as installed packages. They have the launch files of those packages and
+the files that these need, and start nodes of ours. A package that is replaced only by modules, messages or nodes, such
+as rclpy, std_msgs and robot_state_publisher, has an empty share folder there.
 """
 
 from __future__ import annotations

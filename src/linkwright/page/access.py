@@ -8,6 +8,12 @@ Connections that have not shown the token are limited in number and time.
 
 A page whose program ended looks for it at the same port, where another user's program may listen by then. It shows the
 token only to a server that proves to know it (`Gate.proof`).
+
+The token of a port, stored for the next start, so that open pages reconnect when the program is started again.
+
+There is a file for each port, which only its user can read. A token is valid for a week after its creation, so that
+a leaked one does not give access for ever. Servers that other machines can reach do not store theirs: it goes over
+the network in plain text.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The open pages, and the sending and receiving of their messages."""
+"""The open pages, the sending and receiving of their messages, and the lateness of the event loop."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Answers pages' questions about the descriptions of RobotModel displays, and shows findings on them."""
+"""Descriptions for pages: answers about them, findings on them, and the form of their arguments."""
 
 from __future__ import annotations
 

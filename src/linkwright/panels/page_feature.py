@@ -1,6 +1,12 @@
-"""Page features, which handle pages' requests besides displays: their base class, and their creation.
+"""Page features, which handle pages' requests besides displays: their base class, and when they are created.
 
 They are found through the entry points ``linkwright.page_features``.
+
+Features that are created on demand: when a page asks for one, or one of their topics is published.
+
+Each is declared by an `OnDemand`, which names its class; the class's module is imported then. Until then pages receive
+a default message in its place. They are found through the entry points ``linkwright.page_features_on_demand``, whose
+values are modules with a tuple ``ON_DEMAND``.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The context of a viewer: its node, files and pages, and notifications of changes in the graph."""
+"""The context of a viewer: its node, files and pages, changes of the graph, and topics that others publish."""
 
 from __future__ import annotations
 

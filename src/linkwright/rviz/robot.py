@@ -1,4 +1,4 @@
-"""A robot for the page: the source of its description, and its shapes.
+"""A robot for the page: the source of its description, its shapes, and its size.
 
 A description comes from a topic of the graph, or a file. Pages draw links with their shapes, colours, files and poses.
 """

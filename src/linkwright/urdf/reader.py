@@ -2,6 +2,15 @@
 
 It accepts what urdfdom 3.0.1 accepts and, for files of version 1.1 and 1.2, what urdfdom 6.0.0 accepts. Where urdfdom
 stops at the first error, it continues.
+
+Reading links, their materials, and joints, by urdfdom's rules.
+
+A joint that cannot be read makes urdfdom refuse the whole model; all its mistakes are reported. A part of a link that
+cannot be read does not: the link stays, without that part and without the parts after it in the order inertial,
+visuals, collisions. Linkwright does the same, and reports the error.
+
+Of materials the first definition of a name in the file wins, those at robot level before those in links, even over
+the colour written in the visual itself. A definition in a later link does not help an earlier one.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Findings of the reader in words: missing, malformed and misplaced elements and attributes of URDF."""
+"""Findings of the reader in words, in the order of the text: missing, malformed and misplaced parts of URDF."""
 
 from __future__ import annotations
 

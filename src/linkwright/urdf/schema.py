@@ -1,7 +1,11 @@
-"""The language as data: every element and attribute that urdfdom reads, with type, default, unit and meaning.
+"""The language as data: elements and attributes that urdfdom reads, with type, default, unit, meaning and checks.
 
 Reader, writer, the hints of errors, hover texts, documentation and linting all use this table; the few rules that a
-table cannot express are in `linkwright.urdf.schema`. Source: urdfdom 3.0.1 for URDF 1.0, urdfdom 6.0.0 for 1.1 and 1.2.
+table cannot express are functions here. Source: urdfdom 3.0.1 for URDF 1.0, urdfdom 6.0.0 for 1.1 and 1.2.
+
+Rules of urdfdom that the table of elements cannot express.
+
+Each function gets a value that was read, reports its mistakes beyond its form, and returns the value to use.
 """
 
 from __future__ import annotations

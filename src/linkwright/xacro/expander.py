@@ -3,6 +3,14 @@
 Trees that were read are never changed, so each file is parsed once; texts and comments without expressions are shared
 with them. Every element of the result keeps the place where it was written and knows the macro calls and includes
 around it.
+
+Comments that belong to tags that disappear in the expansion.
+
+A comment just above a property, macro, argument, include, condition or macro call describes that tag, and disappears
+with it. Which comments disappear follows ros/xacro to the letter: of a run of comments upwards those that are separated
+by blank text with at most one newline; and a marker is left behind at which the next such run stops. There is one
+marker in a document: it moves. It is blank text, so its only visible effect is that an element with text and a marker
+is no longer written on one line.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The result of an expansion: the document, its arguments, dependencies and diagnostics."""
+"""Expanding a file: the document that results, its arguments, dependencies and diagnostics."""
 
 from __future__ import annotations
 

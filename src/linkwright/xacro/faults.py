@@ -1,4 +1,4 @@
-"""A mistake found while evaluating a text, on its way to becoming a diagnostic.
+"""A mistake found while evaluating a text, on its way to a diagnostic; and the origin of an element.
 
 The code that finds a mistake knows the text and the offsets in it, but not the element that holds the text. So a
 `Fault` starts with offsets, gets its place from the evaluation of an element's text, and a note for each property.

@@ -1,4 +1,4 @@
-"""Reading XML into a tree that knows where each node was written."""
+"""Reading XML, from a file or the text that replaces it, into a tree that knows where each node was written."""
 
 from __future__ import annotations
 

@@ -4,6 +4,11 @@ It knows no namespaces, ends a comment at ``-->`` alone, passes over text before
 after it, reads nothing after a closing tag that closes nothing, and an ``&`` that begins no entity does not trouble it.
 Nor do a ``<`` in a value, attributes without a blank between, control characters, and a second XML declaration right
 after the first. Such files work for their users, so they are read, with a warning.
+
+Characters in place of those that TinyXML2 accepts and expat refuses, as many as there were.
+
+Each repair gets a text and the place of its first mistake. It returns the text with all mistakes of that kind replaced,
+or unchanged if the mistake is of another kind. `put_back` then restores the original characters in the tree.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A diagnostic in another language."""
+"""A diagnostic in another language: the catalogues, and the language that is asked for."""
 
 from __future__ import annotations
 

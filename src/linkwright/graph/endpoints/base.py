@@ -1,4 +1,4 @@
-"""The base of publishers, subscriptions, services and clients: a name, a type, a quality of service.
+"""The base of publishers, subscriptions, services and clients, and how the graph describes them.
 
 Whether a class is that of a message or service is checked as rclpy's ``type_support`` does, with its errors.
 """

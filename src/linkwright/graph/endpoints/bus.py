@@ -1,6 +1,11 @@
-"""The in-process bus: connects the publishers, subscriptions, services and clients of one process.
+"""The in-process bus, which connects the endpoints of one process; and the interface of transports to others.
 
 A publisher and a subscription whose QoS is incompatible are not connected, and both nodes are notified of the reason.
+
+The interface of transports, which carry the traffic of a graph to other processes.
+
+In the process a message is handed over as an object. A transport mirrors the endpoints of the process on a network; it
+is called only for topics and services that other processes use. Transports are in the room `linkwright.wire`.
 """
 
 from __future__ import annotations

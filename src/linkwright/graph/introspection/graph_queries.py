@@ -1,4 +1,4 @@
-"""Questions to a graph: the nodes and endpoints of this process, and those that discovery found."""
+"""Questions to a graph: nodes and endpoints of this process and of others, and nodes of others with our names."""
 
 from __future__ import annotations
 

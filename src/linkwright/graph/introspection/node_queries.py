@@ -1,4 +1,4 @@
-"""The methods of a node that ask about the graph, as ``rclpy.node.Node`` has them."""
+"""The methods of a node that ask about the graph, as ``rclpy.node.Node`` has them; and its type descriptions."""
 
 from __future__ import annotations
 

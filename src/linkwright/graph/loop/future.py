@@ -1,4 +1,12 @@
-"""Futures for callbacks, coroutines and threads (rclpy ``Future``)."""
+"""Futures for callbacks, coroutines and threads (rclpy ``Future``), and callbacks that would wait for ever.
+
+Callbacks that block until an event which only their own callback group could let in.
+
+In rclpy the response to a request is taken in the callback group of its client. While a callback of a mutually
+exclusive group runs, nothing else of that group does: a callback that blocks until the response arrives blocks for
+ever. Here responses run no code of the user's and are let in all the same. The mistake is logged as an error before the
+program runs on a robot; where the parameter `STRICT` of the node is set, the callback hangs as in rclpy.
+"""
 
 from __future__ import annotations
 

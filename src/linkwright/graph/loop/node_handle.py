@@ -1,4 +1,4 @@
-"""A node as the graph knows it: its name, its parts and its dispatcher, behind the API that users see.
+"""A node as the graph knows it: its name, parts, callback groups and dispatcher, behind the API that users see.
 
 rcl has such an object too (``rcl_node_t``), and rclpy's nodes give theirs as ``node.handle``. Publishers, timers and
 the other parts of a node know this, not the node: so a user's class may have any attributes and override any method.

@@ -1,4 +1,4 @@
-"""Names in the graph: which are valid, and how they are expanded.
+"""Names in the graph: which are valid, how they are expanded, and how they are remapped.
 
 The rules and the wording of the errors are those of rcl and rmw (``validate_topic_name``, ``expand_topic_name``).
 """

@@ -1,4 +1,4 @@
-"""The parameter methods of a node, as ``rclpy.node.Node`` has them."""
+"""The parameter methods of a node, as ``rclpy.node.Node`` has them, and its services and events."""
 
 from __future__ import annotations
 

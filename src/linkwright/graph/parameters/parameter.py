@@ -1,4 +1,4 @@
-"""Parameters: their types, and one of them with its value. The names and texts are those of ``rclpy.parameter``."""
+"""Parameters: types, values and exceptions, by the names and texts of ``rclpy.parameter``; values by node."""
 
 from __future__ import annotations
 

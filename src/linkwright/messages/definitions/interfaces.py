@@ -1,4 +1,4 @@
-"""Interfaces as data: primitive types, fields, constants, messages, services, actions, and what rosidl adds to them."""
+"""Interfaces as data: names, primitive types, fields, constants, and what rosidl adds to them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reads ``.msg``, ``.srv`` and ``.action`` files (the interface definition language of ROS 2, without IDL)."""
+"""Parsing interface files, with their constants and default values."""
 
 from __future__ import annotations
 

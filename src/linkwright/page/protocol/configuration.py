@@ -1,4 +1,4 @@
-"""The configuration file and its edits: adding, removing and moving displays, undo and redo, open and save."""
+"""The displays, and the configuration that has them: its file, edits, undo and redo."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The description of a robot: links and joints as written, texts, and findings on masses.
+"""The description: what is known about its parts, and the arguments that it needs.
 
 A page asks for the parts that it shows. `DescriptionChanged` notifies every page of a new description.
 """

@@ -1,7 +1,14 @@
-"""The base classes of messages, and their encoding and decoding as text.
+"""The base classes of messages, and their encoding: text, and binary frames.
 
 To define a message is to register it: the codec and the page's types follow. All messages of pages are validated.
 The module of a message that few pages send can be imported with the first one, see `define_later`.
+
+Binary frames to pages, little endian: transforms, content with large arrays, and pieces of these.
+
+Content is what displays draw of the messages they take. Its frame is four uint32 (kind 2, bytes of the header, 0, 0),
+the header as JSON in UTF-8, and the arrays; the header and each array are padded to a multiple of 8 bytes. The header
+is ``{"display", "key", "frame", "stamp", "pose", "content"}``; where the content has an array the JSON has ``{"$":
+[type, offset, count]}``: the type is ``f4`` or ``u1``, and the offset counts bytes from the end of the padded header.
 """
 
 from __future__ import annotations

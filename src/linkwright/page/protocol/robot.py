@@ -1,4 +1,4 @@
-"""The content of RobotModel displays."""
+"""The robot: the content of RobotModel displays, and the sliders of its joints."""
 
 from __future__ import annotations
 

@@ -1,4 +1,11 @@
-"""A simulation that runs in the graph: its state, and control of it. Metres, seconds, newtons."""
+"""Simulated worlds: the state and control of a simulation, and modelling. Metres, seconds, newtons.
+
+Modelling a world: the models and lights of its file, and pages' edits of them.
+
+Poses are x, y, z in metres and roll, pitch, yaw in radians, in the frame of the world. A size is that of a shape in
+metres: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere. The frame of a shape is
+in its middle; a ramp rises along x. Colours are red, green, blue, alpha from 0 to 1.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""RViz's views: the properties of each class, and the current and saved views of a .rviz file.
+"""RViz's views: properties of each class, current and saved views of a .rviz file, and sizes for a robot.
 
 From the properties come the rows of the Views panel, the reading and writing of ``Views`` and the checks of pages'
 values. How each class turns its values into a camera, and what the mouse does to them, is the page's:

@@ -193,7 +193,7 @@ class TfDisplay(ViewerDisplay):
             self.pages.publish(PropertyChanged(self.property_id(_ALL), False))
 
     def enabled_changed(self) -> None:
-        """Show frames and their status, or none; frames that nobody shows need not fade."""
+        """Show frames and their status, or none; frames that no display shows need not fade."""
         self.host.fading_changed()
         super().enabled_changed()
 

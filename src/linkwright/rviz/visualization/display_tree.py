@@ -1,4 +1,4 @@
-"""The displays of a configuration: adding, removing, moving, grouping and enabling them, all of it undoable."""
+"""The displays of a configuration: adding, moving, grouping and enabling them; undo and redo of all of it."""
 
 from __future__ import annotations
 

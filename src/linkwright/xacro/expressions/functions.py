@@ -1,4 +1,10 @@
-"""Functions of expressions: lambdas, calls, and the steps that a call costs."""
+"""Functions of expressions: lambdas, calls, and the steps that a call costs.
+
+Functions that expressions call: calling them, and the steps that they cost.
+
+A function costs as much as the items that it visits: Python's own run through a long list much faster than an
+expression could, but not for free, and an expression may call them as often as it likes.
+"""
 
 from __future__ import annotations
 

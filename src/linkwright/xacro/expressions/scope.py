@@ -1,7 +1,12 @@
-"""Where the names in expressions are looked up.
+"""Where the names in expressions are looked up, and the values that their texts become.
 
 Scopes form a chain. A macro call opens one whose parent is the caller's (dynamic scoping, as in ros/xacro), an
 include with a namespace opens a `Namespace`, and the outermost one holds the names that the language provides.
+
+Values of literals: numbers and booleans out of strings, and the texts that count as true.
+
+Both are ros/xacro's, on which real robots rely: ``007`` is 7, ``true`` is True, but ``TRUE``, ``0x10`` and ``1_000``
+are strings.
 """
 
 from __future__ import annotations

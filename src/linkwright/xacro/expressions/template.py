@@ -2,6 +2,17 @@
 
 A text that is exactly one token keeps the type of its value, such as a float or a list; any other result is joined to a
 string. The result is not evaluated again.
+
+The lexer for text with ``${expressions}`` and ``$(substitutions)`` in it.
+
+The rules are those of ros/xacro, tried in this order at each place: two or more dollars before a brace or
+parenthesis lose one of them and make it literal; ``${`` runs to the first ``}``; ``$(`` runs to the first ``)``;
+anything else is text, in which a dollar may stand alone.
+
+Substitution arguments: ``$(arg name)``, ``$(find package)`` and their like.
+
+The text between the parentheses is split at blanks into a command and its arguments. Each ``$(find ...)`` in the result
+is evaluated too, so that the value of an argument may contain one.
 """
 
 from __future__ import annotations

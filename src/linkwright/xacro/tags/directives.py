@@ -1,4 +1,4 @@
-"""The tags of the language, except macro calls, and their effects."""
+"""The tags of the language and their effects, except macro calls: arguments, properties, conditions, includes."""
 
 from __future__ import annotations
 
