@@ -19,8 +19,8 @@ from unittest.mock import patch
 from benchmarks.measure import Row, show
 from linkwright.control.nodes.ros2_control_node import Ros2ControlNode
 from linkwright.graph import Graph
-from linkwright.graph.log.levels import LogLevel
-from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.log.logger import LogLevel
+from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.nodes.options import NodeOptions
 
 JOINTS = [f"joint{number}" for number in range(12)]

@@ -24,7 +24,7 @@ from benchmarks import peers
 from benchmarks.measure import LINKWRIGHT, Row, commands, peak_memory, show, side_by_side
 from benchmarks.robots import SHIPPED, Model, collected, models
 from linkwright.xacro import expand, macros, sources
-from linkwright.xacro.expressions import expression, literals, template, yamldata, yamlnodes
+from linkwright.xacro.expressions import expression, scope, template, yamldata, yamlnodes
 
 SMALL = SHIPPED / "urdf" / "mbot_base.xacro"
 PASSES = 7
@@ -79,7 +79,7 @@ def forget() -> None:
     ):
         cache.clear()
     macros.parse_parameters.cache_clear()
-    literals.number_or_boolean.cache_clear()
+    scope.number_or_boolean.cache_clear()
     gc.collect()
 
 

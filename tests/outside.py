@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from linkwright.graph import EndpointInfo, EndpointKind, Graph, MessageInfo, NodeIdentity, QoSProfile
-from linkwright.graph.endpoints.transport import Transport
+from linkwright.graph.endpoints.bus import Transport
 from linkwright.messages import serialize
 
 

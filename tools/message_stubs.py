@@ -53,7 +53,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.messages.message import ActionImplementation, ActionType, Message, ServiceType
-from linkwright.messages.time import DurationValue, TimeValue
+from linkwright.messages.message import DurationValue, TimeValue
 """
 
 

@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
 import { unpackData } from "../src/connection/data";
 
-/** A frame as `pack_data` of viewer/protocol/binary.py packs it. */
+/** A frame as `pack_data` of page/protocol/message.py packs it. */
 function packed(header: object, arrays: readonly ArrayBufferView[]): ArrayBuffer {
   const pad = (length: number): number => Math.ceil(length / 8) * 8;
   const text = new TextEncoder().encode(JSON.stringify(header));

@@ -65,7 +65,7 @@ export function robot(displayId: string, ...links: string[]): RobotScene {
   };
 }
 
-/** A binary frame as `pack_transforms` of viewer/protocol/binary.py packs it. */
+/** A binary frame as `pack_transforms` of page/protocol/message.py packs it. */
 export function packed(revision: number, poses: readonly (readonly number[])[], ages: readonly number[]): ArrayBuffer {
   const buffer = new ArrayBuffer(24 + poses.length * 32);
   const view = new DataView(buffer);

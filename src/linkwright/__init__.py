@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from linkwright.testing.simulated import SteppedSimulation
     from linkwright.viewer.notebook import show
     from linkwright.vision.datasets.dataset import make_dataset
-    from linkwright.xacro.engine import expand
+    from linkwright.xacro.expansion import expand
 
 __all__ = [
     "KinematicTree",
@@ -39,7 +39,7 @@ _MODULES = {
     "testing.simulated": ("SteppedSimulation",),
     "viewer.notebook": ("show",),
     "vision.datasets.dataset": ("make_dataset",),
-    "xacro.engine": ("expand",),
+    "xacro.expansion": ("expand",),
 }
 
 

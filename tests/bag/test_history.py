@@ -7,9 +7,8 @@ import threading
 import numpy as np
 import pytest
 
-from linkwright.bag import History, shrinking
+from linkwright.bag.history import History, _zstd, whole
 from linkwright.bag.saving import in_simulated_time, last_reset_ns
-from linkwright.bag.shrinking import whole
 from linkwright.bag.stillness import Content, content_of
 from linkwright.messages import TFMessage, TransformBatch, deserialize, get_message, serialize
 from tests.waiting import wait_until
@@ -128,13 +127,13 @@ def test_noise_is_kept_as_it_is() -> None:
 
 def test_what_was_dropped_before_it_was_packed_does_no_harm(monkeypatch: pytest.MonkeyPatch) -> None:
     proceed = threading.Event()
-    compress = shrinking._zstd().compress
+    compress = _zstd().compress
 
     def slow(data: bytes, level: int) -> bytes:
         proceed.wait(10)
         return bytes(compress(data, level))
 
-    monkeypatch.setattr(shrinking._zstd(), "compress", slow)
+    monkeypatch.setattr(_zstd(), "compress", slow)
     history, _ = filled(count=0, most=500_000)
     for shade in range(5):
         history.add("/camera", image(shade))

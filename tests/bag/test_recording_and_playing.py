@@ -13,7 +13,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from linkwright.bag import BagReader, BagWriter, Player, PlayOptions, Recorder, TopicSelection
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, SENSOR_DATA_QOS, Graph, JumpClock, LogRecord, Node
-from linkwright.graph.endpoints.service_introspection import ServiceIntrospectionState
+from linkwright.graph.endpoints.service import ServiceIntrospectionState
 from linkwright.messages import String, deserialize, get_message, serialize, type_hash
 
 START = 1_700_000_000_000_000_000

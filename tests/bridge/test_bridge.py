@@ -12,11 +12,10 @@ from linkwright.bridge.streams import stream_of
 from linkwright.graph import Graph
 from linkwright.graph.actions.client import ActionClient
 from linkwright.graph.actions.server import ActionServer
-from linkwright.graph.endpoints.client import Client
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.endpoints.service import Service
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.endpoints.service import Client, Service
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.graph.time.values import Duration
 from linkwright.messages import String, get_interface, type_hash

@@ -16,8 +16,7 @@ from linkwright.bridge.foxglove.origins import is_welcome
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String, deserialize, get_message, get_service, serialize
-from linkwright.nodes.options import NodeOptions
-from linkwright.nodes.registry import EXECUTABLES
+from linkwright.nodes.options import EXECUTABLES, NodeOptions
 from tests.leaving import UPGRADE, ask_and_leave
 from tests.waiting import SECONDS, eventually
 

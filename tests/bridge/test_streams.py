@@ -3,8 +3,8 @@ from __future__ import annotations
 import pytest
 
 from linkwright.bridge.streams import awaited_streams, can_hear, stream_of
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import QoSProfile, ReliabilityPolicy
 from linkwright.messages import type_hash
 

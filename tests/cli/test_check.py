@@ -63,7 +63,7 @@ def test_checking_a_robot_with_masses_and_a_small_mesh_loads_no_arrays(tmp_path)
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     assert "the collision mesh 'part.stl' of link 'stl' is not watertight" in done.stderr
     loaded = set(done.stdout.split())
-    assert not {"dataclasses", "inspect", "numpy", "pkgutil", "typing", "linkwright.xacro.engine"} & loaded
+    assert not {"dataclasses", "inspect", "numpy", "pkgutil", "typing", "linkwright.xacro.expansion"} & loaded
 
 
 def test_checking_a_plain_robot_loads_nothing_of_xacro_and_no_parser_of_command_lines():

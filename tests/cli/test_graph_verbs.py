@@ -9,7 +9,7 @@ import yaml
 
 from linkwright.cli import main
 from linkwright.graph import Graph, ParameterDescriptor
-from linkwright.graph.endpoints.service_introspection import ServiceIntrospectionState
+from linkwright.graph.endpoints.service import ServiceIntrospectionState
 from linkwright.graph.qos.profile import SERVICES_QOS
 from linkwright.messages import String, get_service
 

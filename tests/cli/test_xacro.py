@@ -94,11 +94,11 @@ def test_a_plain_command_imports_no_parser_of_command_lines(tmp_path):
     loaded = loaded_by(f"from linkwright.cli import main; main(['xacro', {str(tmp_path / 'small.xacro')!r}, 'a:=1'])")
     slow = {"argparse", "ast", "contextlib", "dataclasses", "gettext", "inspect", "pathlib", "typing", "warnings"}
     assert not (slow | {"xml.parsers"}) & loaded
-    assert "linkwright.xacro.engine" in loaded
+    assert "linkwright.xacro.expansion" in loaded
 
 
 def test_a_mistake_is_told_without_slow_imports(model):
     model.write_text(ROBOT.replace("2*", "2*sise*"))
     loaded = loaded_by(f"from linkwright.cli import main; main(['xacro', {str(model)!r}])")
-    assert "linkwright.xacro.engine" in loaded
+    assert "linkwright.xacro.expansion" in loaded
     assert not {"argparse", "ast", "contextlib", "pathlib", "typing"} & loaded

@@ -12,7 +12,7 @@ from linkwright.control.manager.nodes import ProcessArguments
 from linkwright.control.manager.starting import load_hardware
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import Graph
-from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.parameters.parameter import ParameterRules
 
 JOINT = "<joint name='{name}'>{commands}{states}{more}</joint>"
 

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, SourceText, counted, phrase, term
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
-from linkwright.diagnostics.translation.language import set_language
+from linkwright.diagnostics.translation.translate import set_language
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ import pytest
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, term
 from linkwright.diagnostics.phrase import FOREIGN
 from linkwright.diagnostics.translation import LANGUAGES
-from linkwright.diagnostics.translation.wording import wording
+from linkwright.diagnostics.translation.translate import wording
 from linkwright.lint.engine import examine
 from linkwright.lint.explain import find_page, known_codes
 from linkwright.lint.settings import Settings

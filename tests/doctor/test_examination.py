@@ -20,8 +20,8 @@ from linkwright.doctor import (
     TransformSeen,
     examine,
 )
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 ROBOT = """\

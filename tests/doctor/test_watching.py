@@ -11,7 +11,7 @@ import pytest
 
 from linkwright.doctor import Observation, observe
 from linkwright.graph import DurabilityPolicy, EndpointInfo, EndpointKind, Graph, NodeIdentity, QoSProfile
-from linkwright.graph.endpoints.transport import Transport
+from linkwright.graph.endpoints.bus import Transport
 from linkwright.messages import get_message
 
 TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"

@@ -10,9 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.geometry.arrays import matrix_from_pose, row_from_pose
-from linkwright.geometry.bounds import Bounds, bounds_of, union
-from linkwright.geometry.placement import placement
-from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.geometry.shapes import Bounds, Box, Capsule, Cylinder, Sphere, bounds_of, placement, union
 from linkwright.geometry.single import Pose
 
 vectors = st.tuples(*[st.floats(-10, 10)] * 3)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from linkwright.geometry import arrays
 from linkwright.geometry.single import (
     axis_and_angle,
+    length,
     normalized,
     quaternion_from_rpy,
     quaternion_inverse,
@@ -19,8 +20,8 @@ from linkwright.geometry.single import (
     rotate,
     rotation_from_z,
     rpy_from_quaternion,
+    scaled,
 )
-from linkwright.geometry.vectors import length, scaled
 from linkwright.urdf import Pose
 
 angles = st.floats(-pi, pi)

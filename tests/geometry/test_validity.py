@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.geometry import validity
-from linkwright.geometry.bounds import Bounds
 from linkwright.geometry.mass import MassProperties, combine
+from linkwright.geometry.shapes import Bounds
 from linkwright.geometry.solids import shape_properties
 from linkwright.urdf import Box, Cylinder, Pose, Sphere
 

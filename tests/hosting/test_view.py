@@ -19,8 +19,8 @@ from linkwright.hosting.plans import HostOptions
 from linkwright.hosting.view import ModelView, run_view
 from linkwright.hosting.xacro_calls import XacroCall
 from linkwright.packages import PackageFinder
-from linkwright.page.protocol.arguments import NOTHING_ASKED, ArgumentForm, GiveArguments
-from linkwright.panels.arguments import ArgumentsFeature
+from linkwright.page.protocol.description import NOTHING_ASKED, ArgumentForm, GiveArguments
+from linkwright.panels.description import ArgumentsFeature
 from tests.waiting import eventually
 
 GOOD = '<robot name="a"><link name="b"/></robot>'

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.geometry.placement import angle_between, placement, product, rotation, transposed
+from linkwright.geometry.shapes import angle_between, placement, product, rotation, transposed
 from linkwright.kinematics import KinematicTree
 from linkwright.lint.frames import placements
 from linkwright.urdf import Joint, Link, Pose, Robot

@@ -5,8 +5,7 @@ import pytest
 
 from linkwright.messages import JointState
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.joint_panel import JointPanel, JointSlider
-from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
+from linkwright.nodes.joint_state_publisher_gui import JointPanel, JointSlider, JointStatePublisherGui
 from tests.nodes.stage import joint, mimic, robot
 
 ROBOT = robot(

@@ -6,8 +6,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import Header, JointState
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.joint_layout import layout_of
-from linkwright.nodes.joint_settings import JointSettings
+from linkwright.nodes.joint_layout import JointSettings, layout_of
 from linkwright.nodes.joint_state_publisher import JointStatePublisher
 from linkwright.urdf import Joint, Limit, Link, Robot
 from tests.nodes.stage import joint, mimic, robot

@@ -5,8 +5,7 @@ import pytest
 
 from linkwright.graph import LogLevel
 from linkwright.nodes import EXECUTABLES, NodeOptions
-from linkwright.nodes.options import create_node
-from linkwright.nodes.registry import default_name
+from linkwright.nodes.options import create_node, default_name
 from tests.nodes.stage import joint, robot
 from tests.speech.nodes import fake_sounddevice
 

@@ -10,8 +10,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.loading import extensions
 from linkwright.nodes import COMPONENTS, EXECUTABLES, NodeOptions
-from linkwright.nodes.options import SingleNode
-from linkwright.nodes.registry import NodeRegistry
+from linkwright.nodes.options import NodeRegistry, SingleNode
 from tests.nodes.stage import Stage
 
 

@@ -12,8 +12,7 @@ from linkwright.graph import DESCRIPTION_QOS, QoSProfile, ReliabilityPolicy
 from linkwright.kinematics import KinematicTree
 from linkwright.messages import Header, JointState, String, TFMessage, Time
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.robot_state_publisher import RobotStatePublisher
-from linkwright.nodes.robot_transforms import JointMotion
+from linkwright.nodes.robot_state_publisher import JointMotion, RobotStatePublisher
 from linkwright.urdf import Joint, Limit, Pose
 from tests.geometry.rotations import quaternion_about
 from tests.nodes.stage import joint, mimic, robot

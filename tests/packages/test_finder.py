@@ -10,7 +10,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.loading import extensions
 from linkwright.packages import PackageFinder, PackageNotFoundError, current_finder, is_substitute, use_finder
 from linkwright.packages.finder import shipped_folder
-from linkwright.packages.sources import SourceScan
+from linkwright.packages.manifest import SourceScan
 
 
 def make_source(folder: Path, name: str) -> Path:
@@ -242,7 +242,7 @@ class TestSourceScan:
         assert SourceScan(tmp_path / "src").packages() == {"arm": tmp_path / "src" / "arm"}
 
     def test_the_search_is_bounded(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr("linkwright.packages.sources.MAXIMUM_FOLDERS", 3)
+        monkeypatch.setattr("linkwright.packages.manifest.MAXIMUM_FOLDERS", 3)
         for number in range(5):
             (tmp_path / f"f{number}").mkdir()
         make_source(tmp_path / "f4" / "arm", "arm")

@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.page.access import Gate, security_headers
-from linkwright.page.port_tokens import new_token
+from linkwright.page.access import Gate, new_token, security_headers
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from linkwright.page.lateness import Lateness
+from linkwright.page.audience import Lateness
 
 
 class Loop:

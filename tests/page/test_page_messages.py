@@ -10,9 +10,8 @@ from typing import Any
 import msgspec
 import pytest
 
-from linkwright.page.protocol.displays import SetProperty
-from linkwright.page.protocol.message import PageMessage
-from linkwright.page.protocol.session import Received
+from linkwright.page.protocol.configuration import SetProperty
+from linkwright.page.protocol.message import PageMessage, Received
 from linkwright.rviz import RvizConfig
 from tests.viewer.configured import TEXT
 from tests.viewer.scene import page, world

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from linkwright.page.port_tokens import keep_token, leave_token, token_folder
+from linkwright.page.access import keep_token, leave_token, token_folder
 
 PORT = 7448
 posix = pytest.mark.skipif(os.name != "posix", reason="Windows guards the user's folders itself")

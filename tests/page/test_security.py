@@ -16,7 +16,7 @@ import pytest
 from linkwright.page import files
 from linkwright.page.access import MAXIMUM_CONNECTIONS
 from linkwright.page.audience import MAXIMUM_PAGES
-from linkwright.page.protocol.displays import DisplayStatus, StatusRow
+from linkwright.page.protocol.configuration import DisplayStatus, StatusRow
 from linkwright.page.server import MAXIMUM_MESSAGE
 from tests.leaving import UPGRADE, ask_and_leave
 from tests.page.test_files import package, write

@@ -12,7 +12,7 @@ import pytest
 
 from linkwright.messages import get_message
 from linkwright.page.outbox import Line
-from linkwright.page.protocol.binary import PIECE_KIND
+from linkwright.page.protocol.message import PIECE_KIND
 from linkwright.rviz import RvizConfig
 from tests.skipping import skipping
 from tests.viewer.contents import unpack as unpack_content

@@ -87,7 +87,7 @@ class Compared:
         """Where a frame is in `base`: x y z qx qy qz qw."""
         names, poses = self.made.viewer.manager.opening()[1].names, None
         if frame in names:
-            from linkwright.page.protocol.binary import unpack_transforms
+            from linkwright.page.protocol.message import unpack_transforms
 
             frames = self.made.viewer.manager.opening()[2]
             poses = unpack_transforms(next(frame for frame in frames if isinstance(frame, bytes)))[1][

@@ -8,7 +8,7 @@ import pytest
 from linkwright.graph import Graph
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
-from linkwright.page.protocol.joints import CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints
+from linkwright.page.protocol.robot import CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints
 from linkwright.panels.joints import JointsFeature
 from tests.waiting import eventually
 

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.descriptions import load
-from linkwright.descriptions.library import DescriptionLibrary
-from linkwright.descriptions.worlds import examine_world
+from linkwright.descriptions.service import DescriptionLibrary, examine_world
 from linkwright.geometry.shapes import Box
 from linkwright.geometry.single import IDENTITY, Transform, compose
 from linkwright.sdf.frames import Frames, transform_of

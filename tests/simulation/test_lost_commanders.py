@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.graph.log.levels import LogLevel
+from linkwright.graph.log.logger import LogLevel
 from linkwright.messages import get_message
 from linkwright.simulation.server.server import ServerOptions
 from tests.outside import Outside, Stranger

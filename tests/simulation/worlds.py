@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from linkwright.descriptions.worlds import examine_world
+from linkwright.descriptions.service import examine_world
 from linkwright.packages import PackageFinder
 from linkwright.sdf.models import Model
 from linkwright.sdf.reader import read

@@ -41,7 +41,7 @@ KNOWN: dict[str, str] = {
     "launch/engine/processes.py": "SIGKILL killpg openpty",
     "nodes/process.py": "SIGHUP add_signal_handler",
     "packages/readers/cmake_language.py": "platform",
-    "page/port_tokens.py": "O_NOFOLLOW O_NONBLOCK getuid",
+    "page/access.py": "O_NOFOLLOW O_NONBLOCK getuid",
     "page/server.py": "O_NONBLOCK",
     "process/interruption.py": "kill platform",
     "process/processors.py": "sched_getaffinity",

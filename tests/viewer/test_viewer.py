@@ -20,7 +20,7 @@ from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.packages import PackageFinder
 from linkwright.page import server
-from linkwright.page.protocol.session import PROTOCOL_VERSION
+from linkwright.page.protocol.message import PROTOCOL_VERSION
 from linkwright.page.server import listen
 from linkwright.panels.joints import JointsFeature
 from linkwright.rviz import RvizConfig

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.graph import Graph, LogRecord
 from linkwright.graph.executors import SingleThreadedExecutor
-from linkwright.graph.log.levels import LogLevel
+from linkwright.graph.log.logger import LogLevel
 from linkwright.messages.distribution import ASSUMED
 from linkwright.wire import dds, zenoh
 from linkwright.wire.background import BackgroundTransport

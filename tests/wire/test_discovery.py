@@ -4,7 +4,7 @@ import socket
 import threading
 from typing import Any
 
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import String
 from linkwright.wire.dds import discovery, engine, join

@@ -11,7 +11,7 @@ from itertools import product
 import pytest
 import yaml
 
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.messages import String, get_message, get_service, type_hash
 from tests.domains import own_domain

@@ -6,8 +6,8 @@ import os
 
 import pytest
 
-from linkwright.graph.endpoints.info import EndpointKind
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.endpoints.base import EndpointKind
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.messages import String, get_service, type_hash
 
 pytest.importorskip("cyclonedds", reason="there is no DDS here")

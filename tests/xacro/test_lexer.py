@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from linkwright.xacro.expressions.lexer import Token, TokenKind, tokenize
+from linkwright.xacro.expressions.template import Token, TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 
 TEXTS = st.text(alphabet="$${}()ab 1", max_size=30)

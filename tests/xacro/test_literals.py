@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.xacro.expressions.literals import literal, truth
+from linkwright.xacro.expressions.scope import literal, truth
 
 
 def reference(value: str) -> Any:

@@ -14,9 +14,8 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.xacro import expand
 from linkwright.xacro.expressions import sandbox
-from linkwright.xacro.expressions.bounded import keys
-from linkwright.xacro.expressions.function_calls import call
-from linkwright.xacro.expressions.refusal import RefusalError
+from linkwright.xacro.expressions.bounded import RefusalError, keys
+from linkwright.xacro.expressions.functions import call
 from linkwright.xacro.expressions.symbols import MATHEMATICS, tokenize
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import Budget, Limits

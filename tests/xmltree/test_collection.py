@@ -7,8 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from linkwright.xmltree import collection
-from linkwright.xmltree.collection import seldom_collected
+from linkwright.xmltree import nodes as collection
+from linkwright.xmltree.nodes import seldom_collected
 
 
 @pytest.fixture

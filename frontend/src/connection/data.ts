@@ -17,7 +17,7 @@ export interface DisplayData {
   content: DataContent;
 }
 
-/** Reads what `pack_data` of `viewer/protocol/binary.py` wrote; null for any other bytes. */
+/** Reads what `pack_data` of `page/protocol/message.py` wrote; null for any other bytes. */
 export function unpackData(buffer: ArrayBuffer): DisplayData | null {
   if (buffer.byteLength < HEADER_BYTES) return null;
   const header = new DataView(buffer);

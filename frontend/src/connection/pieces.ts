@@ -2,7 +2,7 @@ import { PIECE_KIND } from "../protocol";
 
 const HEADER_BYTES = 16;
 
-/** Joins binary frames that arrive in pieces, as `pack_piece` of `viewer/protocol/binary.py` cuts them. */
+/** Joins binary frames that arrive in pieces, as `pack_piece` of `page/protocol/message.py` cuts them. */
 export class Pieces {
   private number = 0;
   private whole = new Uint8Array();

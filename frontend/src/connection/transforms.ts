@@ -15,7 +15,7 @@ export interface Transforms {
   ages: Float32Array;
 }
 
-/** Reads what `pack_transforms` of `viewer/protocol/binary.py` wrote; null for any other bytes. */
+/** Reads what `pack_transforms` of `page/protocol/message.py` wrote; null for any other bytes. */
 export function unpackTransforms(buffer: ArrayBuffer): Transforms | null {
   if (buffer.byteLength < HEADER_BYTES) return null;
   const header = new DataView(buffer);

@@ -7,17 +7,15 @@ from functools import cached_property
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
-from linkwright.bag.lookup import McapLookup
-from linkwright.bag.rows import RowLookup
+from linkwright.bag.names import STATIC_TRANSFORMS, TRANSFORMS, TRANSFORMS_NS, Recorded
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
     from rosbags.rosbag2 import Reader
 
-TRANSFORMS, STATIC_TRANSFORMS = "/tf", "/tf_static"
-TRANSFORMS_NS = 2_000_000_000
-"""The time before a moment in which transforms are used: each message has only some of the frames."""
+    from linkwright.bag.lookup import McapLookup
+    from linkwright.bag.rows import RowLookup
 
 _MOST_COUNTED = 100_000
 """Messages whose times are looked up, so that they are counted in the part of the recording in which they came."""
@@ -25,9 +23,6 @@ _MOST_COUNTED = 100_000
 _FIRST_WINDOW_NS = NANOSECONDS_PER_SECOND
 _WIDER = 8
 """The factor between the lengths of two looks back, in files without an index by topic."""
-
-Recorded = tuple[str, int, bytes]
-"""A message: its topic, when it was received, nanoseconds since the epoch, and its CDR bytes."""
 
 
 class Moments:
@@ -98,8 +93,12 @@ class Moments:
         found: list[tuple[Any, McapLookup | RowLookup]] = []
         for part in getattr(storage, "storages", [storage]):
             if hasattr(part, "dbconn"):
+                from linkwright.bag.rows import RowLookup
+
                 found.append((part, RowLookup(part)))
             elif part.chunks:
+                from linkwright.bag.lookup import McapLookup
+
                 found.append((part, McapLookup(part)))
             else:
                 return []

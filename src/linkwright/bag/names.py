@@ -1,10 +1,17 @@
-"""File names of recordings."""
+"""The names that all parts of this room use: files of recordings, topics of transforms, and messages."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 from pathlib import Path
+
+TRANSFORMS, STATIC_TRANSFORMS = "/tf", "/tf_static"
+TRANSFORMS_NS = 2_000_000_000
+"""The time before a moment in which transforms are used: each message has only some of the frames."""
+
+Recorded = tuple[str, int, bytes]
+"""A message: its topic, when it was received, nanoseconds since the epoch, and its CDR bytes."""
 
 SUFFIXES = {".mcap": "mcap", ".db3": "sqlite3"}
 """The suffixes of the files of a recording, with the names of their storages."""

@@ -10,10 +10,10 @@ import asyncio
 from collections.abc import Callable, Collection, Iterator
 from typing import Protocol
 
-from linkwright.bag.moments import Recorded
+from linkwright.bag.names import Recorded
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.time.timebase import Alarm
+from linkwright.graph.time.clock import Alarm
 
 _TICK_NS = 16_000_000
 """Real time between two looks for messages that are due."""

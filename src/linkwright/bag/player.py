@@ -11,7 +11,7 @@ from linkwright.bag.publishing import make_publishers
 from linkwright.bag.reading import BagReader
 from linkwright.bag.selection import TopicSelection
 from linkwright.graph import Node, Publisher, QoSProfile
-from linkwright.graph.time.timebase import Alarm
+from linkwright.graph.time.clock import Alarm
 from linkwright.messages import Time, get_message
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 

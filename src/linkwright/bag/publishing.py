@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS
+from linkwright.bag.names import STATIC_TRANSFORMS, TRANSFORMS
 from linkwright.bag.qos import profile_for_playing
 from linkwright.bag.reading import BagReader, BagTopic
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase

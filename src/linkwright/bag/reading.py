@@ -9,8 +9,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from linkwright.bag.moments import Moments, Recorded
-from linkwright.bag.names import METADATA, PACKED, are_of_one_recording, storage_of
+from linkwright.bag.moments import Moments
+from linkwright.bag.names import METADATA, PACKED, Recorded, are_of_one_recording, storage_of
 from linkwright.bag.qos import from_bag
 from linkwright.bag.scratch import scratch_folder
 from linkwright.bag.unfinished import is_unfinished, made_readable

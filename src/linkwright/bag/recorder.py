@@ -10,7 +10,7 @@ from linkwright.bag.selection import TopicSelection
 from linkwright.bag.writing import BagWriter
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Node, QoSProfile
-from linkwright.graph.endpoints.info import MessageInfo
+from linkwright.graph.endpoints.base import MessageInfo
 from linkwright.messages import get_message
 
 _FLUSH_SECONDS = 1.0

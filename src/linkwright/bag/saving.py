@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.bag.moments import Recorded
-from linkwright.bag.shrinking import whole
+from linkwright.bag.history import whole
+from linkwright.bag.names import Recorded
 from linkwright.bag.writing import BagWriter
 from linkwright.graph import QoSProfile
 from linkwright.graph.simulated_time import CLOCK_TOPIC

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
+from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,7 @@ from linkwright.bridge.direction import Direction
 from linkwright.bridge.filters import NameFilter
 from linkwright.bridge.networks import Network
 from linkwright.bridge.side import Side
-from linkwright.graph.log.levels import LogLevel
-from linkwright.graph.log.record import LogRecord, LogSink
+from linkwright.graph.log.logger import LogLevel, LogRecord, LogSink
 
 _TOGETHER = 0.02
 """Seconds for which news are collected before they are looked at."""

@@ -10,11 +10,10 @@ from linkwright.bridge.filters import NameFilter
 from linkwright.bridge.mirrors import MATCHED_WITHIN, MirroredPublisher, MirroredService, Tap
 from linkwright.bridge.side import Side, provision_of
 from linkwright.bridge.streams import Stream, awaited_streams, can_hear, hash_of, stream_of
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
-from linkwright.graph.endpoints.presence import Presence
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo, Presence
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 
 _KNOWN_WITHIN = 2.0
 """Seconds for which a message waits until its publisher is known."""

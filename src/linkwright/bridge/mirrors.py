@@ -10,10 +10,9 @@ from typing import Any
 
 from linkwright.bridge.outlet import Outlet
 from linkwright.bridge.streams import KEPT, Stream, offered
-from linkwright.graph.endpoints.client import Client
-from linkwright.graph.endpoints.info import EndpointInfo, MessageInfo
+from linkwright.graph.endpoints.base import EndpointInfo, MessageInfo
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.service import Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.log.logger import log_failure
 from linkwright.graph.loop.node_handle import NodeHandle

@@ -10,8 +10,7 @@ from typing import Any
 from linkwright.bridge.side import ENCLAVE, Side
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, phrase
 from linkwright.graph import Graph
-from linkwright.graph.log.logger import Logger
-from linkwright.graph.log.record import LogSink
+from linkwright.graph.log.logger import Logger, LogSink
 from linkwright.wire import dds, zenoh
 from linkwright.wire.background import BackgroundTransport
 from linkwright.wire.dds.settings import read_settings as read_dds_settings

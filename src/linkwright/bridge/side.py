@@ -7,10 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from linkwright.graph import Graph
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.names.identity import NodeIdentity
-from linkwright.graph.names.remapping import Remappings
+from linkwright.graph.names.rules import NodeIdentity, Remappings
 from linkwright.wire.background import BackgroundTransport
 
 ENCLAVE = "/linkwright_bridge"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.qos.compatibility import incompatible_policies
 from linkwright.graph.qos.profile import (
     DurabilityPolicy,

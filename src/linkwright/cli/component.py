@@ -65,7 +65,7 @@ def configure_types(parser: argparse.ArgumentParser) -> None:
 
 def run_types(arguments: argparse.Namespace) -> int:
     """Print the components' names below their packages, as ros2 does."""
-    from linkwright.nodes.registry import COMPONENTS
+    from linkwright.nodes.options import COMPONENTS
 
     by_package: dict[str, list[str]] = {}
     for package, plugin in sorted(COMPONENTS):

@@ -55,7 +55,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Write or print the converted file; findings go to standard error."""
     from linkwright.descriptions.conversion import as_sdf
-    from linkwright.descriptions.worlds import is_world
+    from linkwright.descriptions.service import is_world
     from linkwright.packages import PackageFinder
 
     write = _writer(arguments.to)

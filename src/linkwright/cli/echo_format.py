@@ -11,7 +11,7 @@ from linkwright.cli.numbers import unsigned_int
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
 
 if TYPE_CHECKING:
-    from linkwright.graph.endpoints.info import MessageInfo
+    from linkwright.graph.endpoints.base import MessageInfo
 
 SEPARATOR = "---\n"
 """The line between messages."""

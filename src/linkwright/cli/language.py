@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from linkwright.diagnostics.phrase import TERMS
 from linkwright.diagnostics.translation import LANGUAGES, language, language_of, set_language
-from linkwright.diagnostics.translation.wording import wording
+from linkwright.diagnostics.translation.translate import wording
 
 LANGUAGE_HELP = "the language of messages: zh for Chinese, en for English (default: that of the environment)"
 

@@ -167,7 +167,7 @@ def run_call(arguments: argparse.Namespace) -> int:
 
 def _check_type(session: Session, name: str, asked: str) -> None:
     """Report a service with another type, instead of waiting for it in vain."""
-    from linkwright.graph.endpoints.info import EndpointKind
+    from linkwright.graph.endpoints.base import EndpointKind
 
     servers = [
         endpoint
@@ -201,7 +201,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
     form = EchoFormat.of(arguments)
 
     async def job(session: Session) -> int:
-        from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
+        from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX
         from linkwright.messages import get_service
 
         kind = get_service(arguments.service_type or _SERVICES.types_of(session, arguments.service_name)[0])
@@ -224,7 +224,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
 
 def _event_text(event: Any, form: EchoFormat) -> str:
     """Return an event as ros2 prints it: in YAML, with the name of its kind."""
-    from linkwright.graph.endpoints.service_introspection import EventType
+    from linkwright.graph.endpoints.service import EventType
 
     kind = event.info.event_type
     named = EventType(kind).name if kind in iter(EventType) else str(kind)

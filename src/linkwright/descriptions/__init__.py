@@ -1,10 +1,17 @@
 """Read files, or texts that are not saved yet, as robots and worlds, with their origins and findings."""
 
-from linkwright.descriptions.description import Description
-from linkwright.descriptions.library import DescriptionLibrary
-from linkwright.descriptions.service import Packages, examine, is_xacro, load
-from linkwright.descriptions.worlds import WorldDescription, examine_world, is_world
-from linkwright.diagnostics.source import TEXT_NAME
+from linkwright.descriptions.service import (
+    Description,
+    DescriptionLibrary,
+    Packages,
+    WorldDescription,
+    examine,
+    examine_world,
+    is_world,
+    is_xacro,
+    load,
+)
+from linkwright.diagnostics.diagnostic import TEXT_NAME
 
 __all__ = [
     "TEXT_NAME",

@@ -7,8 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 
-from linkwright.descriptions.service import examine
-from linkwright.descriptions.worlds import examine_world, is_world
+from linkwright.descriptions.service import examine, examine_world, is_world
 from linkwright.diagnostics import Diagnostic
 from linkwright.loading.lean_typing import TYPE_CHECKING, Any
 from linkwright.packages import PackageFinder

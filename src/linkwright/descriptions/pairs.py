@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from linkwright.descriptions.comparison import Comparison, Side, compare
-from linkwright.descriptions.description import Description
-from linkwright.descriptions.service import examine
+from linkwright.descriptions.service import Description, examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, display_path
 from linkwright.loading.lean_dataclasses import dataclass, replace
 from linkwright.loading.lean_typing import TYPE_CHECKING

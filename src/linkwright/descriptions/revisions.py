@@ -13,8 +13,8 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.packages import PackageFinder
+from linkwright.packages.manifest import SourceScan
 from linkwright.packages.share_layout import share_of_sources
-from linkwright.packages.sources import SourceScan
 
 _OF_HOOKS = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
 """Variables that git sets for hooks; they would override the repository of a file's folder."""

@@ -1,22 +1,335 @@
-"""Read a description: only this module decides whether it is xacro or plain URDF."""
+"""Read descriptions and worlds, each text once. Only this module decides whether a file is xacro or plain URDF."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import OrderedDict
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from functools import cached_property
 from pathlib import Path
 
-from linkwright.descriptions.description import TRUE_OF_PARTS, Description
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, has_errors, phrase
-from linkwright.diagnostics.source import TEXT_NAME, is_text
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, display_path, has_errors, phrase
+from linkwright.diagnostics.diagnostic import TEXT_NAME, is_text
+from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_typing import TYPE_CHECKING, Union
+from linkwright.packages import PackageFinder
 from linkwright.urdf import Reading, Robot, read
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xmltree import Document, Element, Overlay
-from linkwright.xmltree.collection import seldom_collected
+from linkwright.xmltree.nodes import seldom_collected
 from linkwright.xmltree.reader import read_bytes
 
 if TYPE_CHECKING:
-    from linkwright.packages import PackageFinder
+    from linkwright.sdf.worlds import Sdf
+    from linkwright.xacro import Expansion
+    from linkwright.xacro.tracing.provenance import Provenance
+
+
+TRUE_OF_PARTS = frozenset(
+    {
+        *("URDF101", "URDF102", "URDF110", "URDF120", "URDF121", "URDF122", "URDF123", "URDF124", "URDF130"),
+        *("URDF131", "URDF132", "URDF140", "URDF162", "URDF170", "URDF190"),
+    }
+)
+"""Findings of the reader that hold whatever else the robot has; the others may be due to what is missing."""
+
+
+@dataclass(frozen=True, eq=False)
+class Description:
+    """A robot description, read.
+
+    Attributes:
+        name: the path as it was given, or `TEXT_NAME`.
+        document: the URDF document, expanded; every element has its source file and place.
+        reading: the result of the URDF reader.
+        expansion: xacro's record of making the document; None for plain URDF.
+        overlay: texts that replaced those of files.
+        problems: mistakes because of which only parts of the description are available; there is no robot then.
+    """
+
+    name: str
+    document: Document
+    reading: Reading
+    expansion: Expansion | None = None
+    overlay: Overlay | None = None
+    problems: tuple[Diagnostic, ...] = ()
+
+    @classmethod
+    def of_expansion(cls, name: str, expansion: Expansion, overlay: Overlay | None = None) -> Description:
+        """The description of an expanded file; without `problems` of the expansion it has the whole robot."""
+        reading = read(expansion.document)
+        if expansion.problems:
+            reading = Reading(None, tuple(found for found in reading.diagnostics if found.code in TRUE_OF_PARTS))
+        return cls(name, expansion.document, reading, expansion, overlay, expansion.problems)
+
+    @property
+    def robot(self) -> Robot | None:
+        """The robot; None if urdfdom would refuse the model."""
+        return self.reading.robot
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The problems, the remarks of xacro, and all findings of the reader."""
+        return (*self.problems, *self.remarks, *self.reading.diagnostics)
+
+    @property
+    def remarks(self) -> tuple[Diagnostic, ...]:
+        """The warnings of xacro, and the messages of ``xacro.message`` and its like."""
+        return () if self.expansion is None else self.expansion.diagnostics
+
+    @cached_property
+    def text(self) -> str:
+        """The URDF text, as topics and parameters carry it."""
+        if self.expansion is not None:
+            return str(self.expansion)
+        return self.document.source.text if self.document.source is not None else ""
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files that were read, the main file first; none for a plain text."""
+        if self.expansion is not None:
+            return self.expansion.dependencies
+        return () if self.name.startswith("<") else (Path(self.name),)
+
+    @cached_property
+    def sources(self) -> Mapping[Path, Document]:
+        """Every XML file that was read, as it is written (not expanded), the main file first."""
+        if self.expansion is None:
+            return {Path(self.name): self.document}
+        from linkwright.xacro import sources
+
+        found: dict[Path, Document] = {}
+        for path in self.expansion.dependencies:
+            with suppress(LinkwrightError):  # YAML files are among them
+                found[path] = sources.read(str(path), self.overlay)
+        return found
+
+    def provenance(self, element: Element) -> Provenance | None:
+        """Return the macro calls and includes that made an element; None for plain URDF, where it is written as it is.
+
+        Raises:
+            LinkwrightError: XAC802, the files are no longer what they were.
+        """
+        return None if self.expansion is None else self.expansion.provenance(element)
+
+
+_KEPT_TEXTS = 32
+
+
+class DescriptionLibrary:
+    """A cache of descriptions by their expanded texts, so that each is read once.
+
+    The launcher stores the description that a text was expanded from; the nodes and the viewer, which get the bare
+    text from a parameter or topic, then know where everything was written.
+    """
+
+    def __init__(self) -> None:
+        self._descriptions: OrderedDict[str, Description] = OrderedDict()
+        self._finders: dict[str, PackageFinder] = {}
+
+    def store(self, description: Description, text: str | None = None, packages: PackageFinder | None = None) -> str:
+        """Store a description, to be found by its text.
+
+        Args:
+            description: a description.
+            text: the text to find it by, if that is not its own.
+            packages: finds its packages, if these may differ from those of the rest of the program.
+
+        Returns:
+            The text.
+        """
+        text = description.text if text is None else text
+        self._descriptions[text] = description
+        self._descriptions.move_to_end(text)
+        if packages is not None:
+            self._finders[text] = packages
+        if len(self._descriptions) > _KEPT_TEXTS:
+            self._finders.pop(self._descriptions.popitem(last=False)[0], None)
+        return text
+
+    def packages(self, text: str) -> PackageFinder | None:
+        """Return the package finder of a stored description, or None if it has none."""
+        return self._finders.get(text)
+
+    def description(self, text: str) -> Description | None:
+        """Return the stored description with a text, or None if there is none."""
+        return self._descriptions.get(text)
+
+    def files(self, text: str) -> tuple[Path, ...]:
+        """Return the files of a stored description, the main file first; empty if it is not stored."""
+        known = self._descriptions.get(text)
+        return () if known is None else known.files
+
+    def provenance(self, text: str, element: Element) -> Provenance | None:
+        """Return the macro calls and includes that made an element of a stored description; None for an unknown text.
+
+        Raises:
+            LinkwrightError: XAC802, its files are no longer what they were.
+        """
+        known = self._descriptions.get(text)
+        return None if known is None else known.provenance(element)
+
+    def read(self, text: str) -> Reading:
+        """Read a description text, plain URDF or SDF; one that is not XML gives no robot, with the reason."""
+        known = self._descriptions.get(text)
+        if known is None:
+            known = _read(text)
+            self.store(known, text)
+        else:
+            self._descriptions.move_to_end(text)
+        return known.reading
+
+
+def _read(text: str) -> Description:
+    try:
+        document, _ = parse_as_urdfdom(text, TEXT_NAME)
+    except LinkwrightError as error:
+        return Description(TEXT_NAME, Document(Element("robot")), Reading(None, error.diagnostics))
+    if document.root.tag == "sdf":
+        return Description(TEXT_NAME, document, robot_of_text(text, TEXT_NAME))
+    return Description(TEXT_NAME, document, read(document))
+
+
+_OF_A_KIND = frozenset({"SDF150", "SDF160"})
+_MOST_LINKS = 100_000
+"""No more are read of a world: more would take minutes, and gigabytes."""
+_ENDINGS = (".world", ".sdf", ".world.xacro", ".sdf.xacro")
+
+
+@dataclass(frozen=True, eq=False)
+class WorldDescription:
+    """A world or model in SDF, read.
+
+    Attributes:
+        path: the file.
+        sdf: its content, with included models in place of the includes, and materials with the colours of their
+            scripts; None if it is not SDF.
+        diagnostics: all findings about it and its included models.
+        files: the files that were read, the main file first.
+    """
+
+    path: Path
+    sdf: Sdf | None
+    diagnostics: tuple[Diagnostic, ...]
+    files: tuple[Path, ...]
+
+
+def is_world(name: str) -> bool:
+    """Return whether to read a file as SDF, by its name."""
+    return name.endswith(_ENDINGS)
+
+
+def examine_world(
+    path: str | Path,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    packages: Mapping[str, str | Path] | PackageFinder | None = None,
+    environment: Mapping[str, str] | None = None,
+    overlay: Overlay | None = None,
+) -> WorldDescription:
+    """Read a world or model in SDF, or in SDF that xacro makes, with all findings about it.
+
+    Args:
+        path: the file; one whose name ends in ``.xacro``, or that has tags of xacro, is expanded first.
+        arguments: values for the file's ``<xacro:arg>``.
+        packages: package name -> share folder, or a finder.
+        environment: the variables with search paths (`linkwright.sdf.resources`); those of the process by default.
+        overlay: texts that replace those of files.
+
+    Raises:
+        LinkwrightError: it is not XML, it cannot be expanded, or it has more links than are read (SDF163).
+    """
+    from dataclasses import replace
+
+    from linkwright.sdf.includes import resolve_includes
+    from linkwright.sdf.reader import read
+    from linkwright.sdf.references import check_references
+    from linkwright.sdf.resources import ResourceFinder
+    from linkwright.sdf.scripts import with_scripts
+    from linkwright.sdf.worlds import populated
+
+    path = Path(path)
+    finder = (
+        packages
+        if isinstance(packages, PackageFinder)
+        else PackageFinder(start=[path.absolute().parent, Path.cwd()], extra=packages)
+    )
+    document, remarks, files = _document(path, arguments, finder, overlay)
+    reading = read(document)
+    found = [*remarks, *reading.diagnostics]
+    if reading.sdf is None:
+        return WorldDescription(path, None, tuple(found), files)
+    resources = ResourceFinder(finder, environment)
+    included = resolve_includes(reading.sdf, path, resources)
+    found += [*included.diagnostics, *check_references(included.sdf)]
+    sdf = with_scripts(replace(included.sdf, worlds=tuple(map(populated, included.sdf.worlds))), resources)
+    return WorldDescription(path, sdf, tuple(_each_once(found)), (*files, *included.files))
+
+
+def robot_of_text(text: str, name: str) -> Reading:
+    """Read the robot of a text in SDF; if there is one, the findings leave out warnings that gz would print.
+
+    Args:
+        text: the text.
+        name: its file name in messages.
+    """
+    from linkwright.sdf.includes import resolve_includes
+    from linkwright.sdf.reader import read
+    from linkwright.sdf.resources import ResourceFinder
+    from linkwright.sdf.text import parse_as_gazebo
+    from linkwright.sdf.to_urdf import robot_from_sdf
+
+    document, _ = parse_as_gazebo(text, name)
+    reading = read(document)
+    if reading.sdf is None or has_errors(reading.diagnostics):
+        return Reading(None, reading.diagnostics)
+    resources = ResourceFinder(PackageFinder(start=[Path.cwd()]))
+    return robot_from_sdf(resolve_includes(reading.sdf, Path(name), resources).sdf, document.root)
+
+
+def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """Yield the findings, only the first about each kind of unread element and each missing model."""
+    reported: set[str] = set()
+    for diagnostic in found:
+        words = f"{diagnostic.code} {diagnostic.severity} {diagnostic.message}"
+        if diagnostic.code not in _OF_A_KIND or words not in reported:
+            reported.add(words)
+            yield diagnostic
+
+
+def _document(
+    path: Path, arguments: Mapping[str, str] | None, finder: PackageFinder, overlay: Overlay | None
+) -> tuple[Document, tuple[Diagnostic, ...], tuple[Path, ...]]:
+    """Return the document, the diagnostics of reading it, and the files it was made of."""
+    text = None if overlay is None else overlay.text(str(path))
+    if path.suffix != ".xacro":
+        document, warnings = _as_written(path, read_bytes(path) if text is None else text)
+        if not _is_xacro(document):
+            return document, warnings, (path,)
+    from linkwright.xacro import expand
+
+    expansion = expand(str(path), arguments, packages=finder, text=text, overlay=overlay)
+    return expansion.document, expansion.diagnostics, expansion.dependencies
+
+
+def _as_written(path: Path, written: str | bytes) -> tuple[Document, tuple[Diagnostic, ...]]:
+    from linkwright.sdf.link_counts import has_more_links
+    from linkwright.sdf.text import parse_as_gazebo
+
+    if has_more_links(written, _MOST_LINKS):
+        message = phrase(
+            "'{path}' is not read: it has more than {most} links", path=display_path(path), most=_MOST_LINKS
+        )
+        hint = phrase("shapes that never move may be in one link")
+        raise LinkwrightError(Diagnostic("SDF163", message, hint=hint))
+    return parse_as_gazebo(written, str(path))
+
+
+def _is_xacro(document: Document) -> bool:
+    """Return whether a file is written for xacro, whatever its name: launch files expand it before Gazebo gets it."""
+    root = document.root
+    return "xmlns:xacro" in root.attributes and any(element.tag.startswith("xacro:") for element in root.walk())
+
 
 _URDF = ".urdf"
 """The ending of files that robot_state_publisher may be given as they are, whatever prefixes they declare."""
@@ -82,8 +395,6 @@ def examine(
     if not xacro:
         document, forbidden = parse_as_urdfdom(read_bytes(name) if text is None else text, name)
         if document.root.tag == "sdf" and document.source is not None:
-            from linkwright.descriptions.worlds import robot_of_text
-
             return Description(name, document, robot_of_text(document.source.text, name), overlay=overlay)
         if xacro is False or not (arguments or is_xacro(name, document.root)):
             return _as_it_stands(name, document, forbidden, overlay)

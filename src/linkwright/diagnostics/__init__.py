@@ -1,6 +1,15 @@
 """Findings about a user's input: what is wrong, where, why, and how to fix it; and how they are printed."""
 
-from linkwright.diagnostics.diagnostic import Diagnostic, LinkwrightError, Note, Severity, has_errors, in_one_line
+from linkwright.diagnostics.diagnostic import (
+    Diagnostic,
+    LinkwrightError,
+    Note,
+    Severity,
+    SourceText,
+    Span,
+    has_errors,
+    in_one_line,
+)
 from linkwright.diagnostics.extras import install_hint, missing_extra, package_hint
 from linkwright.diagnostics.phrase import (
     Phrase,
@@ -14,7 +23,6 @@ from linkwright.diagnostics.phrase import (
     title_of_page,
 )
 from linkwright.diagnostics.render import display_path, print_diagnostics, render, to_data, wants_colour
-from linkwright.diagnostics.source import SourceText, Span
 from linkwright.diagnostics.suggest import (
     as_typed,
     did_you_mean,

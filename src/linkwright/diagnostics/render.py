@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 
-from linkwright.diagnostics.diagnostic import Diagnostic, Note, Severity
+from linkwright.diagnostics.diagnostic import Diagnostic, Note, Severity, Span
 from linkwright.diagnostics.phrase import as_phrase, phrase
-from linkwright.diagnostics.source import Span
 from linkwright.diagnostics.translation import labels, language, localized, translated
 from linkwright.loading.lean_typing import IO, TYPE_CHECKING, Any
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, did_you_mean, foreign, phrase
 from linkwright.doctor.record import Observation, TransformSeen, listed, nodes_of
 from linkwright.doctor.robots import MOVING, RobotSeen
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.urdf import Joint
 
 _JOINT_STATE = "sensor_msgs/msg/JointState"

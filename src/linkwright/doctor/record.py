@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import join
 
 TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"

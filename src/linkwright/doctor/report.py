@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from importlib import metadata
 
 from linkwright.doctor.record import Observation, node_of
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.qos.compatibility import QoSCompatibility, qos_check_compatible
 
 Section = tuple[str, Sequence[tuple[str, str]]]

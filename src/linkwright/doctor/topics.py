@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, nearest, phrase
 from linkwright.doctor.record import TWIST, TWIST_STAMPED, Observation, listed, node_of, nodes_of
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.qos.compatibility import incompatible_policies
 from linkwright.graph.qos.profile import QoSPolicyKind
 

@@ -25,8 +25,8 @@ from linkwright.doctor.record import (
     TransformSeen,
     node_of,
 )
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.endpoints.drivers import Dispute, drivers_of, publishers_of
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.names.rules import join
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
@@ -34,9 +34,8 @@ from linkwright.wire.joining import middleware
 from linkwright.wire.unfollowed import DISCOVERY_SERVERS, MIDDLEWARE, SECURITY, ZENOH
 
 if TYPE_CHECKING:
-    from linkwright.graph.computation_graph import Graph
     from linkwright.graph.loop.future import Future
-    from linkwright.graph.node import Node
+    from linkwright.graph.node import Graph, Node
 
 _TF, _JOINT_STATE = "tf2_msgs/msg/TFMessage", "sensor_msgs/msg/JointState"
 _TRANSFORMS = ("tf", "tf_static")

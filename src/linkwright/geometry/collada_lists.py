@@ -7,7 +7,7 @@ from itertools import pairwise
 from struct import error, pack, unpack
 
 from linkwright.geometry.collada_scene import ColladaFile, Limits, Unusual, read_scene
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 
 _Rows = list[list[float]]
 _Triangle = tuple[int, int, int]

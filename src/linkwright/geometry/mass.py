@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.placement import rotation as rotation_of
+from linkwright.geometry.shapes import rotation as rotation_of
 from linkwright.geometry.single import Pose
 from linkwright.loading.lean_dataclasses import dataclass, field
 

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from math import isfinite
 
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
-from linkwright.diagnostics.pointers import is_pointer
+from linkwright.diagnostics.diagnostic import is_pointer
 from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import Any
 from linkwright.xmltree import Element, parse

@@ -18,13 +18,13 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.bounds import FARTHEST, Bounds
 from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, beside, placed_meshes
 from linkwright.geometry.outlines import COLLADA_PADDING
 from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.shapes import FARTHEST, Bounds
+from linkwright.geometry.single import Vector3
 from linkwright.loading.lean_typing import Any
 
 LARGEST_FILE = 1 << 29

@@ -13,8 +13,8 @@ from itertools import chain, pairwise
 from math import isfinite
 from struct import iter_unpack
 
-from linkwright.geometry.bounds import FARTHEST, Bounds
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.shapes import FARTHEST, Bounds
+from linkwright.geometry.single import Vector3
 from linkwright.loading.lean_typing import Protocol
 
 STEPS = 1 << 20

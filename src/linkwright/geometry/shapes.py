@@ -1,11 +1,18 @@
-"""The simple shapes that descriptions are made of, and their volumes; lengths in metres."""
+"""The simple shapes that descriptions are made of: their volumes and their bounds; lengths in metres.
+
+A frame in another one as a rotation matrix and a position, in plain floats.
+
+Rotations are matrices as three rows, from the child frame to the parent frame; lengths are metres. For few frames this
+is quicker than arrays, and it needs no numpy.
+"""
 
 from __future__ import annotations
 
-from math import pi, prod
+from collections.abc import Iterable
+from math import acos, hypot, pi, prod
 
-from linkwright.geometry.vectors import Vector3
-from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.geometry.single import Pose, Vector3, added, dot, quaternion_of, rotation_matrix, scaled, subtracted
+from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,3 +59,142 @@ def volume_of(shape: SimpleShape) -> float:
     if isinstance(shape, Capsule):
         return pi * r * r * shape.length + ball if r > 0 and shape.length >= 0 else 0.0
     return pi * r * r * shape.length if min(r, shape.length) > 0 else 0.0
+
+
+Matrix = tuple[Vector3, Vector3, Vector3]
+
+IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+class Placement(NamedTuple):
+    """A frame in another one."""
+
+    rotation: Matrix
+    position: Vector3
+
+    def point(self, inner: Vector3) -> Vector3:
+        """A point of the inner frame, in the outer one."""
+        x, y, z = turned(self.rotation, inner)
+        return x + self.position[0], y + self.position[1], z + self.position[2]
+
+    def inside(self, outer: Placement) -> Placement:
+        """This frame in the outer frame of `outer`, given this one in its inner frame."""
+        return Placement(product(outer.rotation, self.rotation), outer.point(self.position))
+
+    def seen_from(self, other: Placement) -> Placement:
+        """This frame in the other one, both given in the same frame."""
+        back = transposed(other.rotation)
+        difference = subtracted(self.position, other.position)
+        return Placement(product(back, self.rotation), turned(back, difference))
+
+
+def placement(pose: Pose) -> Placement:
+    """Convert a pose."""
+    return Placement(rotation(pose), pose.xyz)
+
+
+def rotation(pose: Pose) -> Matrix:
+    """The rotation of a pose."""
+    return rotation_matrix(quaternion_of(pose))
+
+
+def product(first: Matrix, second: Matrix) -> Matrix:
+    """The second rotation followed by the first."""
+    columns = transposed(second)
+    rows = [tuple(dot(row, column) for column in columns) for row in first]
+    return (_vector(rows[0]), _vector(rows[1]), _vector(rows[2]))
+
+
+def transposed(matrix: Matrix) -> Matrix:
+    """The inverse of a rotation."""
+    return (
+        (matrix[0][0], matrix[1][0], matrix[2][0]),
+        (matrix[0][1], matrix[1][1], matrix[2][1]),
+        (matrix[0][2], matrix[1][2], matrix[2][2]),
+    )
+
+
+def turned(matrix: Matrix, vector: Vector3) -> Vector3:
+    """A rotated vector."""
+    return dot(matrix[0], vector), dot(matrix[1], vector), dot(matrix[2], vector)
+
+
+def angle_between(first: Matrix, second: Matrix) -> float:
+    """The angle in radians by which two rotations differ."""
+    trace = sum(dot(row, other) for row, other in zip(first, second, strict=True))
+    return acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0)))
+
+
+def _vector(values: tuple[float, ...]) -> Vector3:
+    return values[0], values[1], values[2]
+
+
+FARTHEST = 1e9
+"""Lengths in m beyond this are mistakes; nothing is computed from them, so that nothing overflows."""
+
+
+class Bounds(NamedTuple):
+    """A box along the axes of some frame: its lowest and highest corner in m."""
+
+    low: Vector3
+    high: Vector3
+
+    @property
+    def size(self) -> Vector3:
+        """The edges in m."""
+        return subtracted(self.high, self.low)
+
+    @property
+    def center(self) -> Vector3:
+        """The middle in m."""
+        return scaled(added(self.low, self.high), 0.5)
+
+    @property
+    def diagonal(self) -> float:
+        """The distance of opposite corners in m."""
+        return hypot(*self.size)
+
+    def gap(self, other: Bounds) -> float:
+        """Return the distance between two boxes, in m; 0 if they touch."""
+        between = (subtracted(self.low, other.high), subtracted(other.low, self.high))
+        return hypot(*(max(0.0, before, after) for before, after in zip(*between, strict=True)))
+
+    def nearest(self, point: Vector3) -> Vector3:
+        """The point of the box that is nearest to another."""
+        x, y, z = (min(max(part, low), high) for part, low, high in zip(point, self.low, self.high, strict=True))
+        return x, y, z
+
+    def distance(self, point: Vector3) -> float:
+        """Return the distance of a point from the box, in m; 0 inside."""
+        return self.gap(Bounds(point, point))
+
+    def moved(self, frame: Placement) -> Bounds:
+        """The box around this one in a parent frame, in which `frame` is that of this box."""
+        low, high = [], []
+        for row, start in zip(frame.rotation, frame.position, strict=True):
+            ends = [(a * factor, b * factor) for factor, a, b in zip(row, self.low, self.high, strict=True)]
+            low.append(start + sum(map(min, ends)))
+            high.append(start + sum(map(max, ends)))
+        return Bounds((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def bounds_of(shape: SimpleShape) -> Bounds:
+    """The box around a shape along its own axes."""
+    if isinstance(shape, Box):
+        x, y, z = (abs(edge) / 2.0 for edge in shape.size)
+    elif isinstance(shape, Sphere):
+        x = y = z = abs(shape.radius)
+    else:
+        x = y = abs(shape.radius)
+        z = abs(shape.length / 2.0 + (shape.radius if isinstance(shape, Capsule) else 0.0))
+    return Bounds((-x, -y, -z), (x, y, z))
+
+
+def union(boxes: Iterable[Bounds]) -> Bounds | None:
+    """Return the box around several boxes, or None if there are none."""
+    listed = list(boxes)
+    if len(listed) < 2:
+        return listed[0] if listed else None
+    low = tuple(map(min, *(box.low for box in listed)))
+    high = tuple(map(max, *(box.high for box in listed)))
+    return Bounds((low[0], low[1], low[2]), (high[0], high[1], high[2]))

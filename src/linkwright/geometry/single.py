@@ -1,4 +1,4 @@
-"""One rotation or pose in plain floats, where an array would cost more than it computes.
+"""Single poses, rotations and vectors, as tuples of plain floats.
 
 Quaternions are x, y, z, w; lengths are metres and angles radians. Functions are named as those for many in
 `linkwright.geometry.arrays`; this module keeps readers of descriptions free of numpy.
@@ -8,8 +8,41 @@ from __future__ import annotations
 
 from math import acos, asin, atan2, cos, pi, sin, sqrt
 
-from linkwright.geometry.vectors import Vector3
 from linkwright.loading.lean_dataclasses import dataclass
+
+Vector3 = tuple[float, float, float]
+
+
+def added(first: Vector3, second: Vector3) -> Vector3:
+    """The sum."""
+    return first[0] + second[0], first[1] + second[1], first[2] + second[2]
+
+
+def subtracted(first: Vector3, second: Vector3) -> Vector3:
+    """The first vector less the second."""
+    return first[0] - second[0], first[1] - second[1], first[2] - second[2]
+
+
+def scaled(vector: Vector3, factor: float) -> Vector3:
+    """The vector times a factor."""
+    return vector[0] * factor, vector[1] * factor, vector[2] * factor
+
+
+def dot(first: Vector3, second: Vector3) -> float:
+    """The scalar product."""
+    return first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
+
+
+def cross(first: Vector3, second: Vector3) -> Vector3:
+    """The vector product."""
+    (a, b, c), (x, y, z) = first, second
+    return b * z - c * y, c * x - a * z, a * y - b * x
+
+
+def length(vector: Vector3) -> float:
+    """The Euclidean length."""
+    return sqrt(dot(vector, vector))
+
 
 Quaternion = tuple[float, float, float, float]
 """x, y, z, w, of unit length."""

@@ -11,9 +11,8 @@ from itertools import chain
 from math import copysign, hypot, isfinite, sqrt
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.geometry.bounds import Bounds
-from linkwright.geometry.placement import Matrix
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.shapes import Bounds, Matrix
+from linkwright.geometry.single import Vector3
 from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:

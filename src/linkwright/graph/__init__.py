@@ -2,41 +2,40 @@
 
 from typing import TYPE_CHECKING
 
-from linkwright.graph.computation_graph import Graph
-from linkwright.graph.endpoints.client import Client
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo
+from linkwright.graph.endpoints.bus import Transport
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.service import Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
-from linkwright.graph.endpoints.transport import Transport
 from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError, NodeNotFoundError
 from linkwright.graph.log.console import console_line, print_to_console
-from linkwright.graph.log.levels import LogLevel
-from linkwright.graph.log.logger import Logger, log_failure, run_logged
-from linkwright.graph.log.record import LogRecord, LogSink
-from linkwright.graph.loop.entity import Entity, GuardCondition
+from linkwright.graph.log.logger import Logger, LogLevel, LogRecord, LogSink, log_failure, run_logged
+from linkwright.graph.loop.dispatcher import Entity, GuardCondition
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.timer import Rate, Timer, TimerInfo
-from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.names.rules import (
     InvalidNameError,
     InvalidNamespaceError,
     InvalidNodeNameError,
     InvalidServiceNameError,
     InvalidTopicNameError,
+    NodeIdentity,
 )
-from linkwright.graph.node import Node
-from linkwright.graph.parameters.errors import (
+from linkwright.graph.node import Graph, Node
+from linkwright.graph.parameters.parameter import (
     InvalidParameterException,
     InvalidParameterTypeException,
     InvalidParameterValueException,
+    Parameter,
     ParameterAlreadyDeclaredException,
+    ParameterDescriptor,
     ParameterException,
     ParameterImmutableException,
     ParameterNotDeclaredException,
+    ParameterType,
     ParameterUninitializedException,
+    SetParametersResult,
 )
-from linkwright.graph.parameters.parameter import Parameter, ParameterDescriptor, ParameterType, SetParametersResult
 from linkwright.graph.qos.compatibility import QoSCompatibility, qos_check_compatible
 from linkwright.graph.qos.profile import (
     ACTION_STATUS_QOS,
@@ -61,8 +60,17 @@ from linkwright.graph.qos.profile import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from linkwright.graph.time.clock import Clock, ClockChange, JumpHandle, JumpThreshold, ROSClock, TimeJump
-from linkwright.graph.time.timebase import JumpClock, SystemClock, Timebase
+from linkwright.graph.time.clock import (
+    Clock,
+    ClockChange,
+    JumpClock,
+    JumpHandle,
+    JumpThreshold,
+    ROSClock,
+    SystemClock,
+    Timebase,
+    TimeJump,
+)
 from linkwright.graph.time.values import ClockType, Duration, Time
 from linkwright.graph.transforms.errors import (
     ConnectivityException,

@@ -7,28 +7,20 @@ import threading
 from collections import Counter
 from collections.abc import Callable
 
-from linkwright.graph.endpoints.base import Endpoint
-from linkwright.graph.endpoints.bus import Bus
-from linkwright.graph.endpoints.client import Client
-from linkwright.graph.endpoints.info import EndpointInfo
-from linkwright.graph.endpoints.presence import Presence
+from linkwright.graph.endpoints.base import Endpoint, EndpointInfo, Presence
+from linkwright.graph.endpoints.bus import Bus, Transport
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.service import Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
-from linkwright.graph.endpoints.transport import Transport
 from linkwright.graph.faults import InvalidHandleError
-from linkwright.graph.introspection.graph_queries import GraphQueries
-from linkwright.graph.introspection.namesakes import Namesakes, OnNamesakes
+from linkwright.graph.introspection.graph_queries import GraphQueries, Namesakes, OnNamesakes
 from linkwright.graph.log.console import print_to_console
-from linkwright.graph.log.levels import LogLevels
-from linkwright.graph.log.logger import Logger
-from linkwright.graph.log.record import LogSink
+from linkwright.graph.log.logger import Logger, LogLevels, LogSink
 from linkwright.graph.loop.dispatcher import LoopDispatcher
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.names.identity import NodeIdentity
-from linkwright.graph.names.remapping import Remappings
-from linkwright.graph.time.timebase import SystemClock, Timebase
+from linkwright.graph.names.rules import NodeIdentity, Remappings
+from linkwright.graph.time.clock import SystemClock, Timebase
 
 
 class LocalGraph(GraphQueries):

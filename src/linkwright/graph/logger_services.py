@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph.log.levels import LogLevel
+from linkwright.graph.log.logger import LogLevel
 from linkwright.graph.node import Node
 from linkwright.graph.qos.profile import SERVICES_QOS
 
 if TYPE_CHECKING:
-    from linkwright.graph.log.levels import LogLevels
+    from linkwright.graph.log.logger import LogLevels
 
 
 class LoggerServices:

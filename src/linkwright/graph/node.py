@@ -1,34 +1,33 @@
-"""A node: the owner of publishers, subscriptions, services, timers and parameters. Its methods have rclpy's names."""
+"""Nodes, and the graph that makes them. Their methods have rclpy's names."""
 
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
-from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from functools import cached_property, partial, wraps
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
 
-from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.endpoints.service import Service
-from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
+from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX, Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
-from linkwright.graph.introspection.node_queries import NodeQueries
-from linkwright.graph.introspection.type_descriptions import PARAMETER as TYPE_DESCRIPTIONS
-from linkwright.graph.introspection.type_descriptions import TypeDescriptions, is_usual
+from linkwright.graph.introspection.node_queries import PARAMETER as TYPE_DESCRIPTIONS
+from linkwright.graph.introspection.node_queries import NodeQueries, TypeDescriptions, is_usual
 from linkwright.graph.local_graph import LocalGraph
+from linkwright.graph.log.console import LOG_TYPE, ROSOUT_TOPIC, Rosout
 from linkwright.graph.log.logger import Logger
-from linkwright.graph.log.rosout import LOG_TYPE, ROSOUT_TOPIC, Rosout
-from linkwright.graph.loop.callback_groups import FREE_GROUP, CallbackGroup
-from linkwright.graph.loop.entity import GuardCondition
-from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.loop.self_waits import STRICT
+from linkwright.graph.loop.dispatcher import GuardCondition
+from linkwright.graph.loop.future import STRICT
+from linkwright.graph.loop.node_handle import FREE_GROUP, CallbackGroup, NodeHandle
 from linkwright.graph.loop.timer import Rate, Timer
-from linkwright.graph.names.identity import NodeIdentity
-from linkwright.graph.names.remapping import Remappings
-from linkwright.graph.names.rules import absolute_namespace, check_node_name
-from linkwright.graph.parameters.node_parameters import NodeParameters
+from linkwright.graph.names.rules import NodeIdentity, Remappings, absolute_namespace, check_node_name
+from linkwright.graph.parameters.node_parameters import (
+    EVENTS_TOPIC,
+    EVENTS_TYPE,
+    NodeParameters,
+    ParameterEvents,
+    ParameterServices,
+)
 from linkwright.graph.parameters.parameter import Parameter, ParameterDescriptor
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions, override_qos
-from linkwright.graph.parameters.services import EVENTS_TOPIC, EVENTS_TYPE, ParameterEvents, ParameterServices
 from linkwright.graph.parameters.store import ParameterStore
 from linkwright.graph.qos.compatibility import best_available
 from linkwright.graph.qos.profile import PARAMETER_EVENTS_QOS, ROSOUT_QOS, SERVICES_QOS, QoSProfile
@@ -42,7 +41,8 @@ if TYPE_CHECKING:
     from linkwright.graph.endpoints.content_filter import ContentFilterOptions
     from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, SubscriptionEventCallbacks
     from linkwright.graph.executors import Executor
-    from linkwright.graph.introspection.answers import TopicEndpointInfo
+    from linkwright.graph.introspection.graph_queries import TopicEndpointInfo
+
 
 M = TypeVar("M")
 
@@ -472,3 +472,27 @@ def _by_name(parameters: Mapping[str, Any] | Sequence[Parameter]) -> Mapping[str
 def _profiles(ask: Callable[[str, bool], list[TopicEndpointInfo]], topic: str) -> Iterator[QoSProfile]:
     """The profiles of the endpoints of a topic, in this process and outside; the graph is asked when one is needed."""
     yield from (endpoint.qos_profile for endpoint in ask(topic, True))
+
+
+P = ParamSpec("P")
+
+
+def _made_by(node_class: Callable[Concatenate[LocalGraph, P], Node]) -> Callable[Concatenate[Graph, P], Node]:
+    """The method that makes a node of a class in a graph, with that class's further arguments."""
+
+    @wraps(node_class, assigned=("__doc__",), updated=())
+    def create_node(graph: Graph, /, *args: P.args, **kwargs: P.kwargs) -> Node:
+        return node_class(graph, *args, **kwargs)
+
+    return create_node
+
+
+class Graph(LocalGraph):
+    """A ROS-like computation graph.
+
+    Made inside a running event loop, it has that loop run the callbacks of its nodes. Made elsewhere, or with
+    `threads`, its nodes have no dispatcher of their own; the executors of `linkwright.graph.executors` are ones. Its
+    arguments are those of `LocalGraph`.
+    """
+
+    create_node = _made_by(Node)

@@ -10,7 +10,7 @@ from linkwright.hosting.xacro_calls import XacroCall
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
-    from linkwright.page.protocol.arguments import ArgumentForm
+    from linkwright.page.protocol.description import ArgumentForm
 
 _MOST_TRIED = 12
 """Sets of values with which the description is expanded; no user chooses between more."""
@@ -31,7 +31,7 @@ def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Dia
     """
     from linkwright.descriptions.argument_sets import argument_sets
     from linkwright.lint.argument_sets import asked_argument
-    from linkwright.page.protocol.arguments import ArgumentChoice, ArgumentForm
+    from linkwright.page.protocol.description import ArgumentChoice, ArgumentForm
 
     if call.path.suffix == ".sdf":
         return None

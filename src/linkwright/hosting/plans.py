@@ -13,7 +13,7 @@ from linkwright.hosting.launch_log import LaunchLog, output_destinations
 
 if TYPE_CHECKING:
     from linkwright.descriptions import DescriptionLibrary
-    from linkwright.graph.parameters.rules import ParameterRules
+    from linkwright.graph.parameters.parameter import ParameterRules
     from linkwright.hosting.reload import LiveReload
     from linkwright.hosting.xacro_calls import Descriptions
     from linkwright.nodes import NodeOptions
@@ -97,7 +97,7 @@ class HostedPlan:
 
     def node_options(self, library: DescriptionLibrary) -> NodeOptions:
         """Return the options to start it with; `library` holds the robot descriptions that the process has read."""
-        from linkwright.graph.parameters.rules import ParameterRules
+        from linkwright.graph.parameters.parameter import ParameterRules
         from linkwright.nodes import NodeOptions
 
         return NodeOptions(

@@ -23,7 +23,7 @@ from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from linkwright.bag import BagWriter, Recorder
-    from linkwright.page.protocol.arguments import ArgumentForm
+    from linkwright.page.protocol.description import ArgumentForm
     from linkwright.rviz import RvizConfig
     from linkwright.viewer import Viewer
 
@@ -236,8 +236,8 @@ class ModelView:
             self._show_form()
 
     def _show_form(self) -> None:
-        from linkwright.page.protocol.arguments import NOTHING_ASKED
-        from linkwright.panels.arguments import ArgumentsFeature
+        from linkwright.page.protocol.description import NOTHING_ASKED
+        from linkwright.panels.description import ArgumentsFeature
 
         if self._viewer is not None:
             feature = self._viewer.add_feature(ArgumentsFeature)

@@ -192,7 +192,7 @@ def load_viewer() -> None:
 
 
 def _attach_panel(viewer: Viewer, running: RunningNode) -> None:
-    from linkwright.nodes import NodeWithSliders
+    from linkwright.panels.joints import NodeWithSliders
 
     if isinstance(running, NodeWithSliders):
         viewer.attach_joint_panel(running.panel)

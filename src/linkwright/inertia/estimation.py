@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase, term
-from linkwright.geometry.bounds import FARTHEST, bounds_of
 from linkwright.geometry.mass import MassProperties, combine
+from linkwright.geometry.shapes import FARTHEST, bounds_of
 from linkwright.geometry.solids import shape_properties
 from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.mesh_library import MeshLibrary

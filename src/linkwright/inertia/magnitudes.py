@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.geometry.bounds import FARTHEST
+from linkwright.geometry.shapes import FARTHEST
 from linkwright.urdf import Inertial
 
 _GREATEST = 1e30

@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, phrase
-from linkwright.geometry.bounds import FARTHEST
 from linkwright.geometry.outlines import Outline, SmallMesh, read_small
+from linkwright.geometry.shapes import FARTHEST
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Mesh

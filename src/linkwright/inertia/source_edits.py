@@ -11,7 +11,7 @@ from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.blocks import Attributes, inertial_block, inertial_parts, start_tag
 from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.urdf import Link
-from linkwright.xacro.origin import Frame, frames
+from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element, parse
 from linkwright.xmltree.patches import Replacement, indentation, newline_of
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range

@@ -12,9 +12,8 @@ import numpy as np
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, joined, phrase, term
 from linkwright.geometry.mass import MassProperties
-from linkwright.geometry.placement import transposed, turned
-from linkwright.geometry.single import rotation_from_z, rpy_from_quaternion
-from linkwright.geometry.vectors import Vector3, added, length, scaled
+from linkwright.geometry.shapes import transposed, turned
+from linkwright.geometry.single import Vector3, added, length, rotation_from_z, rpy_from_quaternion, scaled
 from linkwright.inertia import DEFAULT_DENSITY, MeshLibrary, estimate
 from linkwright.inertia.blocks import inertial_parts
 from linkwright.inertia.inertial import has_mass

@@ -8,7 +8,7 @@ from typing import Literal
 
 from linkwright.diagnostics import Diagnostic
 from linkwright.geometry.mass import MassProperties
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.xmltree import Element
 
 DriveKind = Literal["differential", "skid", "ackermann", "mecanum", "joints"]

@@ -10,9 +10,8 @@ import numpy as np
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.bounds import FARTHEST, bounds_of
-from linkwright.geometry.placement import Placement, placement, turned
-from linkwright.geometry.vectors import Vector3, cross, dot, length, scaled, subtracted
+from linkwright.geometry.shapes import FARTHEST, Placement, bounds_of, placement, turned
+from linkwright.geometry.single import Vector3, cross, dot, length, scaled, subtracted
 from linkwright.inertia import MeshLibrary
 from linkwright.urdf import Box, Capsule, Collision, Cylinder, Link, Mesh, Sphere, Visual
 

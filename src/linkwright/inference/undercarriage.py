@@ -12,15 +12,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import sqrt
 
-from linkwright.geometry.placement import Placement, turned
-from linkwright.geometry.vectors import length, scaled
+from linkwright.geometry.shapes import Placement, turned
+from linkwright.geometry.single import length, scaled
 from linkwright.inertia import MeshLibrary, estimate
 from linkwright.inference.model import Wheel
 from linkwright.inference.shapes import Shape, lowest, round_shape, shapes_of
 from linkwright.lint.frames import placements
 from linkwright.urdf import Joint, Link, Mesh, Robot, parent_joints
 from linkwright.urdf.bodies import Bodies
-from linkwright.xacro.origin import Frame, frames
+from linkwright.xacro.faults import Frame, frames
 
 _CASTER = re.compile(r"cast(?:e|o)r|swivel|ball(?!ast)|idler|passive|omni_?ball", re.IGNORECASE)
 _STEER = re.compile(r"steer|ackermann|knuckle", re.IGNORECASE)

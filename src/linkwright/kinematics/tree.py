@@ -1,18 +1,282 @@
-"""Forward kinematics of a whole robot."""
+"""Forward kinematics of a whole robot.
+
+Two ways to compute link frames: one configuration in few steps, many in few passes over memory.
+
+For one configuration overhead dominates, so the number of array operations counts: frames are composed along paths that
+double in length with each step. For many, memory counts: the last axis is that of the configurations, the tree is
+computed level by level for a block of them that fits in the cache, and results are written once.
+
+A robot laid out for computing: its bodies, the constants between them, and its mimic joints.
+
+Links joined by fixed joints move as one. So only moving joints matter: each carries a body, whose own frame is at the
+joint with z along the joint's axis. Then a joint turns its body about z or slides it along z, whatever its axis is:
+
+    body in root = parent body in root * mount * turn or slide
+    link in root = body in root * offset
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from math import prod
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase, term
-from linkwright.geometry.arrays import Array
-from linkwright.kinematics.forward import ManyConfigurations, OneConfiguration
-from linkwright.kinematics.layout import MOVING, lay_out, resolve_mimics
-from linkwright.urdf import Robot
+from linkwright.geometry.arrays import Array, matrix_from_pose, row_from_pose
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.urdf import Joint, Robot, children_of, parent_joints
+
+Indices = NDArray[np.intp]
+
+_TURNING = ("revolute", "continuous")
+MOVING = (*_TURNING, "prismatic")
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Bodies in the order of their depth, the root's first; links in the order of theirs.
+
+    Attributes:
+        link_names: every link that hangs from the root, parents before children.
+        body_joints: the joint of each body but the root's.
+        parents: index of each body's parent body, the root's body being 0; shape (bodies,).
+        depths: how many moving joints are above each body; shape (bodies,).
+        slides: whether the body slides (else it turns); shape (bodies,).
+        mounts: from the parent body's frame to the joint, its axis along z; shape (bodies, 4, 4).
+        link_bodies: the body of each link; shape (links,).
+        offsets: from the body's frame to the link's; shape (links, 4, 4).
+    """
+
+    link_names: tuple[str, ...]
+    body_joints: tuple[Joint, ...]
+    parents: Indices
+    depths: Indices
+    slides: NDArray[np.bool_]
+    mounts: Array
+    link_bodies: Indices
+    offsets: Array
+
+
+def lay_out(robot: Robot) -> Layout:
+    """Return the layout of a robot, without links that are not below its root."""
+    children, above = children_of(robot), parent_joints(robot)
+    link_names = [robot.root]
+    link_bodies = [0]
+    offsets = [np.eye(4)]
+    body_joints: list[Joint | None] = [None]
+    parents, depths, mounts = [0], [0], [np.eye(4)]
+    # A queue: parents come before children and, level by level, bodies in the order of their depth in the link tree.
+    at = 0
+    while at < len(link_names):
+        for joint in children[link_names[at]]:
+            if above[joint.child] is not joint:
+                continue  # a second parent, which urdfdom forgets
+            body = link_bodies[at]
+            to_joint = offsets[at] @ matrix_from_pose(row_from_pose(joint.origin))
+            align = _align_z(joint.axis) if joint.type in MOVING else None
+            if align is None:
+                link_bodies.append(body)
+                offsets.append(to_joint)
+            else:
+                link_bodies.append(len(body_joints))
+                offsets.append(align.T)
+                body_joints.append(joint)
+                parents.append(body)
+                depths.append(depths[body] + 1)
+                mounts.append(to_joint @ align)
+            link_names.append(joint.child)
+        at += 1
+    order = np.argsort(depths, kind="stable")
+    place = np.empty_like(order)
+    place[order] = np.arange(len(order))
+    joints = tuple(joint for body in order if (joint := body_joints[body]) is not None)
+    return Layout(
+        tuple(link_names),
+        joints,
+        place[np.array(parents)[order]],
+        np.array(depths)[order],
+        np.array([False, *(joint.type == "prismatic" for joint in joints)]),
+        np.array(mounts)[order],
+        place[np.array(link_bodies)],
+        np.array(offsets),
+    )
+
+
+def _align_z(axis: tuple[float, float, float]) -> Array | None:
+    """A homogeneous matrix that turns z into the axis; None for a zero axis, about which nothing moves."""
+    length = np.linalg.norm(axis)
+    if not length > 0:
+        return None
+    z = np.array(axis) / length
+    # Any x across z will do; the coordinate axis farthest from z keeps rotations between coordinate axes exact.
+    x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
+    x /= np.linalg.norm(x)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.column_stack((x, np.cross(z, x), z))
+    return matrix
+
+
+@dataclass(frozen=True, slots=True)
+class Following:
+    """A mimic joint: position = factor * position of `leader` + offset; a free joint is its own leader."""
+
+    leader: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+def resolve_mimics(robot: Robot, moving: Collection[str]) -> tuple[tuple[str, ...], Mapping[str, Following]]:
+    """Follow each chain of mimics to its end.
+
+    Args:
+        robot: the robot.
+        moving: the names of the joints that move.
+
+    Returns:
+        The moving joints that have a position of their own, in the order of the file, and what each moving joint
+        follows. A joint whose chain goes in a circle or to a joint that does not exist moves by itself.
+    """
+    following: dict[str, Following] = {}
+    for name in robot.joints:
+        if name in moving:
+            following[name] = _follow(name, robot)
+    return tuple(name for name, how in following.items() if how.leader == name), following
+
+
+def _follow(name: str, robot: Robot) -> Following:
+    leader, factor, offset = name, 1.0, 0.0
+    seen = {name}
+    while (mimic := robot.joints[leader].mimic) is not None:
+        if mimic.joint in seen or mimic.joint not in robot.joints:
+            return Following(name)
+        seen.add(mimic.joint)
+        leader = mimic.joint
+        offset += factor * mimic.offset
+        factor *= mimic.multiplier
+    return Following(leader, factor, offset)
+
+
+_BLOCK = 384
+
+
+class OneConfiguration:
+    """Link frames for one configuration."""
+
+    def __init__(self, layout: Layout) -> None:
+        count = len(layout.parents)
+        mounts = layout.mounts[1:]
+        # A body in its parent is 1 * A + cos(q) * B + sin(q) * C + q * D, entry by entry.
+        terms = np.zeros((count - 1, 4, 4, 4))
+        turns, slides = ~layout.slides[1:], layout.slides[1:]
+        terms[turns, 0, :, 2:] = mounts[turns, :, 2:]
+        terms[turns, 1, :, :2] = mounts[turns, :, :2]
+        terms[turns, 2, :, 0] = mounts[turns, :, 1]
+        terms[turns, 2, :, 1] = -mounts[turns, :, 0]
+        terms[slides, 0] = mounts[slides]
+        terms[slides, 3, :, 3] = mounts[slides, :, 2]
+        self._terms = terms.reshape(count - 1, 4, 16)
+        self._jumps = _doubling_jumps(layout.parents, layout.depths)
+        self._link_bodies = layout.link_bodies
+        self._offsets = layout.offsets
+
+    def frames(self, positions: Array) -> Array:
+        """Link frames in the root; positions of shape (bodies - 1,) to (links, 4, 4)."""
+        count = len(positions)
+        factors = np.empty((4, count))
+        factors[0] = 1.0
+        np.cos(positions, factors[1])
+        np.sin(positions, factors[2])
+        factors[3] = positions
+        bodies = np.empty((count + 1, 4, 4))
+        bodies[0] = _IDENTITY
+        np.matmul(factors.T[:, None, :], self._terms, bodies[1:].reshape(count, 1, 16))
+        for first, above in self._jumps:
+            deep = bodies[first:]
+            deep[...] = bodies.take(above, 0) @ deep
+        frames: Array = bodies.take(self._link_bodies, 0) @ self._offsets
+        return frames
+
+
+class ManyConfigurations:
+    """Link frames for many configurations."""
+
+    def __init__(self, layout: Layout) -> None:
+        self._levels = [_Level(layout, depth) for depth in range(1, int(layout.depths.max()) + 1)]
+        self._bodies = len(layout.parents)
+        self._link_bodies = layout.link_bodies
+        self._offsets_transposed = np.ascontiguousarray(layout.offsets.transpose(0, 2, 1))
+
+    def frames(self, positions: Array) -> Array:
+        """Link frames in the root; positions of shape (n, bodies - 1) to (n, links, 4, 4)."""
+        count, links = len(positions), len(self._link_bodies)
+        frames = np.empty((count, links, 4, 4))
+        frames[:, :, 3] = _IDENTITY[3]
+        for start in range(0, count, _BLOCK):
+            block = positions[start : start + _BLOCK]
+            size = len(block)
+            # Axes: body, column, row, configuration; the last row of a matrix is not carried along.
+            bodies = np.empty((self._bodies, 4, 3, size))
+            bodies[0] = _IDENTITY.T[:, :3, None]
+            by_joint = np.ascontiguousarray(block.T)
+            cosines, sines = np.cos(by_joint), np.sin(by_joint)
+            for level in self._levels:
+                level.compute(bodies, by_joint, cosines, sines)
+            columns = bodies.reshape(self._bodies, 4, 3 * size).take(self._link_bodies, 0)
+            columns = self._offsets_transposed @ columns
+            frames[start : start + size, :, :3] = columns.reshape(links, 4, 3, size).transpose(3, 0, 2, 1)
+        return frames
+
+
+class _Level:
+    """The bodies with the same number of moving joints above them, those that turn before those that slide."""
+
+    def __init__(self, layout: Layout, depth: int) -> None:
+        members = np.flatnonzero(layout.depths == depth)
+        self._turning = members[~layout.slides[members]]
+        self._sliding = members[layout.slides[members]]
+        members = np.concatenate((self._turning, self._sliding))
+        self._members = members
+        self._parents = layout.parents[members]
+        self._mounts_transposed = np.ascontiguousarray(layout.mounts[members].transpose(0, 2, 1))
+
+    def compute(self, bodies: Array, positions: Array, cosines: Array, sines: Array) -> None:
+        count, size = len(self._members), bodies.shape[-1]
+        parents = bodies.take(self._parents, 0).reshape(count, 4, 3 * size)
+        mounted = (self._mounts_transposed @ parents).reshape(count, 4, 3, size)
+        turning = len(self._turning)
+        if turning:
+            joints = self._turning - 1
+            cosine, sine = cosines[joints, None], sines[joints, None]
+            x, y = mounted[:turning, 0], mounted[:turning, 1]
+            turned = x * cosine + y * sine
+            y *= cosine
+            y -= x * sine
+            mounted[:turning, 0] = turned
+        if turning < count:
+            joints = self._sliding - 1
+            mounted[turning:, 3] += mounted[turning:, 2] * positions[joints, None]
+        bodies[self._members] = mounted
+
+
+def _doubling_jumps(parents: Indices, depths: Indices) -> list[tuple[int, Indices]]:
+    """For each step the first body that is deep enough to matter, and of it and all after it the ancestors.
+
+    They are 1, 2, 4, ... bodies up, short of the root's body, whose frame changes nothing.
+    """
+    jumps = []
+    jump = parents
+    reach = 1
+    while reach < depths[-1]:
+        first = int(np.searchsorted(depths, reach, side="right"))
+        jumps.append((first, jump[first:]))
+        jump = jump[jump]
+        reach *= 2
+    return jumps
+
+
+_IDENTITY: Array = np.eye(4)
 
 
 class UnknownNameError(LinkwrightError):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from linkwright.descriptions import examine as examine_description
 from linkwright.descriptions.argument_sets import ArgumentSet, compared_values, empty_defaults
-from linkwright.descriptions.description import TRUE_OF_PARTS
+from linkwright.descriptions.service import TRUE_OF_PARTS
 from linkwright.diagnostics import (
     Diagnostic,
     LinkwrightError,

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import TYPE_CHECKING, Any
-from linkwright.xacro.origin import Frame
+from linkwright.xacro.faults import Frame
 from linkwright.xmltree import Element, Text
 from linkwright.xmltree.nodes import LazyCopy
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from linkwright.descriptions import Description, Packages, examine_world, is_world
 from linkwright.descriptions import examine as examine_description
-from linkwright.descriptions.description import TRUE_OF_PARTS
+from linkwright.descriptions.service import TRUE_OF_PARTS
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, phrase
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.finding import Finding
@@ -301,7 +301,7 @@ def _with_trail(diagnostic: Diagnostic) -> Diagnostic:
     """A finding with the macro calls and includes that produced its element."""
     if not isinstance(diagnostic, Finding) or diagnostic.element is None or diagnostic.element.origin is None:
         return diagnostic
-    from linkwright.xacro.origin import origin_of
+    from linkwright.xacro.faults import origin_of
 
     trail = origin_of(diagnostic.element).trail
     return diagnostic.but(notes=(*diagnostic.notes, *trail))

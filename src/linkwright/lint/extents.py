@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from functools import cached_property
 from math import prod
 
-from linkwright.geometry.bounds import FARTHEST, Bounds, bounds_of, union
-from linkwright.geometry.placement import IDENTITY, Placement, placement
-from linkwright.geometry.shapes import volume_of
+from linkwright.geometry.shapes import FARTHEST, IDENTITY, Bounds, Placement, bounds_of, placement, union, volume_of
 from linkwright.inertia.magnitudes import is_computable
 from linkwright.lint.meshes import MeshFacts
 from linkwright.loading.lean_typing import TYPE_CHECKING

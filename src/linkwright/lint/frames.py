@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from linkwright.geometry.placement import IDENTITY, Placement, placement
+from linkwright.geometry.shapes import IDENTITY, Placement, placement
 from linkwright.urdf import Robot
 from linkwright.urdf.tree import walk
 

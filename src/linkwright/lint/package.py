@@ -9,7 +9,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, SourceText
 from linkwright.loading.lean_typing import TYPE_CHECKING
-from linkwright.packages.sources import SKIPPED_FOLDERS
+from linkwright.packages.manifest import SKIPPED_FOLDERS
 from linkwright.xmltree import Document, Overlay, parse_file
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes

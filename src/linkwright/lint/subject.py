@@ -14,7 +14,7 @@ from linkwright.urdf import Inertial, Joint, Link, Robot
 from linkwright.xmltree import Document, Element
 
 if TYPE_CHECKING:
-    from linkwright.geometry.placement import Placement
+    from linkwright.geometry.shapes import Placement
     from linkwright.kinematics import KinematicTree
     from linkwright.lint.contexts import Contexts, OfFile
     from linkwright.lint.extents import Extents
@@ -121,7 +121,7 @@ class Subject:
         """All joints in file order, those of a refused model as far as they can be read; names may repeat there."""
         if self.robot is not None:
             return tuple(self.robot.joints.values())
-        from linkwright.urdf.elements import read_joint
+        from linkwright.urdf.reader import read_joint
         from linkwright.urdf.report import UrdfReport
 
         return tuple(read_joint(element, UrdfReport()) for element in self.elements("joint"))
@@ -131,7 +131,7 @@ class Subject:
         """All links in file order, those of a refused model as far as they can be read; names may repeat there."""
         if self.robot is not None:
             return tuple(self.robot.links.values())
-        from linkwright.urdf.elements import MaterialTable, read_link
+        from linkwright.urdf.reader import MaterialTable, read_link
         from linkwright.urdf.report import UrdfReport
 
         findings = UrdfReport()

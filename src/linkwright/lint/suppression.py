@@ -208,7 +208,7 @@ def _places(diagnostic: Diagnostic) -> Iterator[tuple[str, int]]:
         yield diagnostic.span.file, source.offset(diagnostic.span.line, diagnostic.span.column)
     if not isinstance(diagnostic, Finding) or diagnostic.element is None or diagnostic.element.origin is None:
         return
-    from linkwright.xacro.origin import Frame, frames
+    from linkwright.xacro.faults import Frame, frames
 
     innermost = diagnostic.element.origin
     for frame in frames(innermost if isinstance(innermost, Frame) else None):

@@ -10,8 +10,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.packages import enclosing_package
-from linkwright.packages.manifest import MANIFEST
-from linkwright.packages.sources import IGNORE_MARKERS, SKIPPED_FOLDERS
+from linkwright.packages.manifest import IGNORE_MARKERS, MANIFEST, SKIPPED_FOLDERS
 from linkwright.xacro import sources
 from linkwright.xmltree import Element
 from linkwright.xmltree.tinyxml import COMMENT

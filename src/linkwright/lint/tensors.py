@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.geometry import validity
-from linkwright.geometry.placement import Matrix
+from linkwright.geometry.shapes import Matrix
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Inertial
 

@@ -13,7 +13,7 @@ from functools import lru_cache
 
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_patterns import lazy_pattern
-from linkwright.xacro.expressions.lexer import Token, TokenKind, tokenize
+from linkwright.xacro.expressions.template import Token, TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 
 _IDENTIFIER = lazy_pattern(r"[^\W\d]\w*")

@@ -5,15 +5,11 @@ from typing import TYPE_CHECKING
 from linkwright.loading.deferred import deferred
 from linkwright.messages.catalogue import packages as shipped_packages
 from linkwright.messages.classes import get_action, get_interface, get_message, get_service
-from linkwright.messages.conversion import to_csv, to_dict
 from linkwright.messages.definitions.embedded import add_definitions
 from linkwright.messages.definitions.hashing import type_hash
 from linkwright.messages.distribution import is_before_iron
 from linkwright.messages.errors import DefinitionError, FieldValueError, InterfaceNotFoundError, MessageDataError
-from linkwright.messages.field_values import set_fields
-from linkwright.messages.message import ActionType, Message, ServiceType, definition_of
-from linkwright.messages.presentation import definition_text, interface_names, prototype
-from linkwright.messages.serialization import deserialize, serialize
+from linkwright.messages.message import ActionType, Message, ServiceType, definition_of, deserialize, serialize
 from linkwright.messages.wellknown import (
     Duration,
     FloatSequence,
@@ -26,10 +22,13 @@ from linkwright.messages.wellknown import (
     TransformStamped,
     Vector3,
 )
-from linkwright.messages.yaml_text import to_yaml
 
 if TYPE_CHECKING:
+    from linkwright.messages.conversion import to_csv, to_dict
+    from linkwright.messages.field_values import set_fields
+    from linkwright.messages.presentation import definition_text, interface_names, prototype
     from linkwright.messages.tf_message import TFMessage, TransformBatch
+    from linkwright.messages.yaml_text import to_yaml
 
 __all__ = [
     "ActionType",
@@ -72,5 +71,14 @@ __all__ = [
 ]
 
 
-__getattr__ = deferred(__name__, {"tf_message": ("TFMessage", "TransformBatch")})
-"""Classes made of numpy's arrays, whose import takes longer than all else here."""
+__getattr__ = deferred(
+    __name__,
+    {
+        "conversion": ("to_csv", "to_dict"),
+        "field_values": ("set_fields",),
+        "presentation": ("definition_text", "interface_names", "prototype"),
+        "tf_message": ("TFMessage", "TransformBatch"),
+        "yaml_text": ("to_yaml",),
+    },
+)
+"""Texts of messages, which nodes do not use; and classes made of numpy's arrays, which take long to import."""

@@ -1,27 +1,231 @@
-"""Makes the classes of messages, services and actions, each once, when it is first asked for."""
+"""Makes the classes of messages, services and actions from generated code, each when it is first asked for.
+
+Generating the Python code of a message class: constructor and setters, each as short as its field allows.
+
+Setters and constructors test for the usual case in line (``value.__class__ is float``) and leave all others to
+`linkwright.messages.checks`. A field's property reads its slot by a C function, so a read costs what a read costs.
+"""
 
 from __future__ import annotations
 
+import keyword
 import threading
+from array import array
 from importlib import import_module
+from operator import attrgetter
 from typing import Any, cast
 
-from linkwright.messages.class_code import build_class
+from linkwright.messages import checks
 from linkwright.messages.definitions.interfaces import (
     Action,
+    Container,
     Definition,
+    Field,
     Service,
     Structure,
     event_of,
     feedback_message_of,
     get_result_of,
+    python_module,
     send_goal_of,
 )
 from linkwright.messages.definitions.library import LIBRARY, not_of_kind
-from linkwright.messages.definitions.names import python_module
 from linkwright.messages.errors import InterfaceNotFoundError
-from linkwright.messages.message import ActionImplementation, ActionType, Message, ServiceType
-from linkwright.messages.time import DurationValue, TimeValue
+from linkwright.messages.message import ActionImplementation, ActionType, DurationValue, Message, ServiceType, TimeValue
+
+
+def build_class(structure: Structure, base: type, classes: dict[str, type], module: str) -> type:
+    """Build the class of a structure.
+
+    Args:
+        structure: its definition.
+        base: its base class.
+        classes: type name -> class, of every structure that fields use.
+        module: the name of its module.
+    """
+    # Names with capitals, which no field has.
+    scope: dict[str, Any] = {
+        "U": checks.UNSET,
+        "Checks": checks,
+        "Array": array,
+        "Range": range,
+        "List": list,
+        "Set": set,
+        "Map": map,
+        "Type": type,
+    }
+    if any(field.type.is_numeric_array and field.type.container is Container.ARRAY for field in structure.fields):
+        import numpy as np
+
+        scope["Np"] = np
+    fields = [_FieldCode(field, classes, scope) for field in structure.fields]
+    code = "".join([_constructor(fields), *(field.setter() for field in fields)])
+    exec(compile(code, f"<class of {structure.type_name}>", "exec"), scope)  # noqa: S102 - the names in it are checked
+    name = structure.type_name.rpartition("/")[2]
+    body: dict[str, Any] = {
+        "__slots__": tuple("_" + field.name for field in structure.fields),
+        "__module__": module,
+        "__doc__": _docstring(name, structure),
+        "__init__": scope["__init__"],
+        "TYPE_NAME": structure.type_name,
+        "_definition": structure,
+    }
+    for field in fields:
+        body[field.name] = property(attrgetter("_" + field.name), scope["S_" + field.name], None, field.docstring())
+        if field.field.default is not None:
+            body[field.name.upper() + "__DEFAULT"] = field.default
+    for constant in structure.constants:
+        body[constant.name] = constant.value
+    made = type(base)(name, (base,), body)
+    for field in fields:
+        function = scope["S_" + field.name]
+        function.__qualname__ = f"{name}.{field.name}"
+    return made
+
+
+class _FieldCode:
+    """The code for one field."""
+
+    def __init__(self, field: Field, classes: dict[str, type], scope: dict[str, Any]) -> None:
+        self.field = field
+        self.name = field.name
+        self.kind = field.type
+        self._classes = classes
+        scope["K_" + field.name] = field.type
+        if self.kind.primitive is None:
+            scope["C_" + field.name] = classes[self.kind.base]
+        self.default = self._default()
+        if self.default is not None and not self._is_plain():
+            scope["D_" + field.name] = self.default
+
+    def docstring(self) -> str:
+        return f"Message field '{self.name}'."
+
+    def parameter(self) -> str:
+        # A field may be called like a word of Python, such as 'from': it is set by **other then.
+        return "" if keyword.iskeyword(self.name) else f"{self.name}=U, "
+
+    def initial(self) -> str:
+        """The lines of the constructor for this field."""
+        name = argument = self.name
+        lines = ""
+        if keyword.iskeyword(name):
+            argument = name + "_"
+            lines = f"    {argument} = Rest.pop({name!r}, U)\n"
+        lines += f"    if {argument} is U: M._{name} = {self._default_code()}\n"
+        if self.kind.is_numeric_array:
+            made = "made_fixed_array" if self.kind.container is Container.ARRAY else "made_sequence"
+            return lines + f"    else: M._{name} = Checks.{made}({name!r}, {argument}, K_{name})\n"
+        if self._is_plain():  # as the setter does, except for the call
+            lines += f"    elif {self._usual(argument)}: M._{name} = {argument}\n"
+        return lines + f"    else: S_{name}(M, {argument})\n"
+
+    def setter(self) -> str:
+        name = self.name
+        return f"def S_{name}(self, value):\n{self._checked()}    self._{name} = value\n"
+
+    # --- the check ------------------------------------------------------------------------------------------
+
+    def _checked(self) -> str:
+        name, kind, primitive = self.name, self.kind, self.kind.primitive
+        if kind.is_numeric_array and kind.container is Container.ARRAY:
+            return f"    value = Checks.check_fixed_array({name!r}, value, K_{name})\n"
+        if kind.is_numeric_array:
+            assert primitive is not None
+            usual = f"value.__class__ is Array and value.typecode == {primitive.array_code!r}" + self._usual_length()
+            return f"    if not ({usual}): value = Checks.check_sequence({name!r}, value, K_{name})\n"
+        if kind.container is not Container.ONE:
+            cls = f"C_{name}" if primitive is None else primitive.python.__name__
+            check = f"value = Checks.check_values({name!r}, value, K_{name}, {cls})"
+            if kind.string_bound is not None:
+                return f"    {check}\n"
+            usual = f"value.__class__ is List and Set(Map(Type, value)) <= {{{cls}}}" + self._usual_length()
+            return f"    if not ({usual}): {check}\n"
+        if primitive is None:
+            check = f"check_message({name!r}, value, C_{name})"
+        elif primitive.python is int:
+            check = f"check_int({name!r}, value, {primitive.low}, {primitive.high})"
+        elif primitive.python is float:
+            check = f"check_float({name!r}, value, {primitive.high!r})"
+        elif primitive.python is bool:
+            check = f"check_bool({name!r}, value)"
+        elif primitive.python is bytes:
+            check = f"check_byte({name!r}, value)"
+        else:
+            check = f"check_text({name!r}, value, {kind.string_bound})"
+        return f"    if not ({self._usual('value')}): value = Checks.{check}\n"
+
+    def _usual_length(self) -> str:
+        """The expression that tests the length of several values with a bound."""
+        if self.kind.size is None:
+            return ""
+        return f" and len(value) {'==' if self.kind.container is Container.ARRAY else '<='} {self.kind.size}"
+
+    def _usual(self, value: str) -> str:
+        """The expression that tests for the usual case of a single value, which is kept as it is."""
+        kind, primitive = self.kind, self.kind.primitive
+        if primitive is None:
+            return f"{value}.__class__ is C_{self.name}"
+        test = f"{value}.__class__ is {primitive.python.__name__}"
+        if primitive.python is int:
+            test += f" and {primitive.low} <= {value} <= {primitive.high}"
+        elif primitive.code == "f":
+            test += f" and -{primitive.high!r} <= {value} <= {primitive.high!r}"
+        elif primitive.python is bytes:
+            test += f" and len({value}) == 1"
+        elif primitive.python is str and kind.string_bound is not None:
+            test += f" and len({value}) <= {kind.string_bound}"
+        return test
+
+    # --- the default ----------------------------------------------------------------------------------------
+
+    def _is_plain(self) -> bool:
+        return self.kind.container is Container.ONE
+
+    def _default(self) -> Any:
+        """The default value of the definition, as the field holds it; None if there is none."""
+        value = self.field.default
+        if value is None or self._is_plain():
+            return value
+        assert isinstance(value, tuple)
+        return list(value)
+
+    def _default_code(self) -> str:
+        kind, primitive, name = self.kind, self.kind.primitive, self.name
+        if kind.is_numeric_array:
+            assert primitive is not None
+            values = "" if self.default is None else f"D_{name}"
+            if kind.container is Container.ARRAY:
+                dtype = f"dtype={primitive.dtype!r}"
+                return f"Np.array({values}, {dtype})" if values else f"Np.zeros({kind.size}, {dtype})"
+            return f"Array({primitive.array_code!r}" + (f", {values})" if values else ")")
+        if not self._is_plain():
+            if self.default is not None:
+                return f"List(D_{name})"
+            if kind.container is Container.SEQUENCE:
+                return "[]"
+            return f"[{self._one()} for _ in Range({kind.size})]"
+        return self._one() if self.default is None else repr(self.default)
+
+    def _one(self) -> str:
+        primitive = self.kind.primitive
+        if primitive is None:
+            return f"C_{self.name}()"
+        return {int: "0", float: "0.0", bool: "False", str: "''", bytes: "b'\\0'"}[primitive.python]
+
+
+def _constructor(fields: list[_FieldCode]) -> str:
+    parameters = "".join(field.parameter() for field in fields)
+    lines = "".join(field.initial() for field in fields)
+    return f"def __init__(M, {parameters}**Rest):\n{lines}    if Rest: Checks.refuse_arguments(Rest)\n"
+
+
+def _docstring(name: str, structure: Structure) -> str:
+    text = f"Message class '{name}'."
+    if structure.constants:
+        text += "\n\nConstants:\n" + "\n".join(f"  {constant.name}" for constant in structure.constants)
+    return text
+
 
 _classes: dict[str, Any] = {}
 _lock = threading.RLock()

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.messages.message import Message
-from linkwright.messages.time import DurationValue, TimeValue
+from linkwright.messages.message import DurationValue, TimeValue
 
 class Time(TimeValue):
     def __init__(self, sec: int = ..., nanosec: int = ...) -> None: ...

@@ -3,7 +3,13 @@
 Each is in a module of its own, which is imported when it is started.
 """
 
-from linkwright.nodes.options import Factory, FinishingNode, NodeOptions, NodeWithSliders, RunningNode
-from linkwright.nodes.registry import COMPONENTS, EXECUTABLES
+from linkwright.nodes.options import (
+    COMPONENTS,
+    EXECUTABLES,
+    Factory,
+    FinishingNode,
+    NodeOptions,
+    RunningNode,
+)
 
-__all__ = ["COMPONENTS", "EXECUTABLES", "Factory", "FinishingNode", "NodeOptions", "NodeWithSliders", "RunningNode"]
+__all__ = ["COMPONENTS", "EXECUTABLES", "Factory", "FinishingNode", "NodeOptions", "RunningNode"]

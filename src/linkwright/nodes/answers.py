@@ -6,7 +6,7 @@ import asyncio
 from typing import Any
 
 from linkwright.graph import Client, Clock, ClockType, Node
-from linkwright.graph.loop.callback_groups import ReentrantCallbackGroup
+from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 
 
 async def answered(node: Node, future: Any, seconds: float | None) -> bool:

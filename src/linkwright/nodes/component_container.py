@@ -9,10 +9,9 @@ from typing import Any
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase
 from linkwright.graph import Graph, Parameter
 from linkwright.graph.command_line.ros_arguments import parse
-from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.messages import get_service
-from linkwright.nodes.options import NodeOptions, RunningNode, SingleNode, create_node, starting
-from linkwright.nodes.registry import COMPONENTS
+from linkwright.nodes.options import COMPONENTS, NodeOptions, RunningNode, SingleNode, create_node, starting
 
 
 class ComponentContainer(SingleNode):

@@ -1,11 +1,181 @@
-"""joint_state_publisher_gui: joint_state_publisher with sliders, which the viewer draws."""
+"""joint_state_publisher_gui: joint_state_publisher with sliders, which the viewer draws and moves."""
 
 from __future__ import annotations
 
-from linkwright.graph import Graph
-from linkwright.nodes.joint_panel import JointPanel
-from linkwright.nodes.joint_state_publisher import JointStatePublisher
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import isfinite
+from random import Random
+from typing import Literal
+
+from linkwright.graph import Graph, Node, log_failure
+from linkwright.nodes.joint_layout import Dependence
+from linkwright.nodes.joint_state_publisher import JointPositions, JointStatePublisher
 from linkwright.nodes.options import NodeOptions
+from linkwright.urdf import JointType
+
+PanelChange = Literal["sliders", "positions"]
+PanelCallback = Callable[[PanelChange], object]
+
+
+@dataclass(frozen=True, slots=True)
+class JointSlider:
+    """A row of the panel.
+
+    Attributes:
+        name: the joint.
+        kind: revolute, continuous or prismatic.
+        lower: where the slider begins, rad or m; finite.
+        upper: where it ends.
+        zero: where "Center" puts the joint.
+        mimic: the joint that this one follows, directly; such a row cannot be moved. None for a free joint.
+        multiplier: of a joint that follows: position = multiplier * position of `mimic` + offset.
+        offset: rad or m.
+    """
+
+    name: str
+    kind: JointType
+    lower: float
+    upper: float
+    zero: float
+    mimic: str | None = None
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+class JointPanel:
+    """The sliders of all free joints.
+
+    Args:
+        node: its executor runs the callbacks of subscribers.
+        joints: the state that is moved.
+        publish_soon: called when a position was changed here.
+        random: for `randomize`.
+    """
+
+    def __init__(
+        self, node: Node, joints: JointPositions, publish_soon: Callable[[], None], random: Random | None = None
+    ) -> None:
+        self._joints = joints
+        self._publish_soon = publish_soon
+        self._random = random or Random()  # noqa: S311  # no secrets here
+        self._sliders: list[JointSlider] = []
+        self._subscribers: list[PanelCallback] = []
+        self._logger = node.get_logger()
+        self._sliders_changed = node.create_guard_condition(lambda: self._notify("sliders"))
+        self._positions_changed = node.create_guard_condition(lambda: self._notify("positions"))
+
+    def sliders(self) -> list[JointSlider]:
+        """The rows, in the order of the description's file.
+
+        A joint with equal limits has no row, and neither has a joint that mimics it.
+        """
+        return list(self._sliders)
+
+    def positions(self) -> dict[str, float]:
+        """The positions of all rows, rad or m."""
+        published = dict(zip(self._joints.layout.ranges, self._joints.published().tolist(), strict=True))
+        return {slider.name: published[slider.name] for slider in self._sliders}
+
+    def set_position(self, name: str, value: float) -> bool:
+        """Set the position of a joint, within its limits.
+
+        Args:
+            name: the joint.
+            value: rad or m.
+
+        Returns:
+            Whether it was moved: False for a joint that has no row (any more), follows another, or a value that is
+            not a finite number.
+        """
+        slider = next((row for row in self._sliders if row.name == name and row.mimic is None), None)
+        if slider is None or not isfinite(value):
+            return False
+        self._joints.set(name, value)
+        self._moved()
+        return True
+
+    def randomize(self) -> None:
+        """Set every joint to a random position within its limits."""
+        self._logger.info("Randomizing")
+        for slider in self._free():
+            self._joints.set(slider.name, self._random.uniform(slider.lower, slider.upper))
+        self._moved()
+
+    def center(self) -> None:
+        """Set every joint to zero, which need not be the middle of its range."""
+        self._logger.info("Centering")
+        for slider in self._free():
+            self._joints.set(slider.name, slider.zero)
+        self._moved()
+
+    def subscribe(self, callback: PanelCallback) -> Callable[[], None]:
+        """Register a callback for changes: ``"sliders"`` when the rows change, ``"positions"`` when joints move.
+
+        Changes in the same iteration of the event loop are reported once.
+
+        Returns:
+            A function that removes the callback.
+        """
+        self._subscribers.append(callback)
+
+        def unsubscribe() -> None:
+            if callback in self._subscribers:
+                self._subscribers.remove(callback)
+
+        return unsubscribe
+
+    def rebuild(self) -> None:
+        """Rebuild the rows for the current layout of the joints."""
+        layout = self._joints.layout
+        movable = {joint.name for joint in layout.free if joint.lower != joint.upper}
+        free = layout.free
+        masters = [free[master].name if master >= 0 else "" for master in layout.masters.tolist()]
+        zeros = [free[master].zero if master >= 0 else 0.0 for master in layout.masters.tolist()]
+        follows_nothing = Dependence("")
+        follows = [layout.dependent.get(name, follows_nothing) for name in layout.ranges]
+        self._sliders = [
+            JointSlider(
+                joint.name,
+                joint.kind,
+                joint.lower,
+                joint.upper,
+                factor * zero + offset,
+                direct.parent or None,
+                direct.factor,
+                direct.offset,
+            )
+            for joint, direct, master, zero, factor, offset in zip(
+                layout.ranges.values(),
+                follows,
+                masters,
+                zeros,
+                layout.factor.tolist(),
+                layout.offset.tolist(),
+                strict=True,
+            )
+            if master in movable
+        ]
+        self._sliders_changed.trigger()
+        self.notice_positions()
+
+    def notice_positions(self) -> None:
+        """Notify subscribers that others moved joints."""
+        self._positions_changed.trigger()
+
+    def _free(self) -> list[JointSlider]:
+        return [slider for slider in self._sliders if slider.mimic is None]
+
+    def _moved(self) -> None:
+        self._publish_soon()
+        self.notice_positions()
+
+    def _notify(self, change: PanelChange) -> None:
+        for callback in tuple(self._subscribers):
+            try:
+                callback(change)
+            except Exception as error:  # noqa: BLE001, PERF203 - one subscriber must not take the others with it
+                log_failure(self._logger, "joint panel callback", error)
 
 
 class JointStatePublisherGui(JointStatePublisher):

@@ -105,7 +105,7 @@ def _join_network(graph: Graph) -> None:
 
 
 def _factory(package: str, executable: str) -> Factory:
-    from linkwright.nodes.registry import EXECUTABLES
+    from linkwright.nodes.options import EXECUTABLES
 
     factory = EXECUTABLES.get((package, executable))
     if factory is not None:

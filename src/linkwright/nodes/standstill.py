@@ -6,8 +6,8 @@ from typing import Any
 
 from linkwright.diagnostics import phrase
 from linkwright.graph import Node, Publisher
+from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.endpoints.commander import describe_lost_publisher
-from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED
 
 VELOCITIES = (TWIST, TWIST_STAMPED)

@@ -8,10 +8,9 @@ from linkwright.packages.ament_functions import (
     get_package_share_path,
     get_packages_with_prefixes,
 )
-from linkwright.packages.errors import PackageNotFoundError
-from linkwright.packages.finder import PackageFinder
+from linkwright.packages.finder import PackageFinder, PackageNotFoundError
 from linkwright.packages.manifest import MANIFEST, enclosing_package, package_name
-from linkwright.packages.substituted import is_substitute
+from linkwright.packages.share_layout import is_substitute
 
 __all__ = [
     "MANIFEST",

@@ -6,17 +6,47 @@ import os
 from collections.abc import Iterator, Mapping, MutableMapping, Sequence
 from pathlib import Path
 
-from linkwright.diagnostics import Phrase, did_you_mean, display_path, is_misspelt, joined, phrase
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Note,
+    Phrase,
+    did_you_mean,
+    display_path,
+    is_misspelt,
+    joined,
+    phrase,
+)
 from linkwright.packages import ament, uri
 from linkwright.packages.ament import install_prefix
-from linkwright.packages.errors import PackageNotFoundError
-from linkwright.packages.manifest import enclosing_package
-from linkwright.packages.share_layout import share_of_sources
-from linkwright.packages.sources import SourceScan
-from linkwright.packages.substituted import substituted_share, substitutes
+from linkwright.packages.manifest import SourceScan, enclosing_package
+from linkwright.packages.share_layout import share_of_sources, substituted_share, substitutes
 
 START_VARIABLE = "LINKWRIGHT_START"
 """The environment variable by which a launcher tells its processes where its own search for packages began."""
+
+
+class PackageNotFoundError(LinkwrightError, KeyError):
+    """No package of that name is in any place (PKG101).
+
+    It is a KeyError too, like the exception of the same name in ``ament_index_python``, so that launch files
+    that catch the latter continue to work.
+
+    Args:
+        searched: the places.
+        meant: the hint at a package that may be meant.
+
+    Attributes:
+        name: the package that was looked for.
+        is_slip: whether it is the misspelt name of a package that there is.
+    """
+
+    def __init__(self, name: str, searched: Sequence[str], meant: Phrase | None, *, is_slip: bool) -> None:
+        notes = tuple(Note(phrase("searched {place}", place=place)) for place in searched)
+        hint = meant or phrase("go to the workspace that holds it, or source its install/setup.bash")
+        super().__init__(Diagnostic("PKG101", phrase("package '{name}' not found", name=name), notes=notes, hint=hint))
+        self.name = name
+        self.is_slip = is_slip
 
 
 class PackageFinder:
@@ -31,7 +61,7 @@ class PackageFinder:
     4. source trees: the package that contains a start folder and its sibling packages, the packages below
        a start folder, and those below ``src`` of the folders above it;
     5. the packages shipped with Linkwright;
-    6. our substitutes for packages of ROS that launch files include, see `linkwright.packages.substituted`.
+    6. our substitutes for packages of ROS that launch files include, see `linkwright.packages.share_layout`.
 
     Nothing is read from the disk before it is needed, and a search through source trees stops where it meets
     the package.

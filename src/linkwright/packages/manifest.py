@@ -1,8 +1,11 @@
-"""``package.xml``: the file that makes a folder a ROS package (REP 149)."""
+"""``package.xml``: the file that makes a folder a ROS package (REP 149), and the search for it, as colcon does it."""
 
 from __future__ import annotations
 
+import os
 import re
+from collections import deque
+from collections.abc import Iterator
 from pathlib import Path
 
 from linkwright.loading.lean_patterns import lazy_pattern
@@ -34,3 +37,111 @@ def enclosing_package(path: Path) -> tuple[str, Path] | None:
         if name is not None:
             return name, folder
     return None
+
+
+IGNORE_MARKERS = frozenset({"COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"})
+SKIPPED_FOLDERS = frozenset({"build", "install", "log", "node_modules", "__pycache__", "site-packages"})
+
+MAXIMUM_DEPTH = 8
+MAXIMUM_FOLDERS = 3000
+
+
+class SourceScan:
+    """A breadth-first search for packages below one folder that proceeds only on demand.
+
+    Folders nearer to the root come first and siblings in the order of their names. A folder with a
+    ``package.xml`` is a package and is not searched further; hidden folders, build products and folders with
+    an ignore marker are left out. The search ends `MAXIMUM_DEPTH` folders down or after `MAXIMUM_FOLDERS`
+    folders, so that a start in a home folder does not walk the whole disk.
+
+    Attributes:
+        root: where the search starts.
+        truncated: whether the search ended at a bound with folders left.
+        unnamed: folders with a ``package.xml`` that names no package.
+    """
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self.truncated = False
+        self.unnamed: list[Path] = []
+        self._found: dict[str, Path] = {}
+        self._steps: Iterator[tuple[str, Path]] | None = self._walk()
+
+    def find(self, name: str) -> Path | None:
+        """The folder of a package, or None; the search stops as soon as the package is found."""
+        if name in self._found:
+            return self._found[name]
+        while self._advance():
+            if name in self._found:
+                return self._found[name]
+        return None
+
+    def packages(self) -> dict[str, Path]:
+        """All packages below the root: name -> folder. Of two with the same name the one found first."""
+        while self._advance():
+            pass
+        return dict(self._found)
+
+    def _advance(self) -> bool:
+        if self._steps is None:
+            return False
+        step = next(self._steps, None)
+        if step is None:
+            self._steps = None
+            return False
+        self._found.setdefault(*step)
+        return True
+
+    def _walk(self) -> Iterator[tuple[str, Path]]:
+        waiting: deque[tuple[str, int]] = deque([(str(self.root), 0)])
+        visited = 0
+        while waiting:
+            if visited >= MAXIMUM_FOLDERS:
+                self.truncated = True
+                return
+            folder, depth = waiting.popleft()
+            visited += 1
+            files, folders = _listing(folder)
+            if not IGNORE_MARKERS.isdisjoint(files):
+                continue
+            if MANIFEST in files:
+                path = Path(folder)
+                name = package_name(path)
+                if name is not None:
+                    yield name, path
+                else:
+                    self.unnamed.append(path)
+                continue
+            if depth == MAXIMUM_DEPTH:
+                self.truncated = self.truncated or bool(folders)
+                continue
+            waiting.extend((f"{folder}{os.sep}{entry}", depth + 1) for entry in folders)
+
+
+def _listing(folder: str) -> tuple[set[str], list[str]]:
+    """Names of the files in a folder, and of the folders in it that are worth a search, sorted."""
+    files: set[str] = set()
+    folders: list[str] = []
+    try:
+        with os.scandir(folder) as entries:
+            for entry in entries:
+                name = entry.name
+                if entry.is_dir(follow_symlinks=True):
+                    if not name.startswith(".") and name not in SKIPPED_FOLDERS and not _links_upwards(entry):
+                        folders.append(name)
+                else:
+                    files.add(name)
+    except OSError:
+        pass
+    folders.sort()
+    return files, folders
+
+
+def _links_upwards(entry: os.DirEntry[str]) -> bool:
+    """Whether a folder is a link to one of its parents: following it would never end."""
+    if not entry.is_symlink():
+        return False
+    link = Path(entry.path)
+    target = link.resolve()
+    above = link.parent.resolve()
+    return target == above or target in above.parents

@@ -1,26 +1,122 @@
-"""The share folder of a package that is not built, laid out as its build would do it.
+"""The share folder of a package that is not built, laid out as its build would do it; and our substitutes.
 
 Most packages keep their files in the sources as they install them, and their source folder serves as the share folder.
 Some do not: ``install(DIRECTORY description/urdf DESTINATION share/${PROJECT_NAME})``, ``glob('cfg/*')`` to ``config``.
 For these a folder of links is made in the user's cache, with the installed files at their installed paths and
 everything else of the sources. So a user of the share folder, a launch file with ``os.path.join`` too, finds
-the files that would exist after a build. Files that need compiling are ours if we have them, see
-`linkwright.packages.substituted`.
+the files that would exist after a build. Files that need compiling are ours if we have them.
+
+Our substitutes for packages of ROS that launch files include, such as those of Gazebo and nav2.
+
+They have the launch files of those packages and the files that these need, and start nodes of ours. They are found
+through the entry points ``linkwright.package_substitutes``: each has the name of a package, and points to a module
+whose folder is a prefix with that package, ``share/NAME``. A package that is replaced only by modules, messages or
+nodes, such as rclpy, std_msgs and robot_state_publisher, has a share folder that does not exist.
 """
 
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 from linkwright.files.user_folders import SHARES
-from linkwright.loading.lean_typing import TYPE_CHECKING
-from linkwright.packages.substituted import substituted_files
+from linkwright.loading.extensions import extensions
+from linkwright.packages.ament import install_prefix, share_in_prefix
+from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.readers.installed_file import InstalledFile
 
-if TYPE_CHECKING:
-    from linkwright.packages.readers.installed_file import InstalledFile
+_GROUP = "linkwright.package_substitutes"
+_IN_PART = Path(__file__).parent / "substitutes"
+"""The prefix of the packages that are replaced without files."""
+
+
+def substituted_share(name: str) -> Path | None:
+    """The share folder of our substitute for a package of ROS; None if there is none."""
+    share = _share_with_files(name)
+    if share is None and name in _known_in_part():
+        return _IN_PART / "share" / name
+    return share
+
+
+def substitutes() -> Iterator[tuple[str, Path]]:
+    """Name and share folder of every substitute that has files, by name."""
+    for name in sorted(extensions(_GROUP)):
+        share = _share_with_files(name)
+        if share is not None:
+            yield name, share
+
+
+def _share_with_files(name: str) -> Path | None:
+    entry = extensions(_GROUP).get(name)
+    if entry is None:
+        return None
+    try:
+        prefix = Path(entry.load().__file__).parent
+    except Exception as error:  # noqa: BLE001 - a broken package must not stop the search
+        warnings.warn(f"'{entry.distribution}' brings no substitute for '{name}': {error}", stacklevel=2)
+        return None
+    return share_in_prefix(prefix, name)
+
+
+@cache
+def substituted_executables() -> dict[str, frozenset[str]]:
+    """Return the packages that are replaced in part, by modules, messages or nodes, with the executables that are."""
+    lines = Path(__file__).with_name("substituted_names.txt").read_text(encoding="utf-8").splitlines()
+    return {package: frozenset(executables) for package, *executables in map(str.split, lines)}
+
+
+@cache
+def _known_in_part() -> frozenset[str]:
+    """The packages that are replaced in part by us, or by the nodes of other installed packages."""
+    nodes = (name for group in ("linkwright.nodes", "linkwright.components") for name in extensions(group))
+    return frozenset({*substituted_executables(), *(name.partition("/")[0] for name in nodes)})
+
+
+def is_substitute(share: Path) -> bool:
+    """Whether a share folder is our substitute for a missing package of ROS, such as gazebo_ros.
+
+    It has the launch files that others include, but not the rest of that package.
+    """
+    return install_prefix(share) == _IN_PART or share == _share_with_files(share.name)
+
+
+def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
+    """The files of ours that unbuilt sources of a package lack: path in the share folder -> file.
+
+    A launch file that a build makes, such as ros_gz_sim's ``gz_sim.launch.py``, names programs of that build; ours
+    starts our nodes. Files in the sources take precedence: the names of their nodes lead to ours, and the user may
+    have edited them.
+
+    Args:
+        name: the package.
+        folder: its source folder.
+    """
+    share = _share_with_files(name)
+    if share is None or not _compiles(folder):
+        return {}
+    ours = {file.relative_to(share).as_posix(): file for file in sorted(share.rglob("*")) if file.is_file()}
+    return {
+        path: InstalledFile(str(file), f"share/{name}/{path}")
+        for path, file in ours.items()
+        if path != MANIFEST and file.suffix != ".pyc" and not (folder / path).is_file()
+    }
+
+
+def _compiles(folder: Path) -> bool:
+    """Whether a package in its sources has to be compiled."""
+    try:
+        text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return False
+    from linkwright.diagnostics import SourceText
+    from linkwright.packages.readers.cmake import read_cmake
+
+    return bool(read_cmake(SourceText(str(folder / "CMakeLists.txt"), text), folder).compiled)
+
 
 _MARK = os.path.join("", "linkwright", SHARES, "")  # noqa: PTH118 - a part of the path as text
 

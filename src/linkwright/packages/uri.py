@@ -6,9 +6,8 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.loading.lean_patterns import lazy_pattern
-from linkwright.packages.errors import bad_uri
 
 _DRIVE = lazy_pattern(r"/?([A-Za-z]:[\\/])")
 _SCHEME = lazy_pattern(r"([A-Za-z][A-Za-z0-9+.-]+):")
@@ -21,7 +20,7 @@ def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None
         LinkwrightError: an error of `share`, or PKG102 for an address that has none of the three forms.
     """
     if not address.strip():
-        raise bad_uri(phrase("'{uri}' is empty where the path of a file is expected", uri=address))
+        raise _bad_uri(phrase("'{uri}' is empty where the path of a file is expected", uri=address))
     scheme = _SCHEME.match(address)
     if scheme is None:
         path = Path(address)
@@ -39,22 +38,22 @@ def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None
     problem = phrase(
         "'{uri}' has the scheme '{scheme}', which does not name a local file", uri=address, scheme=scheme.group(1)
     )
-    raise bad_uri(problem, hint)
+    raise _bad_uri(problem, hint)
 
 
 def _package_path(address: str, rest: str, share: Callable[[str], Path]) -> Path:
     if not rest.startswith("//"):
-        raise bad_uri(phrase("'{uri}' lacks the two slashes", uri=address), phrase("write package://PACKAGE/PATH"))
+        raise _bad_uri(phrase("'{uri}' lacks the two slashes", uri=address), phrase("write package://PACKAGE/PATH"))
     name, _, path = rest[2:].partition("/")
     if not name:
-        raise bad_uri(phrase("'{uri}' names no package", uri=address), phrase("write package://PACKAGE/PATH"))
+        raise _bad_uri(phrase("'{uri}' names no package", uri=address), phrase("write package://PACKAGE/PATH"))
     return share(_decoded(name)) / _decoded(path).lstrip("/")
 
 
 def _file_path(address: str, rest: str) -> Path:
     path = absolute_path(rest)
     if path is None:
-        raise bad_uri(
+        raise _bad_uri(
             phrase("'{uri}' has no absolute path", uri=address),
             phrase("write file:///ABSOLUTE/PATH, with three slashes"),
         )
@@ -85,3 +84,8 @@ def _decoded(text: str) -> str:
     from urllib.parse import unquote
 
     return unquote(text)
+
+
+def _bad_uri(problem: Phrase, hint: Phrase | None = None) -> LinkwrightError:
+    """The error for a resource address that cannot be understood (PKG102)."""
+    return LinkwrightError(Diagnostic("PKG102", problem, hint=hint))

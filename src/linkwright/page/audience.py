@@ -1,10 +1,11 @@
-"""The open pages, and the sending and receiving of their messages."""
+"""The open pages, the sending and receiving of their messages, and the lateness of the event loop."""
 
 from __future__ import annotations
 
 import asyncio
 import math
 import time
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -12,23 +13,60 @@ from typing import TYPE_CHECKING, Any
 from linkwright.diagnostics.translation import language as language_of_terminal
 from linkwright.diagnostics.translation import language_of
 from linkwright.graph import log_failure
-from linkwright.page.lateness import Lateness
 from linkwright.page.outbox import BULK, TRANSFORMS, InPieces, Line, Outbox, Outgoing, Payload, ScaledData
 from linkwright.page.protocol.message import (
     BadMessageError,
     PageMessage,
+    ProgramIsLate,
+    Received,
     ServerMessage,
+    address_of,
     decode,
     encode,
     redundancy_key,
 )
-from linkwright.page.protocol.session import ProgramIsLate, Received
-from linkwright.page.protocol.voice import SoundBlock, unpack_sound
 
 if TYPE_CHECKING:
     from aiohttp.web import Request, WebSocketResponse
 
     from linkwright.graph import Logger
+    from linkwright.page.protocol.voice import SoundBlock
+
+
+_EVERY = 0.05
+"""Seconds between two measurements."""
+
+_LOOKS = 20
+"""Measurements that count."""
+
+
+class Lateness:
+    """Measures by how much the event loop is late, from its creation until it is closed.
+
+    Messages from a page wait as long before they are read, and messages to it before they are sent.
+    """
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self._loop = loop
+        self._seen: deque[float] = deque(maxlen=_LOOKS)
+        self._due = self._loop.time() + _EVERY
+        self._timer = self._loop.call_at(self._due, self._look)
+
+    @property
+    def mean(self) -> float:
+        """The mean of the last second, in seconds; 0.0 before anything is known."""
+        return sum(self._seen) / len(self._seen) if self._seen else 0.0
+
+    def close(self) -> None:
+        """Stop measuring."""
+        self._timer.cancel()
+
+    def _look(self) -> None:
+        now = self._loop.time()
+        self._seen.append(now - self._due)
+        self._due = now + _EVERY
+        self._timer = self._loop.call_at(self._due, self._look)
+
 
 MAXIMUM_PAGES = 32
 """Most open pages; more are refused."""
@@ -234,7 +272,7 @@ class Audience(PageGroup):
 
     Args:
         opening: the first messages for a page, the full present state.
-        receivers: the receivers of pages' messages, by class; others are ignored.
+        receivers: the receivers of pages' messages, by the address of the class; others are ignored.
         gone: called when a page has closed.
         logger: logs messages outside of the protocol.
     """
@@ -242,7 +280,7 @@ class Audience(PageGroup):
     def __init__(
         self,
         opening: Callable[[Page], list[Payload]],
-        receivers: Mapping[type, Callable[[Page, Any], object]],
+        receivers: Mapping[str, Callable[[Page, Any], object]],
         gone: Callable[[Page], None],
         logger: Logger,
     ) -> None:
@@ -300,6 +338,8 @@ class Audience(PageGroup):
             if (pause := pace.wait()) > 0:
                 await asyncio.sleep(pause)
             if message.type is web.WSMsgType.BINARY:
+                from linkwright.page.protocol.voice import unpack_sound
+
                 sound = unpack_sound(message.data)
                 if sound is None:
                     await socket.close(code=1003, message=b"pages send text, and sound in blocks")
@@ -321,7 +361,7 @@ class Audience(PageGroup):
                     self._hand_on(page, decoded)
 
     def _hand_on(self, page: Page, message: PageMessage | SoundBlock) -> None:
-        receive = self._receivers.get(type(message))
+        receive = self._receivers.get(address_of(type(message)))
         if receive is None:
             return
         try:

@@ -18,7 +18,7 @@ from pathlib import Path, PurePosixPath
 from urllib.parse import quote
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
-from linkwright.diagnostics.pointers import FETCH, IS_POINTER, is_pointer_file
+from linkwright.diagnostics.diagnostic import FETCH, IS_POINTER, is_pointer_file
 from linkwright.packages import PackageFinder, PackageNotFoundError, enclosing_package
 
 MESH_TYPES = {

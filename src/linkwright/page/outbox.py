@@ -14,8 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
-from linkwright.page.protocol.binary import pack_piece
-from linkwright.page.protocol.message import DataContent
+from linkwright.page.protocol.message import DataContent, pack_piece
 
 Pack = Callable[[DataContent], bytes]
 Shrink = Callable[[int], DataContent]

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linkwright.page.access import Gate
+from linkwright.page.access import Gate, PortToken, keep_token, leave_token, new_token
 from linkwright.page.files import Downloads, MeshFolders
-from linkwright.page.port_tokens import PortToken, keep_token, leave_token, new_token
 
 if TYPE_CHECKING:
     from linkwright.page.audience import Audience

@@ -86,13 +86,16 @@ MOST_UNSENT = 16 * 1024
 _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class _Shown:
-    """The services for pages: the audience that takes their sockets, and the guests that show their recordings."""
+    """The services for pages: the audience that takes their sockets, and the guests that show their recordings.
+
+    The addresses for uploads exist since the first one.
+    """
 
     audience: Audience
     guests: Guests | None
-    uploads: Uploads | None
+    uploads: Uploads | None = None
 
 
 class WebServer:
@@ -161,9 +164,7 @@ class WebServer:
             audience: takes the WebSockets.
             guests: shows the recordings that pages upload; None if uploads are not accepted.
         """
-        from linkwright.page.uploads import Uploads
-
-        self._shown.set_result(_Shown(audience, guests, None if guests is None else Uploads(guests)))
+        self._shown.set_result(_Shown(audience, guests))
 
     async def close(self) -> None:
         """Close the connections to pages and stop."""
@@ -298,10 +299,14 @@ class WebServer:
     async def _upload(
         self, take: Callable[[Uploads, web.Request], Awaitable[web.Response]], request: web.Request
     ) -> web.Response:
-        uploads = (await self._viewer()).uploads
-        if uploads is None:
+        shown = await self._viewer()
+        if shown.guests is None:
             raise web.HTTPNotFound(text="This program does not accept recordings.\n")
-        return await take(uploads, request)
+        if shown.uploads is None:
+            from linkwright.page.uploads import Uploads
+
+            shown.uploads = Uploads(shown.guests)
+        return await take(shown.uploads, request)
 
     async def _viewer(self) -> _Shown:
         """Return the services for pages, as soon as they are available."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
@@ -35,7 +36,6 @@ from linkwright.page.protocol.configuration import (
     Undo,
 )
 from linkwright.page.protocol.message import ServerMessage
-from linkwright.panels.displays import choices, show_topic
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.config import file as configuration_file
 from linkwright.rviz.config.locations import RecentFiles, configuration_path, forget_unsaved, list_folder
@@ -127,7 +127,11 @@ class ConfigurationFeature(PageFeature):
         entry = manager.config.make(message.cls, _name(message.name))
         group = manager.display(message.group) if message.group is not None else None
         topic = message.topic
-        prepare = None if topic is None else lambda display: show_topic(display, topic)
+        prepare: Callable[[ViewerDisplay], None] | None = None
+        if topic is not None:
+            from linkwright.panels.displays import show_topic
+
+            prepare = partial(show_topic, topic=topic)
         manager.tree.add(entry, group.config if group else None, prepare)
 
     def _duplicate(self, asked: Request[DuplicateDisplays]) -> None:
@@ -163,6 +167,8 @@ class ConfigurationFeature(PageFeature):
     # --- questions ---------------------------------------------------------------------------------------------
 
     def _ask_displays(self, asked: Request[AskDisplayChoices]) -> None:
+        from linkwright.panels.displays import choices
+
         asked.page.send(choices(self.context.node))
 
     def _ask_folder(self, asked: Request[AskFolder]) -> None:

@@ -1,16 +1,19 @@
-"""Answers pages' questions about the descriptions of RobotModel displays, and shows findings on them."""
+"""Descriptions for pages: answers about them, findings on them, and the form of their arguments."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.packages import PackageFinder
+from linkwright.page.audience import Page
 from linkwright.page.protocol.description import (
+    NOTHING_ASKED,
+    ArgumentForm,
     AskDescription,
     AskDescriptionText,
     AskInertia,
@@ -20,6 +23,7 @@ from linkwright.page.protocol.description import (
     DiagnosticItem,
     DiagnosticNote,
     Diagnostics,
+    GiveArguments,
     InertiaFindings,
 )
 from linkwright.page.protocol.message import ServerMessage, tag_of
@@ -29,9 +33,39 @@ from linkwright.rviz.displays.robot_model import RobotModelDisplay
 from linkwright.urdf import Robot
 
 if TYPE_CHECKING:
-    from linkwright.page.audience import Page
     from linkwright.panels.description_details import SourceTexts
     from linkwright.rviz.visualization.manager import VisualizationManager
+
+
+Give = Callable[[dict[str, str]], object]
+"""Receives the values that a user gives."""
+
+
+class ArgumentsFeature(PageFeature):
+    """Shows every page the same form, and forwards the first answer."""
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (GiveArguments,)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._form = NOTHING_ASKED
+        self._give: Give | None = None
+
+    def opening(self) -> list[ServerMessage]:
+        """The form."""
+        return [self._form]
+
+    def ask(self, form: ArgumentForm, give: Give | None) -> None:
+        """Show a form; `give` is called with the values of the first answer."""
+        self._form, self._give = form, give
+        self.context.pages.publish(form)
+
+    def receive(self, page: Page, message: GiveArguments) -> None:
+        """Handle the values for the requested arguments."""
+        give, names = self._give, set(self._form.names)
+        if give is not None:
+            self.ask(NOTHING_ASKED, None)
+            give({name: value for name, value in message.values.items() if name in names})
 
 
 Part = TypeVar("Part")

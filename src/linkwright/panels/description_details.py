@@ -29,7 +29,7 @@ from linkwright.page.protocol.description import (
 from linkwright.rviz.robot import frame_of, link_inertia
 from linkwright.urdf import Joint, Link, Mimic, Robot
 from linkwright.urdf.plaintext import parse_as_urdfdom
-from linkwright.xacro.origin import Frame, frames
+from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.patches import element_range

@@ -6,8 +6,7 @@ from weakref import WeakKeyDictionary
 
 from linkwright.graph import DurabilityPolicy, Node, ReliabilityPolicy
 from linkwright.page.audience import Page
-from linkwright.page.protocol.configuration import DisplayChoices, DisplayClass, TopicChoice
-from linkwright.page.protocol.displays import SetProperty
+from linkwright.page.protocol.configuration import DisplayChoices, DisplayClass, SetProperty, TopicChoice
 from linkwright.page.protocol.images import ImageSize
 from linkwright.page.protocol.markers import MarkerFeedback
 from linkwright.page.protocol.points import AskPoint, PointFields

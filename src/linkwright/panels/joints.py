@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, cast, runtime_checkable
 
+from linkwright.nodes import RunningNode
 from linkwright.page.audience import Page
-from linkwright.page.protocol.joints import (
+from linkwright.page.protocol.message import ServerMessage
+from linkwright.page.protocol.robot import (
     CenterJoints,
     JointControl,
     JointPositions,
@@ -16,14 +18,22 @@ from linkwright.page.protocol.joints import (
     SetJoint,
     SetJoints,
 )
-from linkwright.page.protocol.message import ServerMessage
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 if TYPE_CHECKING:
-    from linkwright.nodes.joint_panel import JointPanel
+    from linkwright.nodes.joint_state_publisher_gui import JointPanel
 
 _LAG = 0.01
 """Delay before positions are sent after a change, seconds, so that its transforms go out first."""
+
+
+@runtime_checkable
+class NodeWithSliders(RunningNode, Protocol):
+    """A node whose joints can be moved by sliders."""
+
+    @property
+    def panel(self) -> JointPanel:
+        """The sliders."""
 
 
 class JointsFeature(PageFeature):

@@ -5,17 +5,17 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Callable, Collection, Mapping
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph import DurabilityPolicy, MessageInfo, run_logged
+from linkwright.graph import DurabilityPolicy, MessageInfo, log_failure
 from linkwright.graph.endpoints.subscription import Detailed
 from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import serialize
 
 if TYPE_CHECKING:
     from linkwright.bag.history import History
-    from linkwright.bag.moments import Recorded
+    from linkwright.bag.names import Recorded
     from linkwright.bag.playback import Playback
     from linkwright.bag.saving import SavedTopic
     from linkwright.diagnostics import LinkwrightError
@@ -225,16 +225,21 @@ class LiveHistory:
         history, fresh = self._stored, self._fresh
         self._fresh = []
         for topic, at_ns, message in fresh:
-            keep = partial(self._store, history, topic, at_ns, message, thins=self.live)
-            run_logged(self._handle.logger, f"keeping a message of '{topic}'", keep)
+            self._store(history, topic, at_ns, message, thins=self.live)
         return history
 
     def _store(self, history: History, topic: str, at_ns: int, message: Any, *, thins: bool) -> None:
-        """Store a message; with `thins`, briefly if it repeats those before: playback needs each of these."""
+        """Store a message; with `thins`, briefly if it repeats those before: playback needs each of these.
+
+        A failure is logged, so that one message does not take the others with it.
+        """
         from linkwright.bag.stillness import content_of
 
-        data = bytes(message) if isinstance(message, _BYTES) else serialize(message)
-        history.add(topic, data, at_ns, content_of(self._recorded[topic].type_name, data) if thins else None)
+        try:
+            data = bytes(message) if isinstance(message, _BYTES) else serialize(message)
+            history.add(topic, data, at_ns, content_of(self._recorded[topic].type_name, data) if thins else None)
+        except Exception as error:  # noqa: BLE001  # a publisher may send anything
+            log_failure(self._handle.logger, f"keeping a message of '{topic}'", error)
 
     def _subscriptions(self) -> list[Subscription[Any]]:
         return list(self._context.node.subscriptions)

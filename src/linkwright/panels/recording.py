@@ -20,7 +20,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_
 from linkwright.graph import Clock, Duration, JumpThreshold, Node
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import ServerMessage
-from linkwright.page.protocol.recording import (
+from linkwright.page.protocol.time import (
     RecordedFile,
     RecordingState,
     RecordTopics,

@@ -1,32 +1,41 @@
 """The page features of this room that are created on demand."""
 
-from linkwright.page.protocol import displays, editing, export, images, markers, monitor, points, recording, robot
-from linkwright.panels.on_demand import OnDemand
+from linkwright.page.protocol.time import NOTHING_RECORDED
+from linkwright.panels.page_feature import OnDemand, messages
+
+_EDITING = "linkwright.page.protocol.editing"
+_MONITOR = "linkwright.page.protocol.monitor"
+_RECORDING = "linkwright.page.protocol.time"
 
 ON_DEMAND = (
     OnDemand(
         "linkwright.panels.displays:DisplaysFeature",
-        (displays.SetProperty, robot.MeshStatus, markers.MarkerFeedback, images.ImageSize),
+        (
+            "linkwright.page.protocol.configuration:SetProperty",
+            "linkwright.page.protocol.robot:MeshStatus",
+            "linkwright.page.protocol.markers:MarkerFeedback",
+            "linkwright.page.protocol.images:ImageSize",
+        ),
     ),
-    OnDemand("linkwright.panels.displays:PointsFeature", (points.AskPoint,)),
+    OnDemand("linkwright.panels.displays:PointsFeature", ("linkwright.page.protocol.points:AskPoint",)),
     OnDemand(
         "linkwright.panels.editing.feature:EditingFeature",
-        (editing.ApplyEdit, editing.AskEditableParts, editing.PreviewEdit, editing.RedoEdit, editing.UndoEdit),
+        messages(_EDITING, "ApplyEdit", "AskEditableParts", "PreviewEdit", "RedoEdit", "UndoEdit"),
     ),
-    OnDemand("linkwright.panels.export.feature:ExportFeature", (export.AskExport,)),
-    OnDemand("linkwright.panels.monitor.log:LogFeature", (monitor.WatchLog,), ("/rosout",)),
-    OnDemand("linkwright.panels.monitor.node_graph:NodeGraphFeature", (monitor.WatchNodeGraph,)),
+    OnDemand("linkwright.panels.export.feature:ExportFeature", ("linkwright.page.protocol.export:AskExport",)),
+    OnDemand("linkwright.panels.monitor.log:LogFeature", messages(_MONITOR, "WatchLog"), ("/rosout",)),
+    OnDemand("linkwright.panels.monitor.node_graph:NodeGraphFeature", messages(_MONITOR, "WatchNodeGraph")),
     OnDemand(
         "linkwright.panels.monitor.parameters:ParametersFeature",
-        (monitor.DumpParameters, monitor.SetParameter, monitor.WatchParameters),
+        messages(_MONITOR, "DumpParameters", "SetParameter", "WatchParameters"),
     ),
-    OnDemand("linkwright.panels.monitor.plots:PlotsFeature", (monitor.AskFields, monitor.WatchSeries)),
-    OnDemand("linkwright.panels.monitor.teleop:TeleopFeature", (monitor.AimTeleop, monitor.Drive)),
-    OnDemand("linkwright.panels.monitor.topics:TopicsFeature", (monitor.WatchTopics,)),
+    OnDemand("linkwright.panels.monitor.plots:PlotsFeature", messages(_MONITOR, "AskFields", "WatchSeries")),
+    OnDemand("linkwright.panels.monitor.teleop:TeleopFeature", messages(_MONITOR, "AimTeleop", "Drive")),
+    OnDemand("linkwright.panels.monitor.topics:TopicsFeature", messages(_MONITOR, "WatchTopics")),
     OnDemand(
         "linkwright.panels.recording:RecordingFeature",
-        (recording.RecordTopics, recording.StopRecording, recording.SaveMinutes),
-        until=recording.NOTHING_RECORDED,
+        messages(_RECORDING, "RecordTopics", "StopRecording", "SaveMinutes"),
+        until=NOTHING_RECORDED,
         refuses_recordings=True,
     ),
 )

@@ -12,7 +12,6 @@ from linkwright.graph import InvalidTopicNameError, Publisher
 from linkwright.messages import get_message
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import ServerMessage
-from linkwright.page.protocol.navigation import GoalOutcome
 from linkwright.page.protocol.views_and_tools import (
     AddTool,
     ChangeSavedView,
@@ -255,6 +254,8 @@ class ToolsFeature(PageFeature):
         if goals is not None:
             message, known = self._stamped(manager, _POSE, place)
             self._log_pose("goal", message.header, _fill(message.pose, known), known)
+            from linkwright.page.protocol.navigation import GoalOutcome
+
             goals.send(message, lambda reason: manager.publish(GoalOutcome(reason, failed=True)))
             return
         found = self._find(manager, chosen.tool, _POSE_TOOLS)

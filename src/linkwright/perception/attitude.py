@@ -16,14 +16,16 @@ import numpy as np
 from linkwright.geometry.arrays import quaternion_from_matrix
 from linkwright.geometry.single import (
     Quaternion,
+    Vector3,
+    cross,
     normalized,
     quaternion_from_rpy,
     quaternion_inverse,
     quaternion_multiply,
     rotate,
     rotation_from_z,
+    scaled,
 )
-from linkwright.geometry.vectors import Vector3, cross, scaled
 
 GRAVITY = 9.80665
 _FREE_FALL = 1e-3

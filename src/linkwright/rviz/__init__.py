@@ -7,8 +7,7 @@ from linkwright.loading.deferred import deferred
 if TYPE_CHECKING:
     from linkwright.rviz.config.locations import find_unsaved
     from linkwright.rviz.config.rviz_config import RvizConfig
-    from linkwright.rviz.robot import has_visuals
-    from linkwright.rviz.size import size_of
+    from linkwright.rviz.robot import has_visuals, size_of
 
 __all__ = ["RvizConfig", "find_unsaved", "has_visuals", "size_of"]
 
@@ -17,8 +16,7 @@ __getattr__ = deferred(
     {
         "config.locations": ("find_unsaved",),
         "config.rviz_config": ("RvizConfig",),
-        "robot": ("has_visuals",),
-        "size": ("size_of",),
+        "robot": ("has_visuals", "size_of"),
     },
 )
 """Deferred, so that the server can serve the page while the rest is loaded."""

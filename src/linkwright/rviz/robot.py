@@ -1,4 +1,4 @@
-"""A robot for the page: the source of its description, and its shapes.
+"""A robot for the page: the source of its description, its shapes, and its size.
 
 A description comes from a topic of the graph, or a file. Pages draw links with their shapes, colours, files and poses.
 """
@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from math import dist, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -16,23 +17,65 @@ import numpy as np
 
 from linkwright.descriptions import examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
-from linkwright.geometry.arrays import quaternion_from_matrix
+from linkwright.geometry.arrays import Array, quaternion_from_matrix
+from linkwright.geometry.shapes import Bounds, Placement, bounds_of, placement, union
 from linkwright.geometry.single import quaternion_of
 from linkwright.graph import DurabilityPolicy, MessageInfo
-from linkwright.graph.endpoints.info import EndpointInfo
-from linkwright.graph.introspection.answers import UNKNOWN_NODE
+from linkwright.graph.endpoints.base import EndpointInfo
+from linkwright.graph.introspection.graph_queries import UNKNOWN_NODE
+from linkwright.kinematics import KinematicTree
 from linkwright.messages import String
 from linkwright.packages import PackageFinder
 from linkwright.page.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
+from linkwright.page.protocol.configuration import Place
 from linkwright.page.protocol.description import LinkInertia
-from linkwright.page.protocol.displays import Place
 from linkwright.page.protocol.robot import JointScene, LinkScene, Shape
 from linkwright.rviz.config.property_store import PropertyStore, qos_of
 from linkwright.rviz.config.schema import PropertySpec, topic_spec
+from linkwright.rviz.config.views import ModelSize
 from linkwright.rviz.context import ViewerContext
 from linkwright.urdf import Box, Capsule, Collision, Cylinder, Inertial, Link, Material, Mesh, Robot, Sphere, Visual
-from linkwright.xacro.origin import origin_of
+from linkwright.xacro.faults import origin_of
 from linkwright.xmltree import Element
+
+_APART = 1e-6
+"""Frames closer than this are at one place, m."""
+
+
+def size_of(robot: Robot) -> ModelSize | None:
+    """Return the size of a robot whose joints are at zero, or None for one that is a single point.
+
+    It is measured by the frames of its links and by its visuals and collisions that are simple shapes: a page that has
+    read the meshes has the exact size, but axes are drawn before that.
+    """
+    tree = KinematicTree(robot)
+    frames = dict(zip(tree.link_names, map(_placement, tree.forward({})), strict=True))
+    boxes = [Bounds(frame.position, frame.position) for frame in frames.values()]
+    boxes += [box.moved(frames[name]) for name in frames for box in _simple_shapes(robot, name)]
+    bounds = union(boxes)
+    if bounds is None or not isfinite(bounds.diagonal) or bounds.diagonal < _APART:
+        return None
+    steps = [
+        dist(frames[joint.child].position, frames[joint.parent].position)
+        for joint in robot.joints.values()
+        if joint.child in frames and joint.parent in frames
+    ]
+    apart = [step for step in steps if step > _APART]
+    return ModelSize(bounds.diagonal, float(np.median(apart)) if apart else bounds.diagonal)
+
+
+def _simple_shapes(robot: Robot, link: str) -> Iterator[Bounds]:
+    """Return the boxes around the simple shapes of a link, in the link's frame."""
+    parts: tuple[Visual | Collision, ...] = (*robot.links[link].visuals, *robot.links[link].collisions)
+    for part in parts:
+        if not isinstance(part.geometry, Mesh):
+            yield bounds_of(part.geometry).moved(placement(part.origin))
+
+
+def _placement(matrix: Array) -> Placement:
+    (a, b, c, x), (d, e, f, y), (g, h, i, z), _ = matrix.tolist()
+    return Placement(((a, b, c), (d, e, f), (g, h, i)), (x, y, z))
+
 
 SOURCE = "Description Source"
 FILE = "Description File"

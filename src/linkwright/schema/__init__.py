@@ -4,8 +4,7 @@ A language is a tree of `ElementRule` objects. This room knows no language itsel
 """
 
 from linkwright.schema.describing import describe_attribute, describe_element
-from linkwright.schema.reading import ElementReader, reader_of
-from linkwright.schema.report import UNREADABLE, Report
+from linkwright.schema.reading import UNREADABLE, ElementReader, Report, reader_of
 from linkwright.schema.rules import AttributeRule, ElementRule, ValueType, Version
 from linkwright.schema.writing import write_element
 

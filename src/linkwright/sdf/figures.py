@@ -5,8 +5,7 @@ from __future__ import annotations
 from math import atan2, hypot
 
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
-from linkwright.geometry.single import Pose
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Pose, Vector3
 from linkwright.sdf.actors import Actor
 from linkwright.sdf.links import Link, Visual
 from linkwright.sdf.materials import Material

@@ -13,6 +13,7 @@ from linkwright.geometry.single import (
     IDENTITY,
     Pose,
     Transform,
+    Vector3,
     compose,
     invert,
     quaternion_from_rpy,
@@ -22,7 +23,6 @@ from linkwright.geometry.single import (
     rotate,
     rpy_from_quaternion,
 )
-from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.links import Link
 from linkwright.sdf.models import Frame, Model

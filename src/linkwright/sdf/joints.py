@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Any
 
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.poses import AT_ORIGIN, MODEL, POSE, RawPose
 from linkwright.sdf.sensors import SENSOR, Sensor

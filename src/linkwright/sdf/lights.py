@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
 from linkwright.sdf.values import COLOR, NUMBER, TRUTH, VECTOR3, Color, choice, made, name_of, value

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from linkwright.geometry.mass import MassProperties, combine
-from linkwright.geometry.placement import rotation
+from linkwright.geometry.shapes import rotation
 from linkwright.geometry.single import Pose
 from linkwright.sdf.bodies import Part
 from linkwright.sdf.frames import pose_of

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, value
 from linkwright.xmltree import Element

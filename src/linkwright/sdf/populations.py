@@ -12,8 +12,7 @@ from math import cos, pi, sin, sqrt
 from random import Random
 
 from linkwright.geometry.shapes import Box, Cylinder
-from linkwright.geometry.single import Pose, quaternion_of, rotate
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Pose, Vector3, quaternion_of, rotate
 from linkwright.schema import ElementRule
 from linkwright.sdf.models import MODEL, Model
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose

@@ -22,7 +22,7 @@ from linkwright.sdf.values import (
     beginning_of_vector,
     numbers,
 )
-from linkwright.urdf.findings import Findings
+from linkwright.urdf.report import Findings
 from linkwright.urdf.values import number_hint, vector_hint
 from linkwright.xmltree import Element
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from operator import attrgetter, itemgetter
 from typing import Any
 
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.cameras import CAMERA, Camera
 from linkwright.sdf.noise import NO_NOISE, NO_NOISE_XYZ, Noise, NoiseXyz, around_noise, noise_rule, noise_xyz

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, VECTOR3, made, readable, value, values
 
 

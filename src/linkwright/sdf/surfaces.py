@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeVar
 
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, made, unwritten, value
 

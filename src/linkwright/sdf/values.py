@@ -12,8 +12,7 @@ from collections.abc import Callable, Iterable
 from math import isfinite, radians
 from typing import Any
 
-from linkwright.geometry.single import Pose, Quaternion, rpy_from_quaternion
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Pose, Quaternion, Vector3, rpy_from_quaternion
 from linkwright.schema import UNREADABLE, AttributeRule, ElementRule, ValueType
 
 _NUMBER = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf(?:inity)?|nan)", re.IGNORECASE)

@@ -10,8 +10,7 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from math import acos, cos, fmod, sin
 
-from linkwright.geometry.single import IDENTITY, Quaternion, Transform, quaternion_inverse, quaternion_multiply
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import IDENTITY, Quaternion, Transform, Vector3, quaternion_inverse, quaternion_multiply
 from linkwright.sdf.actors import Script, Trajectory
 from linkwright.sdf.frames import transform_of
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.actors import ACTOR, Actor
 from linkwright.sdf.joints import JOINT, Joint

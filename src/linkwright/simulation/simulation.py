@@ -10,8 +10,7 @@ import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.single import IDENTITY, Transform, compose, invert, quaternion_inverse, rotate
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import IDENTITY, Transform, Vector3, compose, invert, quaternion_inverse, rotate
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder

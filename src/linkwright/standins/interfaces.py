@@ -18,8 +18,8 @@ from typing import Any
 from linkwright.diagnostics import LinkwrightError, did_you_mean, phrase
 from linkwright.messages import catalogue
 from linkwright.messages.classes import get_interface
+from linkwright.messages.definitions.interfaces import KINDS, is_package_name, snake_case
 from linkwright.messages.definitions.library import LIBRARY
-from linkwright.messages.definitions.names import KINDS, is_package_name, snake_case
 from linkwright.messages.errors import InterfaceNotFoundError
 from linkwright.messages.message import ActionType, ServiceType
 

@@ -18,8 +18,8 @@ from linkwright.bag import Recorder as _Recording
 from linkwright.bag.reindexing import reindex
 from linkwright.bag.rewriting import rewrite
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
-from linkwright.graph.log.levels import level_named
+from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX
+from linkwright.graph.log.logger import level_named
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.graph.time.values import Duration
 from linkwright.standins.rclpy_api.context import Context

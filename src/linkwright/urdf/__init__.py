@@ -1,8 +1,7 @@
 """The robot model: reading, writing and printing URDF."""
 
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
-from linkwright.geometry.single import Pose, Quaternion
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Pose, Quaternion, Vector3
 from linkwright.loading.deferred import deferred
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.urdf.model import (

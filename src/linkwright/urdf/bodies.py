@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 
-from linkwright.geometry.placement import IDENTITY, Placement, placement
+from linkwright.geometry.shapes import IDENTITY, Placement, placement
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf.model import Joint, Link, Robot
 

@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from linkwright.geometry.shapes import SimpleShape
-from linkwright.geometry.single import IDENTITY_POSE, Pose
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import IDENTITY_POSE, Pose, Vector3
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import Literal
 from linkwright.xmltree import Element

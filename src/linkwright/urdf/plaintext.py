@@ -13,7 +13,6 @@ from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.xmltree import Document, Element, parse
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.positions import attribute_value_range
-from linkwright.xmltree.tinyxml import blanked, parse_as_tinyxml
 
 _READ_ALL_THE_SAME = phrase("urdfdom reads it all the same; xacro and other XML readers refuse the file")
 _LATE_DECLARATION = lazy_pattern(r"\s+<\?xml\s[^>]*\?>")
@@ -35,11 +34,15 @@ def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diag
         text = decode(text, name)
     late = _LATE_DECLARATION.match(text)
     if late:
+        from linkwright.xmltree.tinyxml import blanked
+
         text = blanked(late[0]) + text[late.end() :]
     warnings: tuple[Diagnostic, ...] = ()
     try:
         document = parse(text, name, blanks=False)
     except LinkwrightError as error:
+        from linkwright.xmltree.tinyxml import parse_as_tinyxml
+
         try:
             document, warnings = parse_as_tinyxml(text, name, _READ_ALL_THE_SAME)
         except LinkwrightError:

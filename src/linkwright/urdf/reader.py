@@ -2,6 +2,15 @@
 
 It accepts what urdfdom 3.0.1 accepts and, for files of version 1.1 and 1.2, what urdfdom 6.0.0 accepts. Where urdfdom
 stops at the first error, it continues.
+
+Reading links, their materials, and joints, by urdfdom's rules.
+
+A joint that cannot be read makes urdfdom refuse the whole model; all its mistakes are reported. A part of a link that
+cannot be read does not: the link stays, without that part and without the parts after it in the order inertial,
+visuals, collisions. Linkwright does the same, and reports the error.
+
+Of materials the first definition of a name in the file wins, those at robot level before those in links, even over
+the colour written in the visual itself. A definition in a later link does not help an earlier one.
 """
 
 from __future__ import annotations
@@ -9,18 +18,197 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable
+from itertools import takewhile
 
-from linkwright.diagnostics import Diagnostic, did_you_mean, joined, phrase
-from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.diagnostics import Diagnostic, Note, Phrase, did_you_mean, joined, phrase
+from linkwright.loading.lean_dataclasses import dataclass, replace
 from linkwright.loading.lean_patterns import lazy_pattern
-from linkwright.loading.lean_typing import TypeVar
-from linkwright.schema.rules import Version
-from linkwright.urdf.elements import MaterialTable, read_joint, read_link
-from linkwright.urdf.model import Joint, Link, Robot
-from linkwright.urdf.report import UrdfReport
-from linkwright.urdf.schema import NEWEST_VERSION
+from linkwright.loading.lean_typing import Any, TypeVar
+from linkwright.schema.reading import UNREADABLE, reader_of
+from linkwright.schema.rules import ElementRule, Version
+from linkwright.urdf.model import Joint, Limit, Link, Material, Robot, Visual
+from linkwright.urdf.report import BLACK, UrdfReport, owner_name
+from linkwright.urdf.schema import AXIS, COLLISION, INERTIAL, JOINT, LIMIT, LINK, MATERIAL, NEWEST_VERSION, VISUAL
 from linkwright.urdf.tree import find_root
+from linkwright.urdf.values import degrees_hint, looks_like_degree_limits, looks_like_degrees
 from linkwright.xmltree import Document, Element
+
+_BOUNDED = ("revolute", "prismatic")
+_HAS_AXIS = ("revolute", "continuous", "prismatic", "planar")
+_WITHOUT_AXIS = replace(JOINT, children=tuple(child for child in JOINT.children if child is not AXIS))
+
+
+def read_link(element: Element, materials: MaterialTable, findings: UrdfReport) -> Link:
+    """Return a link with its readable parts, and add the materials that it defines."""
+    name = element.attributes.get("name")
+    if name is None:
+        findings.missing_attribute(element, LINK, LINK.attributes[0], element)
+        return Link("", element=element)
+    errors = findings.error_count
+    values = reader_of(LINK, findings.version).read(element, element, findings)
+    if findings.error_count > errors:
+        _drop_what_urdfdom_drops(values, findings)
+    values["visuals"] = tuple(_visual(fields, materials, element) for fields in values["visuals"])
+    return Link(**values)
+
+
+def _drop_what_urdfdom_drops(values: dict[str, Any], findings: UrdfReport) -> None:
+    """Keep only the parts before the first unreadable one, and report at its first error which ones are lost."""
+    element: Element = values["element"]
+    inertial = element.first("inertial")
+    first_lost: tuple[ElementRule, Element] | None = None
+    lost: list[Phrase] = []
+    if inertial is not None and values["inertial"] is None:
+        first_lost = INERTIAL, inertial
+        lost.append(phrase("its <inertial>"))
+    for rule in (VISUAL, COLLISION):
+        found = values[rule.target]
+        kept = tuple(takewhile(lambda part: part is not UNREADABLE, found)) if first_lost is None else ()
+        if len(kept) < len(found):
+            first_lost = first_lost or (rule, list(element.elements(rule.tag))[len(kept)])
+            lost.append(phrase("{count} <{tag}>", count=len(found) - len(kept), tag=rule.tag))
+        values[rule.target] = kept
+    if first_lost is not None:
+        note = phrase("{owner} is left without {lost}, as in urdfdom", owner=owner_name(element), lost=joined(lost))
+        findings.annotate(_first_error(*first_lost, element, findings.version), Note(note))
+
+
+def _first_error(rule: ElementRule, part: Element, owner: Element, version: Version) -> Diagnostic:
+    """Return the error that urdfdom stops at, which reads the children of a part in the order of the rule."""
+    for child in rule.children:
+        alone = UrdfReport(version)
+        element = part.first(child.tag)
+        if element is not None:
+            reader_of(child, version).read(element, owner, alone)
+        elif child.required:
+            alone.missing_child(part, rule, child, owner)
+        if alone.error_count:
+            return alone.first_error()
+    raise AssertionError("a part that cannot be read has an error")
+
+
+def _visual(fields: dict[str, Any], materials: MaterialTable, owner: Element) -> Visual:
+    own = fields["material"]
+    if own is not None:
+        fields["material_name"] = own.name
+        fields["material"] = materials.resolve(own, owner)
+    return Visual(**fields)
+
+
+class MaterialTable:
+    """The materials known so far, by name, and the names that nothing defined."""
+
+    __slots__ = ("_findings", "_undefined", "known")
+
+    def __init__(self, findings: UrdfReport) -> None:
+        self.known: dict[str, Material] = {}
+        self._findings = findings
+        self._undefined: list[tuple[Material, Element]] = []
+
+    def define(self, element: Element, robot: Element) -> None:
+        """Read a material at robot level; one without colour and texture is black."""
+        findings = self._findings
+        material = read_material(element, robot, findings) or Material("", element=element)
+        if material.rgba is None and material.texture is None:
+            color = element.first("color")
+            if color is None or "rgba" not in color.attributes:
+                findings.error(
+                    "URDF162",
+                    phrase("material '{name}' has neither a colour nor a texture, so it is black", name=material.name),
+                    color or element,
+                    hint=phrase('add <color rgba="0.8 0.8 0.8 1"/>'),
+                )
+            material = replace(material, rgba=BLACK)
+        if material.name in self.known:
+            findings.duplicate("material", material.name, element, self.known[material.name].element)
+        else:
+            self.known[material.name] = material
+
+    def resolve(self, own: Material, owner: Element) -> Material | None:
+        """Return the material of a visual that names or defines `own`; None if it is not defined so far."""
+        defines = own.rgba is not None or own.texture is not None
+        if not own.name:
+            return own if defines else None
+        known = self.known.get(own.name)
+        if known is None:
+            if not defines:
+                self._undefined.append((own, owner))
+                return None
+            self.known[own.name] = own
+            return own
+        return known
+
+    def report_undefined(self) -> None:
+        """Report the names that were not defined when they were used."""
+        for material, owner in self._undefined:
+            element = material.element
+            assert element is not None
+            color = element.first("color")
+            if color is not None and "rgba" in color.attributes:
+                continue  # its colour is malformed, and that was said
+            later = self.known.get(material.name)
+            if later is not None:
+                hint = phrase("a later link defines it: move that definition to robot level")
+            else:
+                hint = did_you_mean(material.name, self.known) or phrase("define it at robot level")
+            message = phrase("material '{name}' of {owner} is not defined", name=material.name, owner=owner_name(owner))
+            self._findings.warning("URDF160", message, element, "name", hint=hint)
+
+
+def read_material(element: Element, owner: Element, findings: UrdfReport) -> Material | None:
+    """Return a material as it is written, or None if it has no name."""
+    material: Material = reader_of(MATERIAL, findings.version).read(element, owner, findings)
+    return None if material is UNREADABLE else material
+
+
+def read_joint(element: Element, findings: UrdfReport) -> Joint:
+    """Return a joint; if it cannot be read, report that and mark the findings as rejecting the model.
+
+    Without the tag ``<axis>`` the axis is 1 0 0 and, oddly but as in urdfdom, 0 0 0 for a tag without 'xyz'.
+    """
+    before = findings.error_count
+    rule = JOINT if element.attributes.get("type") in _HAS_AXIS else _WITHOUT_AXIS
+    joint: Joint = reader_of(rule, findings.version).read(element, element, findings)
+    if joint.type in _BOUNDED:
+        _check_bounds(element, joint, findings)
+    if findings.error_count > before:
+        findings.rejected = True
+    return joint
+
+
+def _check_bounds(joint_element: Element, joint: Joint, findings: UrdfReport) -> None:
+    element = joint_element.first("limit")
+    if element is None:
+        findings.missing_child(joint_element, JOINT, LIMIT, joint_element, joint.type)
+    elif joint.limit is not None:
+        if findings.version >= (1, 2):
+            for name in ("lower", "upper"):
+                if name not in element.attributes:
+                    message = phrase(
+                        "<limit> of {kind} {owner} has no '{name}'",
+                        kind=joint.type,
+                        owner=owner_name(joint_element),
+                        name=name,
+                    )
+                    hint = phrase("URDF 1.2 requires both 'lower' and 'upper'")
+                    findings.error("URDF120", message, element, hint=hint)
+        if joint.type == "revolute":
+            _check_angles(element, joint.limit, joint_element, findings)
+
+
+def _check_angles(element: Element, limit: Limit, owner: Element, findings: UrdfReport) -> None:
+    if not looks_like_degree_limits(limit.lower, limit.upper):
+        return
+    for name, value in (("lower", limit.lower), ("upper", limit.upper)):
+        if looks_like_degrees(value):
+            message = phrase(
+                "'{name}' in <limit> of {owner} looks like degrees: '{value}'",
+                name=name,
+                owner=owner_name(owner),
+                value=element.attributes[name],
+            )
+            findings.warning("URDF190", message, element, name, hint=degrees_hint(value))
+
 
 _INTEGER = lazy_pattern(r"\s*([+-]?[0-9]+)")
 _OTHER_FORMATS = {

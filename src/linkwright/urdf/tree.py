@@ -9,8 +9,8 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from linkwright.diagnostics import Note, Span, did_you_mean, phrase, quoted_names, term
-from linkwright.urdf.findings import Findings
 from linkwright.urdf.model import Joint, Link, Robot
+from linkwright.urdf.report import Findings
 from linkwright.xmltree import Element
 
 _MOST_COMPARED = 100

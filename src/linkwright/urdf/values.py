@@ -13,8 +13,7 @@ from functools import lru_cache
 from math import isfinite, isinf, radians
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.geometry.single import Quaternion
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Quaternion, Vector3
 from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import get_args
 from linkwright.schema import ValueType, Version

@@ -10,15 +10,13 @@ from typing import TYPE_CHECKING
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
 from linkwright.messages import String, TFMessage
-from linkwright.nodes.joint_layout import layout_of
-from linkwright.nodes.joint_settings import JointSettings
-from linkwright.nodes.robot_transforms import RobotTransforms
+from linkwright.nodes.joint_layout import JointSettings, layout_of
+from linkwright.nodes.robot_state_publisher import RobotTransforms
 from linkwright.packages import PackageFinder
 from linkwright.panels.comparison.feature import show_old
 from linkwright.panels.export.snapshot import Snapshot, snapshot_of
 from linkwright.rviz.config.rviz_config import RvizConfig
-from linkwright.rviz.robot import has_visuals
-from linkwright.rviz.size import size_of
+from linkwright.rviz.robot import has_visuals, size_of
 from linkwright.urdf import Robot
 from linkwright.viewer.viewer import Viewer
 

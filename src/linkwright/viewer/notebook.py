@@ -14,7 +14,7 @@ from pathlib import Path
 
 from linkwright.descriptions import DescriptionLibrary, examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.diagnostics.source import is_text
+from linkwright.diagnostics.diagnostic import is_text
 from linkwright.packages import PackageFinder
 from linkwright.panels.export.html import html_of
 from linkwright.panels.export.snapshot import no_robot

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from linkwright.bag import BagReader, PublishedRecording
-from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS
+from linkwright.bag.names import STATIC_TRANSFORMS, TRANSFORMS
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS, Node
 from linkwright.messages import JointState, String, TFMessage, deserialize
-from linkwright.nodes.joint_layout import layout_of
-from linkwright.nodes.joint_settings import JointSettings
-from linkwright.nodes.robot_transforms import RobotTransforms
+from linkwright.nodes.joint_layout import JointSettings, layout_of
+from linkwright.nodes.robot_state_publisher import RobotTransforms
 from linkwright.urdf import Robot
 
 _JOINT_STATES = "sensor_msgs/msg/JointState"

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import Counter
 
 from linkwright.bag import BagReader, BagTopic
-from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS
+from linkwright.bag.names import STATIC_TRANSFORMS, TRANSFORMS
 from linkwright.graph import DurabilityPolicy, ReliabilityPolicy
 from linkwright.messages import TFMessage, deserialize, get_message
 from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.config.simulated_world import DESCRIPTION_TOPIC, POSES_TOPIC, RAYS_TOPIC, WORLD_DISPLAY
-from linkwright.rviz.size import size_of
+from linkwright.rviz.robot import size_of
 from linkwright.sdf.poses import WORLD
 from linkwright.urdf import Robot
 from linkwright.viewer.recorded_robot import description_topic, namespace_of_transforms

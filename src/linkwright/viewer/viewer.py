@@ -16,24 +16,22 @@ from linkwright.packages import PackageFinder
 from linkwright.page.audience import Audience, Page
 from linkwright.page.outbox import Payload
 from linkwright.page.page_server import PageServer
-from linkwright.page.protocol.message import ServerMessage, encode
-from linkwright.page.protocol.session import PROTOCOL_VERSION, Hello
+from linkwright.page.protocol.message import PROTOCOL_VERSION, Hello, ServerMessage, encode
 from linkwright.panels.joints import JointsFeature
 from linkwright.panels.page_feature import F, PageFeature, make_features
 from linkwright.panels.timeline import TimelineFeature
 from linkwright.rviz.config.locations import keep_unsaved
 from linkwright.rviz.config.rviz_config import RvizConfig
-from linkwright.rviz.context import GraphChanges, ViewerContext
+from linkwright.rviz.context import GraphChanges, PublishedTopics, ViewerContext
 from linkwright.rviz.displays.base.display import ViewerDisplay
 from linkwright.rviz.frames.history import FrameHistory
-from linkwright.rviz.published_topics import PublishedTopics
 from linkwright.rviz.visualization.manager import Managers, VisualizationManager
 
 if TYPE_CHECKING:
     from linkwright.bag import BagReader, Playback
     from linkwright.descriptions.pairs import Pair
     from linkwright.graph import Node
-    from linkwright.nodes.joint_panel import JointPanel
+    from linkwright.nodes.joint_state_publisher_gui import JointPanel
     from linkwright.page.uploads import Guests
     from linkwright.panels.live_history import LiveHistory
 
@@ -96,7 +94,7 @@ class Viewer:
             ParameterDescriptor(description="the reference frame of the scene"),
         )
         config.options.set(("Fixed Frame",), frame.value)
-        self._receivers: dict[type, Callable[[Page, Any], object]] = {}
+        self._receivers: dict[str, Callable[[Page, Any], object]] = {}
         self._audience = Audience(self._opening, self._receivers, self._page_closed, self._node.get_logger())
         shared: dict[str, Any] = {"meshes": self._server.meshes, "downloads": self._server.downloads}
         if beside is not None:  # served content with ids that are unique among its viewers
@@ -230,12 +228,12 @@ class Viewer:
     def _timeline(self) -> TimelineFeature:
         return self.add_feature(TimelineFeature)
 
-    def add_feature(self, cls: type[F], receives: Iterable[type] = ()) -> F:
+    def add_feature(self, cls: type[F], receives: Iterable[str] = ()) -> F:
         """Return the feature of a class, which receives all events from now on; the existing one, if any.
 
         Args:
             cls: its class.
-            receives: classes of messages that it receives beside those that its class names.
+            receives: addresses of messages that it receives beside those that its class names.
         """
         found = next((feature for feature in self._features if type(feature) is cls), None)
         if found is None:
@@ -245,7 +243,7 @@ class Viewer:
                 found.start()
         return found
 
-    def _add(self, feature: PageFeature, receives: Iterable[type] = ()) -> None:
+    def _add(self, feature: PageFeature, receives: Iterable[str] = ()) -> None:
         self._features.append(feature)
         self._receivers.update((message, feature.receive) for message in (*feature.receives, *receives))
 

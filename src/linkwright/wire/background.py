@@ -14,20 +14,19 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, TypedDict, TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Phrase, render
-from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.log.logger import Logger, run_logged
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.engine import Engine, Work
 from linkwright.wire.outside import Outside
 from linkwright.wire.switch import is_switched_off
 
 if TYPE_CHECKING:
-    from linkwright.graph.computation_graph import Graph
-    from linkwright.graph.endpoints.client import Client
-    from linkwright.graph.endpoints.presence import Presence
+    from linkwright.graph.endpoints.base import Presence
     from linkwright.graph.endpoints.publisher import Publisher
-    from linkwright.graph.endpoints.service import Service
+    from linkwright.graph.endpoints.service import Client, Service
     from linkwright.graph.endpoints.subscription import Subscription
+    from linkwright.graph.node import Graph
 
 _JOINED_WITHIN = 10.0
 """Seconds after which the thread that joins is abandoned: an import that Ctrl-C ended may keep its lock for ever."""
@@ -45,7 +44,7 @@ class Departed(Protocol):
 
 
 class BackgroundTransport(ABC):
-    """The graph of this process on the wire (`linkwright.graph.endpoints.transport.Transport`).
+    """The graph of this process on the wire (`linkwright.graph.endpoints.bus.Transport`).
 
     Threads of its own do the work, so that no method here blocks unless its docstring states it; none of them runs a
     user's callback. A forked process has no part in it: there, nothing goes out and nothing comes in.

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, TypeAlias
 
 from linkwright.graph.faults import ExternalShutdownException
 from linkwright.graph.log.logger import Logger
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.living_threads import guarded
 
 _WORK_SPAN = 0.02

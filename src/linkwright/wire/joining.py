@@ -22,7 +22,7 @@ from linkwright.wire.zenoh.joining import is_installed as zenoh_is_installed
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from linkwright.graph.computation_graph import Graph
+    from linkwright.graph.node import Graph
     from linkwright.wire.background import BackgroundTransport, JoinOptions
 
 

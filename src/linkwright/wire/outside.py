@@ -6,8 +6,8 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 
-from linkwright.graph.endpoints.info import EndpointInfo
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.endpoints.base import EndpointInfo
+from linkwright.graph.names.rules import NodeIdentity
 
 
 class Outside(ABC):

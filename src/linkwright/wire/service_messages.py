@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any, Literal
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph.endpoints.service_introspection import RequestId
+from linkwright.graph.endpoints.service import RequestId
 from linkwright.messages import deserialize, serialize
 
 

@@ -1,4 +1,4 @@
-"""A cache of computed values with a bound on its size."""
+"""Caches with a bound on their size: of computed values, and of compiled texts."""
 
 from __future__ import annotations
 
@@ -47,3 +47,36 @@ class BoundedCache(Generic[_Key, _Value]):
                 for dropped in list(values)[self._start :: _STRIDE]:
                     values.pop(dropped, None)
         values[key] = value
+
+
+_Form = TypeVar("_Form")
+
+_MOST_CHARACTERS = 1_000_000
+_AROUND = 8
+"""How long the texts that are kept may be together, with what each adds; compiled they are a hundred times as large."""
+
+
+class TextCompiler(Generic[_Form]):
+    """Compiles texts and caches the results.
+
+    Args:
+        compile_text: compiles a text.
+
+    Attributes:
+        forms: text -> its compiled form.
+    """
+
+    def __init__(self, compile_text: Callable[[str], _Form]) -> None:
+        self._cache: BoundedCache[str, _Form] = BoundedCache(_MOST_CHARACTERS, lambda text, _: len(text) + _AROUND)
+        self.forms = self._cache.values
+        self._compile = compile_text
+
+    def make(self, text: str) -> _Form:
+        """Compile a text and cache the result.
+
+        Raises:
+            Fault: the text is malformed.
+        """
+        form = self._compile(text)
+        self._cache.store(text, form)
+        return form

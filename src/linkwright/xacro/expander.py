@@ -3,21 +3,27 @@
 Trees that were read are never changed, so each file is parsed once; texts and comments without expressions are shared
 with them. Every element of the result keeps the place where it was written and knows the macro calls and includes
 around it.
+
+Comments that belong to tags that disappear in the expansion.
+
+A comment just above a property, macro, argument, include, condition or macro call describes that tag, and disappears
+with it. Which comments disappear follows ros/xacro to the letter: of a run of comments upwards those that are separated
+by blank text with at most one newline; and a marker is left behind at which the next such run stops. There is one
+marker in a document: it moves. It is blank text, so its only visible effect is that an element with text and a marker
+is no longer written on one line.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Span, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Span, did_you_mean, nearest, phrase
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import NoReturn
-from linkwright.xacro.comments import CommentSweeper
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.faults import Fault
+from linkwright.xacro.faults import Fault, Frame, attribute_name, trail
 from linkwright.xacro.limits import LONG
 from linkwright.xacro.macros import MacroTable
-from linkwright.xacro.origin import Frame, trail
 from linkwright.xacro.plan import (
     COMMENT,
     COPY,
@@ -33,6 +39,53 @@ from linkwright.xacro.plan import (
 from linkwright.xacro.session import Session
 from linkwright.xmltree import Comment, Document, Element, Node, Text
 from linkwright.xmltree.nodes import LazyCopy
+
+
+class CommentSweeper:
+    """Takes away the comments above tags that are expanded, in one document."""
+
+    def __init__(self) -> None:
+        self._marker = Text("\n\n")
+        self._home: list[Node] | None = None
+
+    def sweep(self, siblings: list[Node], *, followed: bool) -> bool:
+        """Remove the comments above the tag: those at the end of a list of siblings.
+
+        Args:
+            siblings: the expanded nodes above the tag.
+            followed: whether the tag has nodes below it.
+
+        Returns:
+            Whether the caller is to `mark` the place below the tag.
+        """
+        at = len(siblings) - 1
+        while at >= 0:
+            node = siblings[at]
+            if isinstance(node, Text) and node.data.isspace() and not node.cdata and node.data.count("\n") <= 1:
+                at -= 1
+            if at >= 0 and isinstance(siblings[at], Comment):
+                del siblings[at]
+                at -= 1
+            else:
+                return followed
+        return False
+
+    def mark(self, siblings: list[Node]) -> None:
+        """Move the marker to the end of a list of siblings."""
+        home = self._home
+        if home is not None:
+            for at in range(len(home) - 1, -1, -1):
+                if home[at] is self._marker:
+                    del home[at]
+                    break
+        siblings.append(self._marker)
+        self._home = siblings
+
+    def moved(self, old: list[Node], new: list[Node]) -> None:
+        """The nodes of a list have become the end of another one."""
+        if self._home is old:
+            self._home = new
+
 
 _MOST_ERRORS = 20
 
@@ -448,3 +501,45 @@ def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     for diagnostic in diagnostics:
         seen.setdefault((diagnostic.code, diagnostic.message, diagnostic.span), diagnostic)
     return list(seen.values())
+
+
+def check_attributes(expander: Expander, node: Element, required: tuple[str, ...], optional: tuple[str, ...]) -> None:
+    """Check that a tag has the attributes it needs, and warn of those that mean nothing on it.
+
+    Raises:
+        LinkwrightError: XAC301 when one is missing.
+    """
+    attributes = node.attributes
+    for name in required:
+        if name not in attributes:
+            near = nearest(name, [attribute for attribute in attributes if attribute not in optional])
+            missing = (
+                phrase("write {name}=\"...\" for '{near}'", name=name, near=near[0])
+                if near
+                else phrase('write {name}="..."', name=name)
+            )
+            expander.fail_at(
+                "XAC301",
+                phrase("'{tag}' lacks its attribute '{name}'", tag=node.tag, name=name),
+                node,
+                node.span(),
+                missing,
+            )
+    if len(attributes) == len(required):
+        return
+    if optional and attributes.keys() <= {*required, *optional}:
+        return
+    for name in attributes:
+        if name in required or name in optional or name.startswith("xmlns:"):
+            continue
+        hint = did_you_mean(name, required + optional)
+        message = phrase("'{tag}' does not accept the attribute '{name}'", tag=node.tag, name=name)
+        expander.session.warn("XAC302", message, attribute_name(node, name), hint)
+
+
+def warn_of_global(expander: Expander, node: Element, name: str, attribute: str) -> None:
+    """Warn that a name which the language provides gets another meaning."""
+    if name in expander.session.globals.values:
+        message = phrase("'{name}' is a name that xacro provides, and is redefined here", name=name)
+        span = node.attribute_span(attribute) if attribute == "name" else attribute_name(node, attribute)
+        expander.session.warn("XAC306", message, span)

@@ -1,4 +1,4 @@
-"""A mistake found while evaluating a text, on its way to becoming a diagnostic.
+"""A mistake found while evaluating a text, on its way to a diagnostic; and the origin of an element.
 
 The code that finds a mistake knows the text and the offsets in it, but not the element that holds the text. So a
 `Fault` starts with offsets, gets its place from the evaluation of an element's text, and a note for each property.
@@ -7,10 +7,84 @@ The code that finds a mistake knows the text and the offsets in it, but not the 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from itertools import groupby
 
 from linkwright.diagnostics import Note, Phrase, SourceText, Span, phrase, term
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xmltree import Element, Text
+
+_SHOWN = 10
+
+
+class Frame:
+    """A macro call or an include, and the one that it happened in.
+
+    Attributes:
+        macro: the macro's name, or None for an include.
+        site: the element that calls or includes.
+        around: the frame that the call or include happened in, or None.
+        depth: how many frames there are, this one included.
+    """
+
+    __slots__ = ("around", "depth", "macro", "site")
+
+    def __init__(self, macro: str | None, site: Element, around: Frame | None) -> None:
+        self.macro = macro
+        self.site = site
+        self.around = around
+        self.depth: int = 1 if around is None else around.depth + 1
+
+    def note(self) -> Note:
+        """Its note in a message."""
+        what = (
+            phrase("included from here")
+            if self.macro is None
+            else phrase("in macro '{macro}' called here", macro=self.macro)
+        )
+        return Note(what, self.site.span())
+
+
+class Origin(NamedTuple):
+    """Where an element of an expansion comes from.
+
+    Attributes:
+        span: where it is written; None for an element made by a program.
+        trail: the macro calls and includes around it, innermost first.
+    """
+
+    span: Span | None
+    trail: tuple[Note, ...]
+
+
+def frames(innermost: Frame | None) -> Iterator[Frame]:
+    """The frames from the innermost one outwards."""
+    frame = innermost
+    while frame is not None:
+        yield frame
+        frame = frame.around
+
+
+def trail(innermost: Frame | None) -> tuple[Note, ...]:
+    """The notes of all frames, innermost first; of very many, the outermost are counted only."""
+    notes: list[Note] = []
+    for site, group in groupby(frames(innermost), key=lambda frame: frame.site):
+        repeated = list(group)
+        if len(notes) == _SHOWN and repeated[0].depth > 1:
+            notes.append(Note(phrase("and {depth} more calls and includes around it", depth=repeated[0].depth)))
+            break
+        note = repeated[0].note()
+        if len(repeated) > 1:
+            note = Note(phrase("{message}, {count} times", message=note.message, count=len(repeated)), site.span())
+        notes.append(note)
+    return tuple(notes)
+
+
+def origin_of(element: Element) -> Origin:
+    """Where an element of an expansion comes from."""
+    frame = element.origin
+    return Origin(element.span(), trail(frame if isinstance(frame, Frame) else None))
+
 
 # Not compiled here: few files need them.
 _COMMENT = r"(?s)<!--.*?-->"

@@ -9,7 +9,7 @@ from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xacro.limits import Limits
 from linkwright.xacro.plan import plan_document
 from linkwright.xacro.session import PackageSource, Session
-from linkwright.xacro.tags.includes import xml_hint
+from linkwright.xacro.tags.directives import xml_hint
 from linkwright.xmltree import Document, Overlay, parse
 
 

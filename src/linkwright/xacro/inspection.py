@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
 from linkwright.loading.lean_typing import TYPE_CHECKING
-from linkwright.xacro.engine import expand
+from linkwright.xacro.expansion import expand
 from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.limits import Limits
 from linkwright.xacro.session import PackageSource

@@ -12,7 +12,7 @@ from time import thread_time
 from linkwright.diagnostics import phrase
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xacro.faults import Fault
-from linkwright.xmltree.collection import seldom_collected
+from linkwright.xmltree.nodes import seldom_collected
 
 
 class Limits(NamedTuple):

@@ -19,17 +19,14 @@ from linkwright.diagnostics import (
 from linkwright.loading.lean_typing import TYPE_CHECKING, Any, Protocol
 from linkwright.xacro import sources
 from linkwright.xacro.expressions import sandbox, symbols
-from linkwright.xacro.expressions.bounded import keys
+from linkwright.xacro.expressions.bounded import RefusalError, keys
 from linkwright.xacro.expressions.expression import compile_expression
-from linkwright.xacro.expressions.refusal import RefusalError
 from linkwright.xacro.expressions.sandbox import Module
 from linkwright.xacro.expressions.scope import Namespace, Scope
-from linkwright.xacro.expressions.substitution import package_fault
-from linkwright.xacro.expressions.template import compile_template, templates
+from linkwright.xacro.expressions.template import compile_template, package_fault, templates
 from linkwright.xacro.expressions.yamldata import YamlDict, YamlError
-from linkwright.xacro.faults import Fault, attribute_part, text_part
+from linkwright.xacro.faults import Fault, Frame, attribute_part, text_part, trail
 from linkwright.xacro.limits import Budget, Limits
-from linkwright.xacro.origin import Frame, trail
 from linkwright.xacro.plan import plan_document
 from linkwright.xmltree import Document, Element, Overlay, Text
 from linkwright.xmltree.decoding import UTF_8

@@ -1,8 +1,7 @@
 """XML with positions: read, walk and write."""
 
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
-from linkwright.xmltree.overlay import Overlay
-from linkwright.xmltree.reader import parse, parse_file
+from linkwright.xmltree.reader import Overlay, parse, parse_file
 from linkwright.xmltree.writer import write, write_element
 
 __all__ = [

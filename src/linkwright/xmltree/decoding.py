@@ -10,7 +10,7 @@ import codecs
 import re
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, phrase
-from linkwright.diagnostics.pointers import FETCH, IS_POINTER, is_pointer
+from linkwright.diagnostics.diagnostic import FETCH, IS_POINTER, is_pointer
 from linkwright.loading.lean_dataclasses import NamedTuple
 
 UTF_8 = "utf-8"

@@ -1,11 +1,11 @@
-"""Reading XML into a tree that knows where each node was written."""
+"""Reading XML, from a file or the text that replaces it, into a tree that knows where each node was written."""
 
 from __future__ import annotations
 
 import os
 import re
 from bisect import bisect_right
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pyexpat import ExpatError, ParserCreate  # xml.parsers.expat without its packages
 
 from linkwright.diagnostics import (
@@ -20,12 +20,49 @@ from linkwright.diagnostics import (
 )
 from linkwright.files.input_files import LARGEST_TEXT, NoWriterError, read_file
 from linkwright.loading.lean_typing import TYPE_CHECKING, NoReturn
-from linkwright.xmltree.decoding import decoded, unsaved
-from linkwright.xmltree.entities import GROWTH_LIMIT, EntityGuard
+from linkwright.xmltree.decoding import Decoded, decoded, unsaved
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+
+GROWTH_LIMIT = 1_000_000
+"""How many characters the entities of one document may expand to, all together."""
+
+_REFERENCE = r"&([^\s#;&<]+);"  # not compiled here: few files need it
+
+
+class EntityGuard:
+    """The internal entities that a document declares, and how long each one is when expanded."""
+
+    def __init__(self) -> None:
+        self._values: dict[str, str] = {}
+        self._lengths: dict[str, int] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self._values)
+
+    def declare(self, name: str, value: str) -> None:
+        """Remember an internal entity; of two with the same name the first applies, as in XML."""
+        self._values.setdefault(name, value)
+
+    def growth(self, text: str) -> int:
+        """How many characters the references to declared entities in a text expand to, together."""
+        return sum(self._length(name, ()) for name in re.findall(_REFERENCE, text))
+
+    def _length(self, name: str, within: tuple[str, ...]) -> int:
+        value = self._values.get(name)
+        if value is None or name in within:  # predefined or undeclared; recursion is the parser's to report
+            return 0
+        known = self._lengths.get(name)
+        if known is None:
+            if len(within) > 100:
+                return GROWTH_LIMIT + 1
+            known = len(value) + sum(self._length(inner, (*within, name)) for inner in re.findall(_REFERENCE, value))
+            known = self._lengths[name] = min(known, GROWTH_LIMIT + 1)
+        return known
+
 
 _BEYOND_ASCII = rb"[\x80-\xff]+"  # not compiled here: few files need it
 _CDATA_START = len("<![CDATA[")
@@ -360,3 +397,46 @@ def _to_character_offsets(document: Document, data: bytes) -> None:
         node.offset -= extra[bisect_right(ends, node.offset)]
         if isinstance(node, Element):
             nodes.extend(node.children)
+
+
+class Overlay:
+    """The files of the disk, some of them with other texts, such as those that an editor has not saved yet.
+
+    Args:
+        texts: path -> the text to take for that of the file, whether or not there is one.
+    """
+
+    def __init__(self, texts: Mapping[str | os.PathLike[str], str] | None = None) -> None:
+        self._texts = {_key(path): text for path, text in (texts or {}).items()}
+        self._documents: dict[str, Document] = {}
+
+    def text(self, path: str | os.PathLike[str]) -> str | None:
+        """The text that replaces that of a file, or None if the disk has the text."""
+        return self._texts.get(_key(path)) if self._texts else None
+
+    def document(self, path: str) -> Document | None:
+        """The document of such a text, parsed once; None if the disk has the text.
+
+        Raises:
+            LinkwrightError: the text is not XML; see `linkwright.xmltree.parse`.
+        """
+        text = self.text(path)
+        if text is None:
+            return None
+        if path not in self._documents:
+            self._documents[path] = parse(text, path)
+        return self._documents[path]
+
+    def read(self, path: str) -> Decoded:
+        """The text of a file, and the encoding that it is in.
+
+        Raises:
+            LinkwrightError: XML101 to XML104 and XML106, there is none to be had.
+        """
+        text = self.text(path)
+        return decoded(read_bytes(path), path) if text is None else unsaved(text, path)
+
+
+def _key(path: str | os.PathLike[str]) -> str:
+    """One name for a file, through whichever links it is reached: packages are often installed as links."""
+    return os.path.realpath(path)

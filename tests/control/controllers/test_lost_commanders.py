@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.control.controllers.registry import controller_class
-from linkwright.graph.log.levels import LogLevel
+from linkwright.graph.log.logger import LogLevel
 from linkwright.messages import get_message
 from tests.outside import Outside, Stranger
 

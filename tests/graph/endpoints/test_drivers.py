@@ -7,8 +7,8 @@ from collections.abc import Iterable
 import pytest
 
 from linkwright.graph import EndpointKind, MessageInfo, NodeIdentity, QoSProfile
+from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.endpoints.drivers import Dispute, DriverWatch
-from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.log.logger import Logger
 from linkwright.messages import get_message
 

@@ -1,7 +1,7 @@
 import pytest
 
 from linkwright.graph import InvalidHandleError
-from linkwright.graph.endpoints.service_introspection import ServiceIntrospectionState
+from linkwright.graph.endpoints.service import ServiceIntrospectionState
 from linkwright.graph.qos.profile import SERVICES_QOS
 from linkwright.graph.time.clock import Clock, ROSClock
 from linkwright.messages import get_message, get_service

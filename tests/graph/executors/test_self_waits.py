@@ -18,7 +18,7 @@ from linkwright.graph.executors import (
     ReentrantCallbackGroup,
     SingleThreadedExecutor,
 )
-from linkwright.graph.loop import self_waits
+from linkwright.graph.loop import future as self_waits
 from linkwright.messages import get_action, get_service
 from tests.waiting import SECONDS
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from linkwright.graph import Graph, LogRecord
-from linkwright.graph.introspection.namesakes import Namesakes
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.introspection.graph_queries import Namesakes
+from linkwright.graph.names.rules import NodeIdentity
 
 
 def test_each_is_told_once_as_long_as_it_is_there():

@@ -13,7 +13,7 @@ from linkwright.graph.executors import (
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from linkwright.graph.loop.callback_groups import FREE_GROUP
+from linkwright.graph.loop.node_handle import FREE_GROUP
 from linkwright.messages import String, get_service
 from tests.waiting import wait_until
 

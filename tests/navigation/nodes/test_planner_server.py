@@ -11,7 +11,7 @@ import pytest
 import linkwright.navigation.substitutes
 from linkwright.graph import ActionClient, LogLevel
 from linkwright.graph.actions.goal import GoalStatus
-from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.messages import classes, get_action, get_message, get_service
 from linkwright.messages.definitions.library import Library
 from linkwright.navigation.nodes.paths import path_message, poses_of

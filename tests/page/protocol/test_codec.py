@@ -9,21 +9,27 @@ from hypothesis import strategies as st
 from msgspec import to_builtins
 
 from linkwright.diagnostics import phrase
-from linkwright.diagnostics.translation.wording import wording
-from linkwright.page.protocol.binary import pack_data
-from linkwright.page.protocol.configuration import Folder
-from linkwright.page.protocol.displays import (
+from linkwright.diagnostics.translation.translate import wording
+from linkwright.page.protocol.configuration import (
     DisplayProperties,
     DisplayStatus,
+    Folder,
     Property,
     PropertyChanged,
     SetProperty,
     StatusRow,
 )
 from linkwright.page.protocol.geometry import PolygonLine
-from linkwright.page.protocol.joints import CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint
-from linkwright.page.protocol.message import BadMessageError, decode, encode, redundancy_key
-from linkwright.page.protocol.robot import MeshStatus, RobotScene
+from linkwright.page.protocol.message import BadMessageError, decode, encode, pack_data, redundancy_key
+from linkwright.page.protocol.robot import (
+    CenterJoints,
+    JointPositions,
+    Joints,
+    MeshStatus,
+    RandomizeJoints,
+    RobotScene,
+    SetJoint,
+)
 from linkwright.page.protocol.views_and_tools import View, ViewChanged
 
 FLOATS = st.floats(allow_nan=False, allow_infinity=False)

@@ -7,8 +7,8 @@ import sys
 import numpy as np
 import pytest
 
-from linkwright.page.protocol.binary import pack_transforms
-from linkwright.page.protocol.displays import StatusRow
+from linkwright.page.protocol.configuration import StatusRow
+from linkwright.page.protocol.message import pack_transforms
 from tests.places import REPOSITORY
 from tests.repository_tools import load_tool
 

@@ -8,7 +8,7 @@ import yaml
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.rviz import RvizConfig
-from linkwright.rviz.config.model_size import ModelSize
+from linkwright.rviz.config.views import ModelSize
 from tests.corpora import CORPORA
 from tests.places import TUTORIAL_PACKAGES
 

@@ -9,8 +9,7 @@ import pytest
 
 from linkwright.geometry.arrays import rotation_matrix
 from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from linkwright.graph.endpoints.base import Endpoint
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import Endpoint, EndpointKind
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from tests.skipping import skipping

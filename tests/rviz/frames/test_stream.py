@@ -24,7 +24,6 @@ class Rig:
         self._tf = node.create_publisher(TFMessage, "/tf", TF_QOS)
         self._tf_static = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
         self.own_frames: frozenset[str] = frozenset()
-        self.fade_time: float | None = 15.0
         self.watched = True
         self.said: list = []
         viewer = self.graph.create_node("viewer")
@@ -35,10 +34,10 @@ class Rig:
             TimeControl(viewer.get_clock()),
             self.history,
             on_frames=self.said.append,
-            fade_time=lambda: self.fade_time,
             own_frames=lambda: self.own_frames,
         )
         self.stream.fixed_frame = "base"
+        self.stream.fade_time = 15.0
         self.stream.start()
 
     def __len__(self):
@@ -184,7 +183,7 @@ async def test_equal_transforms_are_not_sent_again(rig):
 
 @streaming
 async def test_frames_that_are_heard_of_no_more_age_on_the_page(rig):
-    rig.fade_time = 0.6
+    rig.stream.fade_time = 0.6
     rig.send({("base", "fix"): IDENTITY}, static=True)
     rig.move(1.0)
     await asyncio.sleep(1.2)
@@ -203,7 +202,7 @@ async def test_frames_that_are_heard_of_no_more_age_on_the_page(rig):
 
 @streaming
 async def test_ages_are_nothing_where_no_display_shows_them(rig):
-    rig.fade_time = None
+    rig.stream.fade_time = None
     rig.move(1.0)
     await asyncio.sleep(0.6)
     assert len(rig.sent()) == 1

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from linkwright.page.protocol.configuration import EditName
-from linkwright.rviz.visualization.history import LONGEST, PAUSE, Edit, History
+from linkwright.rviz.visualization.display_tree import LONGEST, PAUSE, Edit, History
 
 
 class Value:

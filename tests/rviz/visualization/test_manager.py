@@ -58,6 +58,37 @@ async def test_a_box_that_is_set_back_leaves_the_file_as_it_was(box):
             assert (manager.config.text(), display.config.checked) == (changed, not was)
 
 
+FRAMES = """Visualization Manager:
+  Displays:
+    - Class: rviz_common/Group
+      Enabled: true
+      Displays:
+        - {Class: rviz_default_plugins/TF, Enabled: true, Frame Timeout: 5}
+    - {Class: rviz_default_plugins/TF, Enabled: true, Frame Timeout: 8}
+"""
+
+
+async def test_frames_fade_in_the_shortest_time_of_the_displays_that_show_them():
+    async with world(RvizConfig.parse(FRAMES)) as made:
+        manager = made.viewer.manager
+        stream, tree = manager._stream, manager.tree
+        group, grouped, alone = manager.displays
+        assert stream.fade_time == 5
+        tree.check(group, False)
+        assert stream.fade_time == 8
+        alone.set_property(("Frame Timeout",), 3.0)
+        assert stream.fade_time == 3
+        tree.remove([alone])
+        assert stream.fade_time is None
+        manager.history.undo()
+        assert stream.fade_time == 3
+        tree.check(group, True)
+        grouped.set_property(("Frame Timeout",), 2.0)
+        assert stream.fade_time == 2
+        manager.open(RvizConfig.parse("Visualization Manager: {}"))
+        assert stream.fade_time is None
+
+
 # --- which displays there are --------------------------------------------------------------------------------------
 
 

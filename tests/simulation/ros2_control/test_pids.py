@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.graph.log.levels import LogLevel
+from linkwright.graph.log.logger import LogLevel
 from tests.simulation.ros2_control.test_plugin import Controlled, controlled, description, wheel
 from tests.simulation.test_plugins import served
 

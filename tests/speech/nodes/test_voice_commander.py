@@ -10,7 +10,7 @@ import pytest
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import ActionServer
 from linkwright.graph.actions.goal import CancelResponse, GoalEvent
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.messages import get_action, get_message, get_service
 from linkwright.speech.nodes.audio_messages import audio_stamped
 from tests.speech.nodes.fakes import STRING, final, partial

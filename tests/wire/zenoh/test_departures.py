@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.zenoh.departures import GRACE, Departures
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.tokens import Token

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from linkwright.graph.endpoints.info import EndpointKind
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.endpoints.base import EndpointKind
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.tokens import Token
 

@@ -4,8 +4,8 @@ import threading
 
 import zenoh
 
-from linkwright.graph.endpoints.info import EndpointKind
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.endpoints.base import EndpointKind
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.messages import get_service, type_hash
 from linkwright.wire.zenoh import attachment
 from linkwright.wire.zenoh.services import IncomingService

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.graph.endpoints.info import EndpointKind
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.endpoints.base import EndpointKind
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.compatibility import resolved
 from linkwright.graph.qos.profile import (
     DurabilityPolicy,

@@ -8,8 +8,8 @@ import time
 
 import zenoh
 
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import (
     LivelinessPolicy,
     QoSProfile,

@@ -15,7 +15,7 @@ from linkwright.cli.topic.filters import compile_filter
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
-    from linkwright.graph.endpoints.info import MessageInfo
+    from linkwright.graph.endpoints.base import MessageInfo
 
 _CLEAR = "\x1b[H\x1b[2J\x1b[3J"
 

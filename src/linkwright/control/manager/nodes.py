@@ -14,7 +14,7 @@ from linkwright.graph import Node
 from linkwright.graph.command_line.ros_arguments import parse
 from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.files import read_parameter_file
-from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.parameters.parameter import ParameterRules
 
 _OF_THE_PROCESS = ("__node", "__name", "__ns")
 

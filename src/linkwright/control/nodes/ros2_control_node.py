@@ -21,7 +21,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.graph.command_line.ros_arguments import parse
 from linkwright.graph.log.logger import Logger
-from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import String
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting

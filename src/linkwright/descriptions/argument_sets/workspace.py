@@ -8,8 +8,8 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, SourceText
 from linkwright.packages import MANIFEST, enclosing_package
+from linkwright.packages.manifest import IGNORE_MARKERS, SKIPPED_FOLDERS, SourceScan
 from linkwright.packages.readers.xacro_calls.call import CallingFile
-from linkwright.packages.sources import IGNORE_MARKERS, SKIPPED_FOLDERS, SourceScan
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
 

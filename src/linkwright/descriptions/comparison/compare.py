@@ -22,7 +22,7 @@ from linkwright.diagnostics import LinkwrightError, Span
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import Literal, TypeVar
 from linkwright.urdf import Collision, Joint, Link, Mesh, Robot, Visual
-from linkwright.xacro.origin import Frame, frames
+from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element
 
 Kind = Literal["added", "removed", "renamed", "changed"]

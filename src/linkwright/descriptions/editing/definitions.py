@@ -11,9 +11,8 @@ import yaml
 from linkwright.descriptions.editing.places import Candidate, Place, literal, words
 from linkwright.diagnostics import LinkwrightError, SourceText
 from linkwright.loading.lean_typing import Any
-from linkwright.xacro.faults import Fault
+from linkwright.xacro.faults import Fault, Frame, frames
 from linkwright.xacro.macros import parse_parameters
-from linkwright.xacro.origin import Frame, frames
 from linkwright.xacro.tracing.references import references
 from linkwright.xmltree import Document, Element, Overlay
 from linkwright.xmltree.patches import escaped, start_tag_of

@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterator
 from itertools import islice
 from math import isfinite
 
-from linkwright.descriptions.description import Description
 from linkwright.descriptions.editing.definitions import attribute
 from linkwright.descriptions.editing.difference import Target, described, others, path_to
 from linkwright.descriptions.editing.errors import EditRefusedError
@@ -21,10 +20,11 @@ from linkwright.descriptions.editing.proposals import proposals
 from linkwright.descriptions.editing.refusals import Attempt, refusal
 from linkwright.descriptions.editing.request import EditRequest
 from linkwright.descriptions.editing.snapshot import Snapshot
+from linkwright.descriptions.service import Description
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.single import quaternion_from_rpy
 from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
-from linkwright.xacro.origin import Frame
+from linkwright.xacro.faults import Frame
 from linkwright.xmltree import Document, Element, Overlay, parse
 from linkwright.xmltree.patches import inserted, start_tag_of
 

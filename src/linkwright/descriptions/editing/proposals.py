@@ -16,7 +16,7 @@ from linkwright.descriptions.editing.places import (
     summed,
     words,
 )
-from linkwright.xacro.origin import Frame
+from linkwright.xacro.faults import Frame
 
 _DEEPEST = 8
 

@@ -8,9 +8,9 @@ from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 
-from linkwright.descriptions.description import Description
 from linkwright.descriptions.editing.definitions import Definitions
 from linkwright.descriptions.editing.places import Place
+from linkwright.descriptions.service import Description
 from linkwright.diagnostics import LinkwrightError
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_typing import TYPE_CHECKING

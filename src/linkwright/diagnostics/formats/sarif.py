@@ -9,9 +9,8 @@ from pathlib import Path
 from string import Formatter
 
 from linkwright._version import __version__
-from linkwright.diagnostics.diagnostic import Diagnostic, Severity
+from linkwright.diagnostics.diagnostic import Diagnostic, Severity, Span
 from linkwright.diagnostics.phrase import Phrase, as_phrase
-from linkwright.diagnostics.source import Span
 from linkwright.loading.lean_typing import Any
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"

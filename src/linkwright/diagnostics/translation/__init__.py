@@ -4,17 +4,21 @@ Messages are written in English where they are reported. A catalogue maps the En
 language; a template that it does not have stays English. Codes, places and the user's own words never change.
 """
 
-from linkwright.diagnostics.translation.language import (
+from linkwright.diagnostics.translation.translate import (
     CHINESE,
     ENGLISH,
     LANGUAGES,
     TAGS,
     asked_language,
+    labels,
     language,
     language_of,
+    localized,
     set_language,
+    translate,
+    translate_phrase,
+    translated,
 )
-from linkwright.diagnostics.translation.translate import labels, localized, translate, translate_phrase, translated
 
 __all__ = [
     "CHINESE",

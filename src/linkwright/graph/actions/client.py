@@ -12,9 +12,9 @@ from typing import Any
 
 from linkwright.graph.actions.base import ActionEndpoint
 from linkwright.graph.actions.goal import ACTIVE, GoalStatus
-from linkwright.graph.endpoints.client import Client
-from linkwright.graph.loop.callback_groups import CallbackGroup
+from linkwright.graph.endpoints.service import Client
 from linkwright.graph.loop.future import Future
+from linkwright.graph.loop.node_handle import CallbackGroup
 from linkwright.graph.node import Node
 from linkwright.graph.qos.profile import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICES_QOS, QoSProfile
 

@@ -19,9 +19,8 @@ from linkwright.graph.actions.goal import (
     GoalStatus,
     ServerGoalHandle,
 )
-from linkwright.graph.loop.callback_groups import FREE_GROUP, CallbackGroup
-from linkwright.graph.loop.entity import Entity
-from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.loop.dispatcher import Entity
+from linkwright.graph.loop.node_handle import FREE_GROUP, CallbackGroup, NodeHandle
 from linkwright.graph.loop.timer import Timer
 from linkwright.graph.node import Node
 from linkwright.graph.qos.profile import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICES_QOS, QoSProfile

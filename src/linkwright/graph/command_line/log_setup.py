@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 from linkwright.graph.command_line.ros_arguments import RosArguments
 from linkwright.graph.log.console import print_to_console
 from linkwright.graph.log.file import LogFile
-from linkwright.graph.log.levels import LogLevels
-from linkwright.graph.log.record import LogRecord, LogSink
+from linkwright.graph.log.logger import LogLevels, LogRecord, LogSink
 
 
 @dataclass(slots=True)

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, joined, phrase
-from linkwright.graph.log.levels import LogLevel, level_named
-from linkwright.graph.parameters.rules import ANY_NODE, ParameterRules
+from linkwright.graph.log.logger import LogLevel, level_named
+from linkwright.graph.parameters.parameter import ANY_NODE, ParameterRules
 
 BEGIN = "--ros-args"
 END = "--"

@@ -1,21 +1,107 @@
-"""The in-process bus: connects the publishers, subscriptions, services and clients of one process.
+"""The in-process bus, which connects the endpoints of one process; and the interface of transports to others.
 
 A publisher and a subscription whose QoS is incompatible are not connected, and both nodes are notified of the reason.
+
+The interface of transports, which carry the traffic of a graph to other processes.
+
+In the process a message is handed over as an object. A transport mirrors the endpoints of the process on a network; it
+is called only for topics and services that other processes use. Transports are in the room `linkwright.wire`.
 """
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
-from typing import Any, Generic, TypeVar
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Generic, Protocol, TypeVar
 
-from linkwright.graph.endpoints.base import Endpoint
-from linkwright.graph.endpoints.client import Client
+from linkwright.graph.endpoints.base import Endpoint, EndpointInfo, Presence
 from linkwright.graph.endpoints.publisher import Publisher
-from linkwright.graph.endpoints.service import Service
+from linkwright.graph.endpoints.service import Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.compatibility import incompatible_policies
 from linkwright.graph.qos.profile import QoSPolicyKind, QoSProfile
+
+
+class Transport(Protocol):
+    """Mirrors the endpoints of one graph outside of the process.
+
+    ``open_*`` is called for each endpoint when it is made, ``close_*`` when it is destroyed; neither may block.
+    Incoming traffic goes to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply,
+    request_id)``, from any thread. For outgoing traffic the transport calls ``Publisher.set_outside`` and
+    ``Client.set_outside`` while an endpoint outside matches, and again when none does; for a transient local publisher
+    from the start, so that late joiners are served. It reports the number of matches with ``set_outside_count``, and
+    the number of live publishers among them with ``Subscription.set_outside_liveliness``.
+    """
+
+    def open_node(self, node: NodeIdentity) -> None:
+        """Announce a node."""
+
+    def close_node(self, node: NodeIdentity) -> None:
+        """Withdraw a node."""
+
+    def open_publisher(self, publisher: Publisher[Any]) -> None:
+        """Mirror a publisher."""
+
+    def close_publisher(self, publisher: Publisher[Any]) -> None:
+        """Stop mirroring a publisher once its reliable messages are acknowledged, or no reader is left to do so."""
+
+    def open_subscription(self, subscription: Subscription[Any]) -> None:
+        """Mirror a subscription."""
+
+    def close_subscription(self, subscription: Subscription[Any]) -> None:
+        """Stop mirroring a subscription."""
+
+    def open_service(self, service: Service[Any, Any]) -> None:
+        """Mirror a service."""
+
+    def close_service(self, service: Service[Any, Any]) -> None:
+        """Stop mirroring a service."""
+
+    def open_client(self, client: Client[Any, Any]) -> None:
+        """Mirror a client."""
+
+    def close_client(self, client: Client[Any, Any]) -> None:
+        """Stop mirroring a client."""
+
+    def open_presence(self, presence: Presence) -> None:
+        """Show an endpoint that takes no part."""
+
+    def close_presence(self, presence: Presence) -> None:
+        """Show it no longer."""
+
+    def look_around(self) -> None:
+        """Discover the nodes and endpoints outside; called before each query of them.
+
+        A transport need not discover earlier. It may block the first time, for a few seconds at most; from then on it
+        discovers everything.
+        """
+
+    def remote_nodes(self) -> Sequence[NodeIdentity]:
+        """The nodes of other processes, as far as discovery has come.
+
+        Nodes that share a name with a node of this process are among them, whoever asked before.
+        """
+
+    def remote_endpoints(self) -> Sequence[EndpointInfo]:
+        """The endpoints of other processes, as far as discovery has come.
+
+        Actions are the services and topics they are made of.
+        """
+
+    def watch(self, changed: Callable[[], None]) -> None:
+        """Register a callback for changes of nodes and endpoints outside, called from any thread."""
+
+    def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
+        """Register a callback for publishers outside that are lost, called with each from any thread.
+
+        Its process was killed or has crashed, or it has not been heard of for longer than it promised. It is called for
+        the first time when a subscription wants to know (`Subscription.watch_lost`).
+        """
+
+    def close(self) -> None:
+        """Leave the network; nothing of the transport (no thread, no socket) outlives this."""
+
 
 E = TypeVar("E", bound=Endpoint)
 

@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import phrase
-from linkwright.graph.endpoints.info import EndpointInfo, MessageInfo
+from linkwright.graph.endpoints.base import EndpointInfo, MessageInfo
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.drivers import DriverWatch

@@ -7,9 +7,9 @@ from collections.abc import Callable, Collection, Hashable, Iterable
 from typing import Any, Protocol
 
 from linkwright.diagnostics import phrase, quoted_names
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.log.logger import Logger
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.time.clock import Clock
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 

@@ -23,11 +23,11 @@ from linkwright.graph.endpoints.event_types import (
     QoSRequestedIncompatibleQoSInfo,
     SubscriptionEventCallbacks,
 )
-from linkwright.graph.loop.entity import Entity
+from linkwright.graph.loop.dispatcher import Entity
 from linkwright.graph.loop.node_handle import Dispatcher
 from linkwright.graph.qos.compatibility import limit_ns
 from linkwright.graph.qos.profile import LivelinessPolicy, QoSPolicyKind
-from linkwright.graph.time.timebase import Alarm
+from linkwright.graph.time.clock import Alarm
 
 
 class _Watch:

@@ -8,12 +8,10 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from linkwright.graph.endpoints.base import TopicEndpoint
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind, TopicEndpoint
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.log.logger import run_logged
-from linkwright.graph.loop.callback_groups import CallbackGroup
-from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.loop.node_handle import CallbackGroup, NodeHandle
 from linkwright.graph.qos.compatibility import limit_ns
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
 from linkwright.graph.time.values import Duration

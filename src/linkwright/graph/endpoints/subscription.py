@@ -11,11 +11,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph.endpoints.base import TopicEndpoint
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
-from linkwright.graph.loop.callback_groups import CallbackGroup
-from linkwright.graph.loop.entity import Entity, accepts
-from linkwright.graph.loop.node_handle import Dispatcher, NodeHandle
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo, TopicEndpoint
+from linkwright.graph.loop.dispatcher import Entity, accepts
+from linkwright.graph.loop.node_handle import CallbackGroup, Dispatcher, NodeHandle
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import deserialize, serialize
 

@@ -10,7 +10,7 @@ from linkwright.graph.faults import (
     ShutdownException,
     TimeoutException,
 )
-from linkwright.graph.loop.callback_groups import (
+from linkwright.graph.loop.node_handle import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,

@@ -20,10 +20,9 @@ from linkwright.graph.faults import (
     ShutdownException,
     TimeoutException,
 )
-from linkwright.graph.loop.entity import Entity
-from linkwright.graph.loop.future import Future
+from linkwright.graph.loop.dispatcher import Entity
+from linkwright.graph.loop.future import Future, report_self_wait
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.loop.self_waits import report_self_wait
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
@@ -331,7 +330,7 @@ class Executor:
             item()
             _raise_fault(item)
             return
-        callback_of = item  # see `linkwright.graph.loop.self_waits`
+        callback_of = item  # see `linkwright.graph.loop.future`
         result = None
         try:
             call = callback_of.take()
@@ -350,7 +349,7 @@ class Executor:
 
         def run() -> object:
             nonlocal begun
-            callback_of = entity  # see `linkwright.graph.loop.self_waits`
+            callback_of = entity  # see `linkwright.graph.loop.future`
             if not (callback_of.unblockable or callback_of.callback_group.beginning_execution(callback_of)):
                 self._block(callback_of)
                 return None

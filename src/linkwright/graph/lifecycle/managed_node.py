@@ -25,7 +25,7 @@ from linkwright.graph.lifecycle.states import (
 )
 
 if TYPE_CHECKING:
-    from linkwright.graph.loop.callback_groups import CallbackGroup
+    from linkwright.graph.loop.node_handle import CallbackGroup
 
 _CALLBACKS = {
     CONFIGURING: "on_configure",

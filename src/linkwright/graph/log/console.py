@@ -1,4 +1,4 @@
-"""Log records on the console, as rcutils writes them: the format of a line, the stream, the colours.
+"""Where log records go: the console, in rcutils' format, and the topic /rosout.
 
 RCUTILS_CONSOLE_OUTPUT_FORMAT changes the format, which is that of log files too.
 """
@@ -13,10 +13,9 @@ from collections.abc import Callable
 from datetime import datetime
 from functools import lru_cache
 from pathlib import PurePath
-from typing import TextIO
+from typing import Any, Protocol, TextIO
 
-from linkwright.graph.log.levels import LogLevel
-from linkwright.graph.log.record import LogRecord
+from linkwright.graph.log.logger import Logger, LogLevel, LogRecord
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
@@ -115,3 +114,60 @@ def _wants_colour(stream: TextIO) -> bool:
     if forced in ("0", "1"):
         return forced == "1"
     return stream.isatty() and not os.environ.get("NO_COLOR")
+
+
+LOG_TYPE = "rcl_interfaces/msg/Log"
+ROSOUT_TOPIC = "/rosout"
+
+
+class LogPublisher(Protocol):
+    """A publisher of `LOG_TYPE`."""
+
+    @property
+    def msg_type(self) -> type[Any]:
+        """The message class."""
+
+    def publish(self, msg: Any) -> None:
+        """Send a message."""
+
+
+class Rosout:
+    """Publishes the records of a node's logger and its children.
+
+    Args:
+        publisher: the node's publisher of ``/rosout``.
+        logger: the node's logger.
+    """
+
+    def __init__(self, publisher: LogPublisher, logger: Logger) -> None:
+        self._publisher = publisher
+        self._logger = logger
+        self._publishing = False
+        logger.rosout = self.publish
+
+    def publish(self, record: LogRecord) -> None:
+        """Publish one record. Records that this logs in turn are not published."""
+        if self._publishing:
+            return
+        self._publishing = True
+        try:
+            self._publisher.publish(self._message(record))
+        finally:
+            self._publishing = False
+
+    def close(self) -> None:
+        """Publish no more; the node destroys the publisher."""
+        self._logger.rosout = None
+
+    def _message(self, record: LogRecord) -> Any:
+        seconds, nanoseconds = divmod(record.stamp_ns, NANOSECONDS_PER_SECOND)
+        message = self._publisher.msg_type()
+        message.stamp.sec = seconds
+        message.stamp.nanosec = nanoseconds
+        message.level = int(record.level)
+        message.name = record.node
+        message.msg = record.text
+        message.file = record.file
+        message.function = record.function
+        message.line = record.line
+        return message

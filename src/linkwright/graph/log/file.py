@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import TextIO
 
 from linkwright.graph.log.console import console_line
-from linkwright.graph.log.levels import LogLevel
-from linkwright.graph.log.record import LogRecord
+from linkwright.graph.log.logger import LogLevel, LogRecord
 
 
 def log_folder(environment: Mapping[str, str] | None = None) -> Path:

@@ -1,4 +1,4 @@
-"""A node as the graph knows it: its name, its parts and its dispatcher, behind the API that users see.
+"""A node as the graph knows it: its name, parts, callback groups and dispatcher, behind the API that users see.
 
 rcl has such an object too (``rcl_node_t``), and rclpy's nodes give theirs as ``node.handle``. Publishers, timers and
 the other parts of a node know this, not the node: so a user's class may have any attributes and override any method.
@@ -12,14 +12,100 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.log.logger import Logger
-from linkwright.graph.loop.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
-from linkwright.graph.names.identity import NodeIdentity
-from linkwright.graph.names.remapping import Remappings
-from linkwright.graph.names.rules import expand_service_name, expand_topic_name
-from linkwright.graph.time.timebase import AlarmSetter, Timebase
+from linkwright.graph.names.rules import NodeIdentity, Remappings, expand_service_name, expand_topic_name
+from linkwright.graph.time.clock import AlarmSetter, Timebase
 
 if TYPE_CHECKING:
     from typing_extensions import Self
+
+
+class CallbackGroup:
+    """Decides which of its entities may run; a base class for users' own groups.
+
+    An executor asks `can_execute`, then calls `beginning_execution`, which may still refuse, and `ending_execution`. It
+    asks again when a callback has ended.
+
+    The class is not abstract: as in rclpy, programs may instantiate it, and a method without an override raises.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.entities: set[weakref.ref[Any]] = set()
+        self._forget = self.entities.discard
+
+    def add_entity(self, entity: Any) -> None:
+        """Make an entity of a node a member; its callbacks then run as the group allows."""
+        self.entities.add(weakref.ref(entity, self._forget))
+
+    def has_entity(self, entity: Any) -> bool:
+        """Whether an entity is a member."""
+        return weakref.ref(entity) in self.entities
+
+    def can_execute(self, entity: Any) -> bool:
+        """Whether a member may run now."""
+        raise NotImplementedError
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Note that a member is about to run; False when it may not."""
+        raise NotImplementedError
+
+    def ending_execution(self, entity: Any) -> None:
+        """Note that a member has run."""
+        raise NotImplementedError
+
+
+class ReentrantCallbackGroup(CallbackGroup):
+    """Everything may run at any time, also one callback several times at once."""
+
+    def can_execute(self, entity: Any) -> bool:
+        """Always."""
+        return True
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Always."""
+        return True
+
+    def ending_execution(self, entity: Any) -> None:
+        """Nothing to record."""
+
+
+class MutuallyExclusiveCallbackGroup(CallbackGroup):
+    """One member runs at a time. A coroutine counts as running until its end, also while it awaits."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._active: Any = None
+        self._turn = [None]  # a token: the thread that pops it may run; faster than a lock
+
+    def can_execute(self, entity: Any) -> bool:
+        """Whether no member runs."""
+        return self._active is None
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Let a member run if none does."""
+        try:
+            self._turn.pop()
+        except IndexError:
+            return False
+        self._active = entity
+        return True
+
+    def ending_execution(self, entity: Any) -> None:
+        """Let the next one run."""
+        if self._active is entity:
+            self._active = None
+            self._turn.append(None)
+
+
+class _FreeGroup(ReentrantCallbackGroup):
+    """A group without rules that serves every node of the process, and so remembers none of its members."""
+
+    def add_entity(self, entity: Any) -> None:
+        """Nothing to record."""
+
+
+FREE_GROUP: CallbackGroup = _FreeGroup()
+"""For work that belongs to no group in rclpy: the execution of an action's goals."""
 
 
 class Handle:

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from functools import partial
 
 from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError
-from linkwright.graph.loop.callback_groups import CallbackGroup
-from linkwright.graph.loop.entity import Entity, accepts
+from linkwright.graph.loop.dispatcher import Entity, accepts
 from linkwright.graph.loop.future import Future
-from linkwright.graph.loop.node_handle import Dispatcher, NodeHandle
-from linkwright.graph.time.clock import Clock
-from linkwright.graph.time.timebase import Alarm
+from linkwright.graph.loop.node_handle import CallbackGroup, Dispatcher, NodeHandle
+from linkwright.graph.time.clock import Alarm, Clock
 from linkwright.graph.time.values import ClockType, Time
 
 

@@ -7,13 +7,12 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.parameters.files import read_parameter_file
-from linkwright.graph.parameters.parameter import Parameter, service_type
-from linkwright.graph.parameters.rules import ANY_NODE
+from linkwright.graph.parameters.parameter import ANY_NODE, Parameter, service_type
 from linkwright.graph.qos.profile import PARAMETER_EVENTS_QOS, SERVICES_QOS, QoSProfile
 
 if TYPE_CHECKING:
-    from linkwright.graph.loop.callback_groups import CallbackGroup
     from linkwright.graph.loop.future import Future
+    from linkwright.graph.loop.node_handle import CallbackGroup
 
 _SERVICES = (
     "describe_parameters",

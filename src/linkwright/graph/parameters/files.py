@@ -27,8 +27,7 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.files.input_files import read_text
-from linkwright.graph.parameters.errors import ParameterFileNotFoundError
-from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.parameters.parameter import ParameterFileNotFoundError, ParameterRules
 
 PARAMETERS_KEY = "ros__parameters"
 _KINDS = {bool: "bool", int: "integer", float: "double", str: "string"}

@@ -1,15 +1,212 @@
-"""Parameters: their types, and one of them with its value. The names and texts are those of ``rclpy.parameter``."""
+"""Parameters: types, values and exceptions, by the names and texts of ``rclpy.parameter``; values by node."""
 
 from __future__ import annotations
 
 import array
+import re
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from functools import cache
+from functools import cache, lru_cache
 from types import GenericAlias
 from typing import Any
 
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, foreign, phrase
+
+ANY_NODE = "/**"
+
+
+class ParameterRules:
+    """Parameter values by node name pattern.
+
+    A pattern is a node's full name, in which ``*`` matches one part and ``**`` any number of parts. As in rcl the
+    patterns count in the order in which they appear first, and for a node the later of two that match it wins.
+
+    Attributes:
+        files: the paths of the files that they were read from.
+        left_out: patterns, each with a finding about a parameter whose value no parameter can have.
+    """
+
+    def __init__(self) -> None:
+        self._values: dict[str, dict[str, Any]] = {}
+        self.files: list[str] = []
+        self.left_out: list[tuple[str, Diagnostic]] = []
+
+    def __bool__(self) -> bool:
+        return bool(self._values)
+
+    def __iter__(self) -> Iterator[tuple[str, Mapping[str, Any]]]:
+        """Patterns with their values by parameter name."""
+        return iter(self._values.items())
+
+    def set(self, pattern: str, name: str, value: Any) -> None:
+        """Give a parameter a value, instead of the one that the same pattern gave it before."""
+        self.section(pattern)[name] = value
+
+    def section(self, pattern: str) -> dict[str, Any]:
+        """The values of a pattern, to which may be added; a missing leading slash is added."""
+        return self._values.setdefault(pattern if pattern.startswith("/") else f"/{pattern}", {})
+
+    def add(self, other: ParameterRules) -> None:
+        """Add rules that come after these."""
+        for pattern, values in other:
+            self.section(pattern).update(values)
+        self.files += other.files
+        self.left_out += other.left_out
+
+    @property
+    def patterns(self) -> list[str]:
+        """The patterns, in their order."""
+        return list(self._values)
+
+    def fit(self, full_name: str) -> bool:
+        """Whether any pattern is for a node."""
+        return any(_expression(pattern).fullmatch(full_name) for pattern in self._values)
+
+    def without_node(self, full_names: Iterable[str]) -> list[str]:
+        """The patterns that fit none of some nodes."""
+        names = list(full_names)
+        return [value for value in self._values if not any(map(_expression(value).fullmatch, names))]
+
+    def for_node(self, full_name: str) -> dict[str, Any]:
+        """The values for a node, by parameter name.
+
+        Args:
+            full_name: its namespace and name, such as ``/robot/talker``.
+        """
+        found: dict[str, Any] = {}
+        for pattern, values in self._values.items():
+            if _expression(pattern).fullmatch(full_name):
+                found.update(values)
+        return found
+
+    def left_out_for(self, full_name: str) -> list[Diagnostic]:
+        """The findings about parameters that were left out for a node."""
+        return [finding for pattern, finding in self.left_out if _expression(pattern).fullmatch(full_name)]
+
+
+@lru_cache(maxsize=256)
+def _expression(pattern: str) -> re.Pattern[str]:
+    while "/**/**" in pattern:  # is no more than one of them, and many of them take forever
+        pattern = pattern.replace("/**/**", "/**")
+    escaped = re.escape(pattern).replace(r"/\*\*", r"(/\w+)*").replace(r"/\*", r"(/\w+)")
+    return re.compile(escaped)
+
+
+class ParameterException(LinkwrightError):  # noqa: N818  # rclpy's name, which users' code catches
+    """The base of rclpy's parameter exceptions.
+
+    Args:
+        error_msg: the mistake.
+        parameters: the name, or the names, of the parameters concerned.
+        code: the diagnostic's code.
+        hint: how to fix it.
+    """
+
+    def __init__(
+        self, error_msg: Phrase, parameters: str | list[str], *, code: str = "GRAPH201", hint: Phrase | None = None
+    ) -> None:
+        super().__init__(
+            Diagnostic(code, phrase("{error_msg}: {parameters}", error_msg=error_msg, parameters=parameters), hint=hint)
+        )
+
+
+class ParameterNotDeclaredException(ParameterException):
+    """A parameter is used that the node has not declared.
+
+    Args:
+        parameters: its name, or the names of several.
+        declared: the names that there are, for the hint.
+    """
+
+    def __init__(self, parameters: str | list[str], declared: Iterable[str] = ()) -> None:
+        first = parameters if isinstance(parameters, str) else next(iter(parameters), "")
+        hint = did_you_mean(first, declared)
+        super().__init__(phrase("Invalid access to undeclared parameter(s)"), parameters, code="GRAPH202", hint=hint)
+
+
+class ParameterAlreadyDeclaredException(ParameterException):
+    """A parameter is declared twice."""
+
+    def __init__(self, parameters: str | list[str]) -> None:
+        super().__init__(phrase("Parameter(s) already declared"), parameters, code="GRAPH203")
+
+
+class InvalidParameterException(ParameterException):
+    """A parameter is declared under a name that is not valid."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__(phrase("Invalid parameter name"), parameter_name, code="GRAPH205")
+
+
+class InvalidParameterTypeException(ParameterException):
+    """A parameter is given a value of another type than it is declared with.
+
+    Args:
+        desired_parameter: the parameter with the value.
+        expected_type: the name of the type it is declared with.
+    """
+
+    def __init__(self, desired_parameter: Parameter, expected_type: object) -> None:
+        name, value = desired_parameter.name, desired_parameter.value
+        expected = getattr(expected_type, "name", expected_type)
+        hint = phrase("write {value}.0", value=value) if expected == "DOUBLE" and type(value) is int else None
+        super().__init__(
+            phrase(
+                "Trying to set parameter '{name}' to '{value}' of type '{type_name}', expecting type '{expected}'",
+                name=name,
+                value=value,
+                type_name=desired_parameter.type_.name,
+                expected=expected,
+            ),
+            name,
+            code="GRAPH201",
+            hint=hint,
+        )
+
+
+class InvalidParameterValueException(ParameterException):
+    """A parameter is given a value that a callback or its descriptor refuses.
+
+    Args:
+        parameter: its name.
+        value: the value.
+        reason: why it is refused.
+    """
+
+    def __init__(self, parameter: str, value: Any, reason: str) -> None:
+        super().__init__(
+            phrase(
+                "Invalid parameter value ({value}) for parameter. Reason: {reason}", value=value, reason=foreign(reason)
+            ),
+            parameter,
+            code="GRAPH204",
+        )
+        self.reason = reason
+
+
+class ParameterImmutableException(ParameterException):
+    """A read-only parameter is to be changed."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__(phrase("Attempted to modify read-only parameter"), parameter_name, code="GRAPH206")
+
+
+class ParameterUninitializedException(ParameterException):
+    """A parameter is read that was declared with a type and has no value yet."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__(
+            phrase("The parameter '{name}' is not initialized", name=parameter_name),
+            parameter_name,
+            code="GRAPH207",
+            hint=phrase("give it a default when it is declared, or a value in a parameter file or with -p"),
+        )
+
+
+class ParameterFileNotFoundError(LinkwrightError, FileNotFoundError):
+    """There is no parameter file at a path."""
+
 
 PARAMETER_SEPARATOR_STRING = "."
 

@@ -8,10 +8,9 @@ from math import isfinite
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.graph.endpoints.base import Endpoint
+from linkwright.graph.endpoints.base import Endpoint, EndpointInfo
 from linkwright.graph.endpoints.commander import Commander, describe_lost_publisher
 from linkwright.graph.endpoints.drivers import DriverWatch
-from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.faults import InvalidHandleError

@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.geometry.single import IDENTITY, Transform, compose
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import IDENTITY, Transform, Vector3, compose
 from linkwright.graph.log.console import print_to_console
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.time.values import Duration, Time

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import rotation_matrix
-from linkwright.geometry.single import Transform, compose, normalized, rotate
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Transform, Vector3, compose, normalized, rotate
 
 _NO_ROTATION = float(np.finfo(np.float64).eps)
 """A quaternion with a squared length below this counts as no rotation, as in tf2_geometry_msgs."""

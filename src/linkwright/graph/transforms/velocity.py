@@ -8,8 +8,18 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from linkwright.geometry.single import Transform, axis_and_angle, quaternion_inverse, quaternion_multiply, rotate
-from linkwright.geometry.vectors import Vector3, added, cross, scaled, subtracted
+from linkwright.geometry.single import (
+    Transform,
+    Vector3,
+    added,
+    axis_and_angle,
+    cross,
+    quaternion_inverse,
+    quaternion_multiply,
+    rotate,
+    scaled,
+    subtracted,
+)
 
 _EARLIEST_S = 0.00001
 

@@ -201,7 +201,7 @@ class ComposableNodeContainer(Node):
         return self.__real or super()._executable(finder, package, executable)
 
     def _real_container(self, context: LaunchContext) -> Executable | None:
-        from linkwright.nodes.registry import COMPONENTS
+        from linkwright.nodes.options import COMPONENTS
 
         self.__real = None
         wanted = [
@@ -222,7 +222,7 @@ class ComposableNodeContainer(Node):
 
 def _is_of_others(finder: PackageFinder, package: str, plugin: str) -> bool:
     """Return whether a component is of others and not built here, rather than a misspelt one of ours."""
-    from linkwright.nodes.registry import COMPONENTS
+    from linkwright.nodes.options import COMPONENTS
 
     share = finder.find(package)
     ours = [f"{owner}/{name}" for owner, name in COMPONENTS]

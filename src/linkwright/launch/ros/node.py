@@ -323,7 +323,7 @@ class Node(ExecuteProcess):
         return not self.process_description.prefix_words(context, [executable])
 
     def _host(self, context: LaunchContext, package: str, executable: str, added: Sequence[Any]) -> str:
-        from linkwright.nodes.registry import default_name
+        from linkwright.nodes.options import default_name
 
         session = context.session
         namespace = self.__expanded_node_namespace

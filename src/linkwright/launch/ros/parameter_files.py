@@ -35,7 +35,7 @@ from linkwright.launch.model.substitution import (
 from linkwright.packages.share_layout import source_of
 
 if TYPE_CHECKING:
-    from linkwright.graph.parameters.rules import ParameterRules
+    from linkwright.graph.parameters.parameter import ParameterRules
 
 
 class ParameterFile(Placed):

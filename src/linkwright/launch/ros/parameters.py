@@ -18,7 +18,7 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
-from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.launch.errors.places import Place
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.ros.parameter_files import ParameterFile

@@ -18,7 +18,7 @@ from linkwright.urdf import Collision, Link, Mesh, Visual
 from linkwright.xmltree import Element
 
 if TYPE_CHECKING:
-    from linkwright.geometry.bounds import Bounds
+    from linkwright.geometry.shapes import Bounds
     from linkwright.urdf.bodies import Bodies, Body
 
 
@@ -260,7 +260,7 @@ def _comparable(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]:
 
 def _bounds(subject: Subject, shapes: Iterable[Visual | Collision]) -> Bounds | None:
     """Return the box around shapes in the link frame; None if there are none, or one cannot be measured."""
-    from linkwright.geometry.bounds import union
+    from linkwright.geometry.shapes import union
 
     found = [subject.extents.shape_bounds(shape) for shape in shapes]
     known = [bounds for bounds in found if bounds is not None]

@@ -22,7 +22,7 @@ from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Inertial, Link, Mesh
 
 if TYPE_CHECKING:
-    from linkwright.geometry.bounds import Bounds
+    from linkwright.geometry.shapes import Bounds
 
 _UNITS = ((1e3, "g m2"), (1e4, "kg cm2"), (1e6, "kg mm2"), (1e9, "g mm2"))
 """The value of 1 kg m2 in other units, which may have been written instead."""

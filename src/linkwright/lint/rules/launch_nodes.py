@@ -14,7 +14,7 @@ from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.rules.package_python import is_ament_python
 from linkwright.lint.subject import Subject
 from linkwright.loading.lean_typing import TYPE_CHECKING
-from linkwright.packages.substituted import substituted_executables
+from linkwright.packages.share_layout import substituted_executables
 from linkwright.xmltree.patches import element_range
 
 if TYPE_CHECKING:

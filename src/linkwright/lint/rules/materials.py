@@ -13,7 +13,7 @@ from linkwright.lint.rules.geometry import shapes_of
 from linkwright.lint.subject import Subject
 from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.urdf import Link, Material, Mesh, Visual
-from linkwright.urdf.elements import read_material
+from linkwright.urdf.reader import read_material
 from linkwright.urdf.report import UrdfReport
 from linkwright.xmltree import Element
 

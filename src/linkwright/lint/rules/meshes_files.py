@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, counted, display_path, phrase
-from linkwright.diagnostics.pointers import is_pointer_file
+from linkwright.diagnostics.diagnostic import is_pointer_file
 from linkwright.lint.fix import replace_value
 from linkwright.lint.made_files import is_ignored_by_git
 from linkwright.lint.meshes import MeshUse

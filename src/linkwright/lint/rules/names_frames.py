@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from math import radians
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
-from linkwright.geometry.placement import Matrix, angle_between, rotation
+from linkwright.geometry.shapes import Matrix, angle_between, rotation
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.meshes_addresses import written
 from linkwright.lint.subject import Subject

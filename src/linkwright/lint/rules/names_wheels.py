@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from math import cos, radians
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase
-from linkwright.geometry.placement import Placement, placement, turned
-from linkwright.geometry.vectors import dot, length, subtracted
+from linkwright.geometry.shapes import Placement, placement, turned
+from linkwright.geometry.single import dot, length, subtracted
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.loading.lean_dataclasses import NamedTuple

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import hypot, sqrt
 
 from linkwright.diagnostics import Diagnostic, Note, Span, phrase
-from linkwright.geometry.placement import Placement, placement, turned
 from linkwright.geometry.polygon import turn
+from linkwright.geometry.shapes import Placement, placement, turned
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.names_wheels import joints_above, wheels

@@ -8,7 +8,7 @@ from itertools import pairwise
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Span, phrase
 from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.loading.lean_typing import TYPE_CHECKING
-from linkwright.xacro.expressions.literals import literal
+from linkwright.xacro.expressions.scope import literal
 from linkwright.xmltree import Element
 
 if TYPE_CHECKING:

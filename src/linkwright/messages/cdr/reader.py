@@ -2,7 +2,7 @@
 
 The function unpacks runs of fixed fields, through nested structures, with one `struct` call each, straight into the
 slots of the objects; no check of an assignment is made again. It trusts no length: none makes it read or reserve more
-than there is, and whatever it raises for bad data is one of the errors in `READ_FAULTS`.
+than there is, and whatever it raises for bad data is one of the errors in `linkwright.messages.cdr.values.READ_FAULTS`.
 """
 
 from __future__ import annotations
@@ -18,9 +18,6 @@ from linkwright.messages.cdr import values as cdr_values
 from linkwright.messages.cdr.layout import ANYWHERE, DEEPEST_LOOP, MOST_INLINE, START, Place, facts
 from linkwright.messages.definitions.interfaces import Container, Field, FieldType, Primitive, Structure
 from linkwright.messages.definitions.library import LIBRARY
-
-READ_FAULTS = (struct.error, IndexError, ValueError)
-"""The errors of a reader on bad data: UnicodeDecodeError and DataFaultError are ValueErrors."""
 
 _SCOPE: dict[str, Any] = {
     "new": object.__new__,

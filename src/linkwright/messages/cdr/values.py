@@ -22,6 +22,10 @@ _COPIED_AT_ONCE = 4096
 _LAST_UNIT = 0xFFFF
 
 
+READ_FAULTS = (struct.error, IndexError, ValueError)
+"""The errors of a reader on bad data: UnicodeDecodeError and DataFaultError are ValueErrors."""
+
+
 class DataFaultError(ValueError):
     """Bytes are not a message; the text is the reason. Never leaves this room."""
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 import re
 
 from linkwright.diagnostics import SourceText
+from linkwright.messages.definitions.interfaces import split_name
 from linkwright.messages.definitions.library import LIBRARY
-from linkwright.messages.definitions.names import split_name
 
 _NEXT = re.compile(r"^={10,}\s*\n(MSG|IDL): *(\S+) *\n?", re.MULTILINE)
 

@@ -22,8 +22,7 @@ from linkwright.messages.definitions.interfaces import (
     Structure,
     interface_of,
 )
-from linkwright.messages.definitions.literals import LiteralFault, read_constant, read_default
-from linkwright.messages.definitions.parser import SECTIONS, KnownMessages
+from linkwright.messages.definitions.parser import SECTIONS, KnownMessages, LiteralFault, read_constant, read_default
 from linkwright.messages.errors import DefinitionError
 
 _TOKEN = re.compile(

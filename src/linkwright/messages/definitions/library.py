@@ -27,8 +27,17 @@ from linkwright.diagnostics import (
     term,
 )
 from linkwright.messages import catalogue
-from linkwright.messages.definitions.interfaces import Action, Definition, Service, Structure, parts_of, structures_of
-from linkwright.messages.definitions.names import KINDS, InterfaceName, split_name
+from linkwright.messages.definitions.interfaces import (
+    KINDS,
+    Action,
+    Definition,
+    InterfaceName,
+    Service,
+    Structure,
+    parts_of,
+    split_name,
+    structures_of,
+)
 from linkwright.messages.definitions.parser import KnownMessages, parse_interface
 from linkwright.messages.errors import DefinitionError, InterfaceNotFoundError
 from linkwright.packages import PackageFinder

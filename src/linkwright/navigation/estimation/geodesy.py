@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import asinh, atan, atan2, atanh, cos, cosh, degrees, floor, hypot, radians, sin, sinh, sqrt, tan
 from typing import NamedTuple
 
-from linkwright.geometry.vectors import Vector3, dot
+from linkwright.geometry.single import Vector3, dot
 
 _RADIUS = 6378137.0
 _FLATTENING = 1.0 / 298.257223563

@@ -17,7 +17,7 @@ from linkwright.geometry.single import Transform, compose, quaternion_from_rpy, 
 from linkwright.graph import Graph, Node, Parameter, TransformException
 from linkwright.graph.command_line.ros_arguments import parse
 from linkwright.graph.names.rules import join
-from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC, TransformListener
 from linkwright.messages import get_message, get_service, is_before_iron

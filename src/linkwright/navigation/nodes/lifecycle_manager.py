@@ -14,7 +14,7 @@ from typing import Any
 
 from linkwright.graph import Graph, Node, Parameter, ParameterType
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
-from linkwright.graph.loop.callback_groups import ReentrantCallbackGroup
+from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_service
 from linkwright.navigation.nodes.bond import TIMEOUT, Bond
 from linkwright.nodes.answers import answered, is_served

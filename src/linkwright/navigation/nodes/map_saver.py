@@ -8,7 +8,7 @@ from typing import Any
 from linkwright.diagnostics import LinkwrightError, render
 from linkwright.graph import LATCHED_QOS, Graph, Logger, Node, QoSProfile
 from linkwright.graph.command_line.ros_arguments import remove_ros_arguments
-from linkwright.graph.loop.callback_groups import ReentrantCallbackGroup
+from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.grids.occupancy import BadGridError, grid_of
 from linkwright.navigation.maps.map_files import FREE_THRESH, OCCUPIED_THRESH, SavedAs, save_map

@@ -14,9 +14,9 @@ from typing import Any
 
 from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.graph import Parameter, ParameterType, SetParametersResult, Subscription
+from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.endpoints.commander import Commander, describe_lost_publisher
 from linkwright.graph.endpoints.drivers import DriverWatch
-from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
 from linkwright.messages import get_message
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer

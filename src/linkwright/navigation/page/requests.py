@@ -1,7 +1,6 @@
 """The page features of navigation, which are created on demand."""
 
-from linkwright.page.protocol import navigation
-from linkwright.panels.on_demand import OnDemand
+from linkwright.panels.page_feature import OnDemand, messages
 
 ON_DEMAND = (
     OnDemand(
@@ -9,6 +8,6 @@ ON_DEMAND = (
     ),
     OnDemand(
         "linkwright.navigation.page.commands:NavigationFeature",
-        (navigation.CommandNavigation, navigation.WatchNavigation),
+        messages("linkwright.page.protocol.navigation", "CommandNavigation", "WatchNavigation"),
     ),
 )

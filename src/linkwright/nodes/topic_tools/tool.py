@@ -11,9 +11,9 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from linkwright.graph import DEFAULT_QOS, Graph, Publisher, QoSProfile, Subscription
+from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.endpoints.commander import Commander
 from linkwright.graph.endpoints.drivers import DriverWatch
-from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.qos.compatibility import fit
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import log_unknown, options_from_words, words_of

@@ -1,4 +1,4 @@
-"""The description of a robot: links and joints as written, texts, and findings on masses.
+"""The description: what is known about its parts, and the arguments that it needs.
 
 A page asks for the parts that it shows. `DescriptionChanged` notifies every page of a new description.
 """
@@ -8,6 +8,31 @@ from __future__ import annotations
 from typing import ClassVar, Literal
 
 from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
+
+
+class ArgumentChoice(Record):
+    """Values that are used together somewhere; `label` has those that differ from the other choices."""
+
+    label: str
+    values: dict[str, str]
+
+
+class ArgumentForm(ServerMessage):
+    """The arguments that a file needs, in order, and their initial values; without a file there is no form."""
+
+    file: str
+    names: list[str]
+    values: dict[str, str]
+    choices: list[ArgumentChoice]
+
+
+NOTHING_ASKED = ArgumentForm(file="", names=[], values={}, choices=[])
+
+
+class GiveArguments(PageMessage):
+    """The user gives values to arguments of the form."""
+
+    values: dict[str, str]
 
 
 class CallSite(Record):

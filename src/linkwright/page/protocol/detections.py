@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.page.protocol.binary import Bytes, Floats
-from linkwright.page.protocol.message import DataContent
+from linkwright.page.protocol.message import Bytes, DataContent, Floats
 
 
 class SolidBoxes(DataContent):

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from linkwright.page.protocol.binary import Bytes, Floats
-from linkwright.page.protocol.message import DataContent, PageMessage, Record
+from linkwright.page.protocol.message import Bytes, DataContent, Floats, PageMessage, Record
 
 MarkerKind = Literal[
     "arrow",

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from linkwright.page.protocol.binary import Bytes, Floats
-from linkwright.page.protocol.message import DataContent, PageMessage, ServerMessage
+from linkwright.page.protocol.message import Bytes, DataContent, Floats, PageMessage, ServerMessage
 
 
 class CloudPoints(DataContent):

@@ -1,10 +1,150 @@
-"""A simulation that runs in the graph: its state, and control of it. Metres, seconds, newtons."""
+"""Simulated worlds: the state and control of a simulation, and modelling. Metres, seconds, newtons.
+
+Modelling a world: the models and lights of its file, and pages' edits of them.
+
+Poses are x, y, z in metres and roll, pitch, yaw in radians, in the frame of the world. A size is that of a shape in
+metres: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere. The frame of a shape is
+in its middle; a ramp rises along x. Colours are red, green, blue, alpha from 0 to 1.
+"""
 
 from __future__ import annotations
 
 from typing import Literal
 
-from linkwright.page.protocol.message import PageMessage, ServerMessage
+from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
+
+WorldShape = Literal["box", "cylinder", "sphere", "wall", "ramp"]
+NewKind = Literal[
+    "box", "cylinder", "sphere", "wall", "ramp", "point_light", "directional_light", "spot_light", "model"
+]
+
+
+class WorldEntity(Record):
+    """A model or light of the world.
+
+    `shape`, `size` and `colour` are of a model that is one simple shape, else None and empty; `address` is of a model
+    that an ``<include>`` names; `parts` are the names of the models grouped in it.
+    """
+
+    name: str
+    kind: Literal["model", "light"]
+    pose: list[float]
+    static: bool
+    shape: WorldShape | None
+    size: list[float]
+    colour: list[float] | None
+    address: str | None
+    parts: list[str]
+
+
+class ModellingState(ServerMessage):
+    """Whether the world can be edited and is being edited, and its content.
+
+    `file` is None for a world without a file of its own, which is saved as one that the user names. While no user edits
+    the world, `entities` may be empty.
+    """
+
+    available: bool
+    active: bool
+    file: str | None
+    unsaved: bool
+    can_undo: bool
+    can_redo: bool
+    entities: list[WorldEntity]
+
+
+NO_WORLD = ModellingState(
+    available=False, active=False, file=None, unsaved=False, can_undo=False, can_redo=False, entities=[]
+)
+
+
+class ModelChoice(Record):
+    """A model on the search path, and the address that includes it."""
+
+    name: str
+    address: str
+
+
+class ModelChoices(ServerMessage):
+    """The models that may be added, by name."""
+
+    models: list[ModelChoice]
+
+
+class EntityChange(Record):
+    """The change of a model or light; fields that are None stay."""
+
+    name: str
+    pose: list[float] | None
+    size: list[float] | None
+    new_name: str | None
+    static: bool | None
+    colour: list[float] | None
+
+
+class SetModelling(PageMessage):
+    """The user starts or stops editing the world; meanwhile the simulation is paused at its start."""
+
+    active: bool
+
+
+class AddEntity(PageMessage):
+    """The user adds an object; `address` is that of a model, an empty `size` means the default one."""
+
+    shape: NewKind
+    address: str
+    pose: list[float]
+    size: list[float]
+
+
+class ChangeEntities(PageMessage):
+    """The user changes objects, in one undo step."""
+
+    changes: list[EntityChange]
+
+
+class CopyEntities(PageMessage):
+    """The user copies objects; the copies are placed at an offset (x y z) from them."""
+
+    names: list[str]
+    offset: list[float]
+
+
+class DeleteEntities(PageMessage):
+    """The user deletes objects from the world."""
+
+    names: list[str]
+
+
+class GroupEntities(PageMessage):
+    """The user makes one model of several, which become its parts."""
+
+    names: list[str]
+    name: str
+
+
+class UngroupEntity(PageMessage):
+    """The user splits a model into its parts."""
+
+    name: str
+
+
+class UndoWorld(PageMessage):
+    """Undo the last change of the world."""
+
+
+class RedoWorld(PageMessage):
+    """Redo the change that was undone last."""
+
+
+class SaveWorld(PageMessage):
+    """The user saves the world: into its file, or into `path` if it is set."""
+
+    path: str | None
+
+
+class AskModels(PageMessage):
+    """The user opens the choice of models on the search path."""
 
 
 class SimulationStatus(ServerMessage):

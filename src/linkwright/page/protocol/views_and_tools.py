@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from linkwright.page.protocol.displays import Property, PropertyValue
+from linkwright.page.protocol.configuration import Property, PropertyValue
 from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 
 

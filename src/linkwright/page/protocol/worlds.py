@@ -6,8 +6,7 @@ from typing import Literal
 
 from msgspec import field
 
-from linkwright.page.protocol.binary import Floats
-from linkwright.page.protocol.message import DataContent, Record
+from linkwright.page.protocol.message import DataContent, Floats, Record
 from linkwright.page.protocol.robot import LinkScene
 
 

@@ -18,9 +18,8 @@ from linkwright.graph import (
     Node,
 )
 from linkwright.messages import JointState, String, TFMessage, TransformBatch
-from linkwright.nodes.joint_layout import layout_of
-from linkwright.nodes.joint_settings import JointSettings
-from linkwright.nodes.robot_transforms import MOVING_TYPES, RobotTransforms
+from linkwright.nodes.joint_layout import JointSettings, layout_of
+from linkwright.nodes.robot_state_publisher import MOVING_TYPES, RobotTransforms
 from linkwright.urdf import Robot
 
 PREFIX = "old"

@@ -19,7 +19,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_
 from linkwright.geometry.mesh_files import BadMeshError
 from linkwright.geometry.mesh_parts import UNCOLOURED, MeshPart, OwnLook, read_parts
 from linkwright.geometry.single import normalized
-from linkwright.nodes.robot_transforms import JointMotion
+from linkwright.nodes.robot_state_publisher import JointMotion
 from linkwright.page.files import FileRefusedError
 from linkwright.page.protocol.robot import LinkScene, Shape
 from linkwright.panels.export.shapes import box, capsule, cylinder, sphere

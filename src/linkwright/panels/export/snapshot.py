@@ -22,18 +22,14 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, foreign, phrase
 from linkwright.geometry.arrays import quaternion_inverse, quaternion_multiply, rotate
 from linkwright.geometry.single import quaternion_of
-from linkwright.nodes.joint_layout import layout_of
-from linkwright.nodes.joint_settings import JointSettings
+from linkwright.nodes.joint_layout import JointSettings, layout_of
 from linkwright.packages import enclosing_package
 from linkwright.page.files import FileRefusedError, MeshFolders
 from linkwright.page.outbox import ScaledData
-from linkwright.page.protocol.binary import FrameTable, unpack_transforms
 from linkwright.page.protocol.comparison import ComparedDescriptions
-from linkwright.page.protocol.displays import Display, DisplayProperties, Property, Tree
-from linkwright.page.protocol.joints import JointControl, JointPositions, Joints
-from linkwright.page.protocol.message import ServerMessage
-from linkwright.page.protocol.robot import RobotScene
-from linkwright.page.protocol.session import Hello
+from linkwright.page.protocol.configuration import Display, DisplayProperties, Property, Tree
+from linkwright.page.protocol.message import FrameTable, Hello, ServerMessage, unpack_transforms
+from linkwright.page.protocol.robot import JointControl, JointPositions, Joints, RobotScene
 from linkwright.page.protocol.views_and_tools import SavedViews, View, ViewClasses, ViewState
 from linkwright.panels.comparison.feature import without_paths
 from linkwright.urdf import Joint, Robot

@@ -14,7 +14,7 @@ from linkwright.panels.monitor.field_paths import FieldPath
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
-    from linkwright.bag.moments import Recorded
+    from linkwright.bag.names import Recorded
 
 
 _MOST_READ = 3000

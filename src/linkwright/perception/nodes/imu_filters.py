@@ -14,13 +14,13 @@ import numpy as np
 
 from linkwright.geometry.single import (
     Quaternion,
+    Vector3,
     quaternion_from_rpy,
     quaternion_inverse,
     quaternion_multiply,
     rotate,
     rpy_from_quaternion,
 )
-from linkwright.geometry.vectors import Vector3
 from linkwright.graph import SENSOR_DATA_QOS, TF_QOS, Graph
 from linkwright.messages import TFMessage, TransformBatch, get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.graph import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from linkwright.page.protocol.displays import Property, PropertyChanged, PropertyValue, TopicOffer
+from linkwright.page.protocol.configuration import Property, PropertyChanged, PropertyValue, TopicOffer
 from linkwright.rviz.config.former_names import FormerKey
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema, accept, from_text, in_place_of, to_text
 from linkwright.rviz.config.yaml_tree import Memory, NewSection, Scalar, Section, make_section, unmake

@@ -14,13 +14,12 @@ from linkwright.rviz.config import file as configuration_file
 from linkwright.rviz.config import yaml_tree
 from linkwright.rviz.config.file import FileForm, FileState
 from linkwright.rviz.config.former_names import GROUP, modern_class
-from linkwright.rviz.config.model_size import ModelSize
 from linkwright.rviz.config.panels import PanelsConfig
 from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.schema import Path as PropertyPath
 from linkwright.rviz.config.schema import PropertySpec, is_on
 from linkwright.rviz.config.tools import ToolsConfig
-from linkwright.rviz.config.views import ViewsConfig
+from linkwright.rviz.config.views import ModelSize, ViewsConfig
 from linkwright.rviz.config.yaml_tree import Memory, NewSection, Section, SequenceMemory
 
 __all__ = ["GLOBAL_OPTIONS", "Arrangement", "DisplayConfig", "RvizConfig"]

@@ -12,7 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from linkwright.diagnostics import phrase
-from linkwright.page.protocol.displays import PropertyKind, PropertyValue, RowDetails
+from linkwright.page.protocol.configuration import PropertyKind, PropertyValue, RowDetails
 
 Path = tuple[str, ...]
 

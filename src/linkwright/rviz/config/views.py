@@ -1,4 +1,4 @@
-"""RViz's views: the properties of each class, and the current and saved views of a .rviz file.
+"""RViz's views: properties of each class, current and saved views of a .rviz file, and sizes for a robot.
 
 From the properties come the rows of the Views panel, the reading and writing of ``Views`` and the checks of pages'
 values. How each class turns its values into a camera, and what the mouse does to them, is the page's:
@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
-from linkwright.page.protocol.displays import Property, PropertyValue
+from linkwright.page.protocol.configuration import Property, PropertyValue
 from linkwright.page.protocol.views_and_tools import View, ViewClass
 from linkwright.rviz.config.former_names import modern_class
 from linkwright.rviz.config.property_store import PropertyStore
@@ -24,6 +25,50 @@ from linkwright.rviz.config.yaml_tree import (
     new_section,
     remove_section,
 )
+
+_RVIZ_AXIS = 0.2
+"""Length of an axis of the TF display at Marker Scale 1, m."""
+_LARGEST_FOCAL_SHAPE = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class ModelSize:
+    """Lengths of a robot, m.
+
+    Attributes:
+        diagonal: the diagonal of its bounding box.
+        spacing: from a link's frame to that of its parent, for most links.
+    """
+
+    diagonal: float
+    spacing: float
+
+    @property
+    def distance(self) -> float:
+        """The distance from which all of it is visible, until a page has measured its meshes, m."""
+        return _rounded(2.0 * self.diagonal)
+
+    @property
+    def marker_scale(self) -> float:
+        """The scale of TF's axes at which they are visible beside the links and do not cover them."""
+        axis = min(max(self.spacing / 2, self.diagonal / 40), self.diagonal / 10)
+        return _rounded(axis / _RVIZ_AXIS)
+
+    @property
+    def focal_shape(self) -> float:
+        """Diameter of the disc at the focal point, m; RViz's default for robots that are large enough."""
+        return min(_LARGEST_FOCAL_SHAPE, _rounded(self.diagonal / 15))
+
+    @property
+    def cell(self) -> float:
+        """The grid's cell size, m: a power of ten; ten cells are wider than the robot, but one is not much wider."""
+        return float(10.0 ** math.floor(math.log10(self.diagonal * 1.5)))
+
+
+def _rounded(length: float) -> float:
+    """Return a length rounded to two digits, as a user would type it."""
+    return float(f"{length:.2g}")
+
 
 ORBIT = "rviz_default_plugins/Orbit"
 FPS = "rviz_default_plugins/FPS"

@@ -11,7 +11,7 @@ from functools import cache
 
 from linkwright.diagnostics import phrase
 from linkwright.loading.extensions import extensions
-from linkwright.page.protocol.displays import StatusRow
+from linkwright.page.protocol.configuration import StatusRow
 from linkwright.rviz.config.former_names import GROUP as GROUP_CLASS
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay

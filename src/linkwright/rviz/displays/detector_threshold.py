@@ -9,7 +9,7 @@ from contextlib import suppress
 from linkwright.graph import Node, Parameter
 from linkwright.graph.parameters.client import AsyncParameterClient
 from linkwright.graph.parameters.parameter import ParameterType
-from linkwright.page.protocol.displays import StatusLevel
+from linkwright.page.protocol.configuration import StatusLevel
 from linkwright.rviz.parameter_answers import NoAnswerError, answer, services_ready
 
 _NAMES = ["threshold", "confidence_threshold", "detection.threshold"]

@@ -1,4 +1,4 @@
-"""Axes and Grid, which are placed in a frame; GridCells, PointStamped, Polygon and Range, which draw messages."""
+"""GridCells, PointStamped, Polygon and Range, which draw messages with geometry."""
 
 from __future__ import annotations
 
@@ -8,86 +8,17 @@ from typing import Any
 import numpy as np
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.page.protocol.displays import StatusLevel
+from linkwright.page.protocol.configuration import StatusLevel
 from linkwright.page.protocol.geometry import PointMarks, PolygonLine, RangeCone
 from linkwright.page.protocol.message import DataContent
 from linkwright.page.protocol.points import CellGrid
 from linkwright.rviz.config.schema import (
-    FIXED_FRAME,
-    Path,
     PropertySpec,
     alpha,
-    line_style,
-    line_width,
     topic_spec,
-    vector,
 )
-from linkwright.rviz.displays.base.display import Pose, ViewerDisplay
+from linkwright.rviz.displays.base.display import Pose
 from linkwright.rviz.displays.base.topic_display import TOPIC, RecentDisplay, TopicDisplay
-from linkwright.rviz.frames.stream import transform_status
-
-_FRAME = "Reference Frame"
-
-
-class AxesDisplay(ViewerDisplay):
-    """The axes of a frame: x red, y green, z blue."""
-
-    CLASS = "rviz_default_plugins/Axes"
-    SCHEMA = (
-        PropertySpec(_FRAME, "frame", FIXED_FRAME, "The frame whose axes are drawn."),
-        PropertySpec("Length", "float", 1.0, "Length of each axis, in metres.", minimum=0.0001),
-        PropertySpec("Radius", "float", 0.1, "Radius of each axis, in metres.", minimum=0.0001),
-    )
-
-    def start(self) -> None:
-        """Show in the status whether the frame can be placed."""
-        self.frames_changed()
-
-    def changed(self, path: Path) -> None:
-        """Update the status for another frame."""
-        if path == (_FRAME,):
-            self.frames_changed()
-
-    def frames_changed(self) -> None:
-        """Show in the status whether the frame can be placed."""
-        self.set_status([transform_status(self.host.frames, self.properties.text(_FRAME))])
-
-
-class GridDisplay(ViewerDisplay):
-    """A grid in a plane of a frame."""
-
-    CLASS = "rviz_default_plugins/Grid"
-    SCHEMA = (
-        PropertySpec("Reference Frame", "frame", FIXED_FRAME, "The frame whose origin is the centre of the grid."),
-        PropertySpec("Plane Cell Count", "int", 10, "Cells along each side of the grid.", minimum=1, maximum=1000),
-        PropertySpec(
-            "Normal Cell Count",
-            "int",
-            0,
-            "Layers of cells along the normal of the plane; more than 0 makes a lattice.",
-            minimum=0,
-            maximum=100,
-        ),
-        PropertySpec("Cell Size", "float", 1.0, "Side of a cell, in metres.", minimum=0.0001),
-        line_style(line_width()),
-        PropertySpec("Color", "color", "#a0a0a4", "Colour of the lines."),
-        alpha("Opacity of the lines: 0 is invisible.", 0.5),
-        PropertySpec("Plane", "enum", "XY", "The plane of the grid.", options=("XY", "XZ", "YZ")),
-        vector("Offset", "The centre of the grid in the reference frame, in metres."),
-    )
-
-    def start(self) -> None:
-        """Show in the status whether the reference frame can be placed."""
-        self.frames_changed()
-
-    def changed(self, path: Path) -> None:
-        """Update the status for another reference frame."""
-        if path == ("Reference Frame",):
-            self.frames_changed()
-
-    def frames_changed(self) -> None:
-        """Show in the status whether the reference frame can be placed."""
-        self.set_status([transform_status(self.host.frames, self.properties.text("Reference Frame"))])
 
 
 class GridCellsDisplay(TopicDisplay):

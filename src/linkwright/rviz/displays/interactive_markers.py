@@ -11,7 +11,7 @@ from linkwright.geometry.single import Transform
 from linkwright.graph import TransformException
 from linkwright.messages import get_message
 from linkwright.page.files import MeshIndex
-from linkwright.page.protocol.displays import StatusLevel
+from linkwright.page.protocol.configuration import StatusLevel
 from linkwright.page.protocol.markers import InteractiveMarkerMoved, MarkerFeedback
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, PropertySpec

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.page.protocol.displays import PropertyChanged
+from linkwright.page.protocol.configuration import PropertyChanged
 from linkwright.page.protocol.images import OccupancyMap
 from linkwright.rviz.config.property_store import qos_of
 from linkwright.rviz.config.rviz_config import DisplayConfig

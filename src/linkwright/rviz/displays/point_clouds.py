@@ -15,7 +15,7 @@ import numpy as np
 
 from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.graph import TransformException
-from linkwright.page.protocol.displays import PropertyChanged
+from linkwright.page.protocol.configuration import PropertyChanged
 from linkwright.page.protocol.points import CloudPoints
 from linkwright.rviz.clouds import (
     BadCloudError,

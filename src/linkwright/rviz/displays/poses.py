@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from linkwright.diagnostics import phrase
-from linkwright.page.protocol.binary import Floats
 from linkwright.page.protocol.geometry import ParticleMarks, PoseMarks
-from linkwright.page.protocol.message import DataContent
+from linkwright.page.protocol.message import DataContent, Floats
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import (
     PropertySpec,

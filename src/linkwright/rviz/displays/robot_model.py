@@ -7,7 +7,7 @@ from typing import Literal
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, joined, phrase
 from linkwright.page.files import MeshIndex
-from linkwright.page.protocol.displays import PropertyChanged, StatusRow
+from linkwright.page.protocol.configuration import PropertyChanged, StatusRow
 from linkwright.page.protocol.message import ServerMessage
 from linkwright.page.protocol.robot import LinkProvenance, MeshStatus, RobotScene
 from linkwright.rviz.config.rviz_config import DisplayConfig

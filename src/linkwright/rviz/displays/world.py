@@ -16,7 +16,7 @@ from linkwright.geometry.single import Transform, compose, invert
 from linkwright.graph import TF_QOS, TransformException
 from linkwright.messages import TFMessage
 from linkwright.page.files import MeshIndex
-from linkwright.page.protocol.displays import StatusLevel
+from linkwright.page.protocol.configuration import StatusLevel
 from linkwright.page.protocol.robot import MeshStatus
 from linkwright.page.protocol.worlds import CameraScene, WorldPoses, WorldRays, WorldScene
 from linkwright.rviz.config.rviz_config import DisplayConfig

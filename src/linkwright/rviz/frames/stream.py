@@ -27,8 +27,8 @@ from linkwright.graph import (
     TransformException,
 )
 from linkwright.messages import TFMessage
-from linkwright.page.protocol.binary import FrameTable, pack_transforms
-from linkwright.page.protocol.displays import StatusRow
+from linkwright.page.protocol.configuration import StatusRow
+from linkwright.page.protocol.message import FrameTable, pack_transforms
 from linkwright.page.protocol.time import SyncMode
 from linkwright.rviz.config.schema import FIXED_FRAME
 from linkwright.rviz.frames.history import FrameHistory
@@ -196,12 +196,12 @@ class FrameStream:
         time: whether time is paused, and the time at which frames are shown.
         history: the history of transforms, for a time other than the latest.
         on_frames: called when frames appear or disappear, or when it changes whether they can be placed.
-        fade_time: returns the shortest Frame Timeout of the displays, seconds; None when no display shows ages.
         own_frames: returns the frames of robots' links, which tf may not know.
 
     Attributes:
         fixed_frame: the Fixed Frame.
         rate: most updates a second, hertz.
+        fade_time: the shortest Frame Timeout of the displays, seconds; None when no display shows ages.
     """
 
     def __init__(
@@ -212,7 +212,6 @@ class FrameStream:
         history: FrameHistory,
         *,
         on_frames: Callable[[FrameView], None],
-        fade_time: Callable[[], float | None],
         own_frames: Callable[[], frozenset[str]],
     ) -> None:
         self.fixed_frame = ""
@@ -222,7 +221,7 @@ class FrameStream:
         self._time = time
         self._history = history
         self._on_frames = on_frames
-        self._fade_time = fade_time
+        self.fade_time: float | None = None
         self._own_frames = own_frames
         self._clock = node.get_clock()
         self._buffer = TransformBuffer(node.get_logger().warning)
@@ -330,7 +329,7 @@ class FrameStream:
     def _age(self) -> None:
         self._ageing = self._loop.call_later(_AGE_PERIOD, self._age)
         quiet = self._loop.time() - self._looked_at > _AGE_PERIOD / 2
-        if quiet and self._fade_time() is not None and self._ages.any():
+        if quiet and self.fade_time is not None and self._ages.any():
             self._wake()
 
     def _look_if_wanted(self) -> None:
@@ -402,7 +401,7 @@ class FrameStream:
     def _is_news(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> bool:
         if poses.tobytes() != self._poses.tobytes():
             return True
-        fade_time = self._fade_time()
+        fade_time = self.fade_time
         if fade_time is None:
             return False
         if ((ages < fade_time) != (self._ages < fade_time)).any():

@@ -23,7 +23,7 @@ from linkwright.geometry.single import Transform, compose, invert
 from linkwright.graph import Client, Node, Publisher, QoSProfile, Subscription
 from linkwright.messages import get_message, get_service
 from linkwright.page.files import MeshIndex
-from linkwright.page.protocol.displays import StatusLevel
+from linkwright.page.protocol.configuration import StatusLevel
 from linkwright.page.protocol.markers import (
     InteractionMode,
     InteractiveControl,

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.single import Quaternion, Transform, compose, normalized
 from linkwright.page.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
-from linkwright.page.protocol.binary import pack_data
 from linkwright.page.protocol.markers import MarkerKind, MarkerMesh, MarkersChanged, MarkerShape
+from linkwright.page.protocol.message import pack_data
 
 ADD, DELETE, DELETE_ALL = 0, 2, 3
 

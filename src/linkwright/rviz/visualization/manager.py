@@ -12,10 +12,8 @@ from typing import TYPE_CHECKING, Protocol
 
 from linkwright.diagnostics import phrase
 from linkwright.page.audience import Page, PageGroup
-from linkwright.page.protocol.binary import FrameTable
-from linkwright.page.protocol.configuration import EditName
-from linkwright.page.protocol.displays import DisplayStatus, PropertyChanged, StatusRow, Tree
-from linkwright.page.protocol.message import ServerMessage
+from linkwright.page.protocol.configuration import DisplayStatus, EditName, PropertyChanged, StatusRow, Tree
+from linkwright.page.protocol.message import FrameTable, ServerMessage
 from linkwright.page.protocol.time import SyncMode, TimeState
 from linkwright.rviz.config.panels import Synchronization, read_synchronization, write_synchronization
 from linkwright.rviz.config.property_store import PropertyStore
@@ -23,11 +21,10 @@ from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.config.schema import Path
 from linkwright.rviz.context import ViewerContext
 from linkwright.rviz.displays.base.display import ViewerDisplay, worst
+from linkwright.rviz.displays.frames import FRAME_TIMEOUT, TfDisplay
 from linkwright.rviz.displays.robot_model import RobotModelDisplay
-from linkwright.rviz.displays.tf import TfDisplay
 from linkwright.rviz.frames.stream import FrameStream, FrameView, TimeControl
-from linkwright.rviz.visualization.display_tree import DisplayTree
-from linkwright.rviz.visualization.history import Edit, History
+from linkwright.rviz.visualization.display_tree import DisplayTree, Edit, History
 
 if TYPE_CHECKING:
     from linkwright.page.outbox import Payload
@@ -94,12 +91,12 @@ class VisualizationManager:
             self.time,
             context.transforms,
             on_frames=self._frames_changed,
-            fade_time=self._fade_time,
             own_frames=self._own_frames,
         )
         self._read_options()
         self.frames = FrameView(fixed_frame=self.fixed_frame)
         self.tree = DisplayTree(config, self, self.history, rearranged=self._rearranged)
+        self.fading_changed()
 
     # --- life --------------------------------------------------------------------------------------------------
 
@@ -125,6 +122,7 @@ class VisualizationManager:
         self._read_options()
         self._warn()
         self.tree.fill(config)
+        self.fading_changed()
         self.publish(self.tree_message())
         self.tree.start()
         self._stream.refresh()
@@ -322,6 +320,7 @@ class VisualizationManager:
             self._owner.fixed_frame_changed(self)
 
     def _rearranged(self) -> None:
+        self.fading_changed()
         self.publish(self.tree_message())
 
     def _frames_changed(self, frames: FrameView) -> None:
@@ -356,9 +355,10 @@ class VisualizationManager:
     def _own_frames(self) -> frozenset[str]:
         return frozenset(link.frame for robot in self.robot_models() for link in robot.scene.links)
 
-    def _fade_time(self) -> float | None:
+    def fading_changed(self) -> None:
+        """Handle another Frame Timeout, or a display of frames that appeared or disappeared."""
         shown = (display for display in self.displays if isinstance(display, TfDisplay) and display.enabled)
-        return min((display.properties.number("Frame Timeout") for display in shown), default=None)
+        self._stream.fade_time = min((display.properties.number(FRAME_TIMEOUT) for display in shown), default=None)
 
 
 LINGERING = 60.0

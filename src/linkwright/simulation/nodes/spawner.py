@@ -11,8 +11,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.files.input_files import read_text
-from linkwright.geometry.single import quaternion_from_rpy
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3, quaternion_from_rpy
 from linkwright.graph import DESCRIPTION_QOS, Clock, ClockType, Node
 from linkwright.messages import String, get_service
 from linkwright.nodes.options import SingleNode

@@ -1,38 +1,28 @@
 """The page features of simulated worlds, which are created on demand."""
 
-from linkwright.page.protocol import modelling, simulation
-from linkwright.panels.on_demand import OnDemand
+from linkwright.page.protocol.simulation import NO_SIMULATION, NO_WORLD
+from linkwright.panels.page_feature import OnDemand, messages
+
+_MODELLING = "linkwright.page.protocol.simulation"
+_SIMULATION = "linkwright.page.protocol.simulation"
 
 ON_DEMAND = (
     OnDemand(
         "linkwright.simulation.page.modelling.feature:ModellingFeature",
         (
-            modelling.AddEntity,
-            modelling.AskModels,
-            modelling.ChangeEntities,
-            modelling.CopyEntities,
-            modelling.DeleteEntities,
-            modelling.GroupEntities,
-            modelling.RedoWorld,
-            modelling.SaveWorld,
-            modelling.SetModelling,
-            modelling.UndoWorld,
-            modelling.UngroupEntity,
+            *messages(_MODELLING, "AddEntity", "AskModels", "ChangeEntities", "CopyEntities", "DeleteEntities"),
+            *messages(
+                _MODELLING, "GroupEntities", "RedoWorld", "SaveWorld", "SetModelling", "UndoWorld", "UngroupEntity"
+            ),
         ),
         ("/world_description",),
-        until=modelling.NO_WORLD,
+        until=NO_WORLD,
     ),
     OnDemand(
         "linkwright.simulation.page.controls:SimulationFeature",
-        (
-            simulation.ControlSimulation,
-            simulation.SpawnModel,
-            simulation.DeleteModel,
-            simulation.DragModel,
-            simulation.PushLink,
-        ),
+        messages(_SIMULATION, "ControlSimulation", "SpawnModel", "DeleteModel", "DragModel", "PushLink"),
         ("/simulation_state",),
-        until=simulation.NO_SIMULATION,
+        until=NO_SIMULATION,
         refuses_recordings=True,
     ),
 )

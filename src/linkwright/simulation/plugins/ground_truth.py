@@ -14,6 +14,7 @@ from linkwright.control.odometry import TRANSFORMS, TRANSFORMS_DEPTH, planar_vel
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import (
     Transform,
+    Vector3,
     compose,
     invert,
     quaternion_from_rpy,
@@ -21,7 +22,6 @@ from linkwright.geometry.single import (
     quaternion_multiply,
     rotate,
 )
-from linkwright.geometry.vectors import Vector3
 from linkwright.messages import Header, Quaternion, get_message
 from linkwright.messages import Vector3 as VectorMessage
 from linkwright.simulation.plugins.parameters import parameter

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from linkwright.diagnostics import phrase
 from linkwright.geometry.arrays import rotation_matrix
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.entities import numbers

@@ -20,7 +20,7 @@ from functools import cache
 from typing import Any, TypeVar, get_type_hints
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.xmltree import Element
 
 P = TypeVar("P")

@@ -11,8 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from linkwright.graph.command_line.ros_arguments import parse
-from linkwright.graph.names.remapping import Remappings
-from linkwright.graph.names.rules import absolute_namespace, join
+from linkwright.graph.names.rules import Remappings, absolute_namespace, join
 from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.xmltree import Element
 

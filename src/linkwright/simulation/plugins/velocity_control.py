@@ -8,8 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from linkwright.geometry.single import rotate
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3, rotate
 from linkwright.simulation.plugins.entities import numbers
 from linkwright.simulation.plugins.planar_move import PlanarDrive
 

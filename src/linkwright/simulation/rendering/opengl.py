@@ -18,8 +18,7 @@ import numpy as np
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.single import Transform
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Transform, Vector3
 from linkwright.sdf.optics import Optics
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.lights import PlacedLight, lights_of

@@ -13,10 +13,9 @@ from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
 from linkwright.geometry.arrays import rotation_matrix
 from linkwright.geometry.mass import combine
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
-from linkwright.geometry.single import Pose, Transform, compose, invert, rotate
+from linkwright.geometry.single import Pose, Transform, Vector3, compose, invert, rotate
 from linkwright.geometry.solids import shape_properties
 from linkwright.geometry.validity import TOLERANCE, is_positive_definite, triangle_excess
-from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.frames import Frames, pose_of, transform_of
 from linkwright.sdf.joints import Axis
 from linkwright.sdf.links import Collision, Inertia, Inertial, Link, Visual

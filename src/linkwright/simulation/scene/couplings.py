@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator
 from math import tau
 from typing import Any
 
-from linkwright.geometry.single import rotate
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3, rotate
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.structure import PlacedJoint
 

@@ -10,8 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.geometry.single import IDENTITY, Transform, compose
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import IDENTITY, Transform, Vector3, compose
 from linkwright.sdf.actors import Actor
 from linkwright.sdf.figures import figure_of, road_of
 from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from linkwright.geometry.single import Transform, compose
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Transform, Vector3, compose
 from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of
 from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.models import Model

@@ -12,7 +12,7 @@ from math import atan2, cos, degrees, hypot, radians, sin, sqrt
 import numpy as np
 
 from linkwright.geometry.arrays import Array, quaternion_inverse, rotate
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.sdf.noise import NoiseXyz
 from linkwright.sdf.sensors import AirPressure, Altimeter, Navsat
 from linkwright.sdf.worlds import SphericalCoordinates

@@ -8,12 +8,12 @@ import numpy as np
 
 from linkwright.geometry.single import (
     Quaternion,
+    Vector3,
     quaternion_from_rpy,
     quaternion_inverse,
     quaternion_multiply,
     rotate,
 )
-from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.sensors import Imu
 from linkwright.simulation.sensors.mount import Mount
 from linkwright.simulation.sensors.noise import VectorNoise

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.single import IDENTITY, Transform, compose, rotate
-from linkwright.geometry.vectors import Vector3, added, cross
+from linkwright.geometry.single import IDENTITY, Transform, Vector3, added, compose, cross, rotate
 from linkwright.sdf.links import Collision, Visual
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.library import load_mujoco

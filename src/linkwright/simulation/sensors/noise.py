@@ -11,7 +11,7 @@ from math import exp, sqrt
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.sdf.noise import Noise, NoiseXyz
 
 _AHEAD = 64

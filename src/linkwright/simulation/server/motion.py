@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.single import Transform, compose, invert
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Transform, Vector3, compose, invert
 from linkwright.simulation.simulation import Simulation
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from linkwright.descriptions.worlds import examine_world
+from linkwright.descriptions.service import examine_world
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, joined, phrase
 from linkwright.packages import PackageFinder
 from linkwright.sdf.link_counts import has_more_links

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwright.geometry.arrays import Array, rotation_matrix
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.single import Vector3
 from linkwright.simulation.simulation import Simulation
 
 

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, missing_file_hint, phrase
-from linkwright.diagnostics.source import Span
+from linkwright.diagnostics.diagnostic import Span
 from linkwright.files.input_files import read_text
 from linkwright.files.user_folders import config_folder
 from linkwright.files.whole_files import write_whole_file

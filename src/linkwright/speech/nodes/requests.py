@@ -11,7 +11,7 @@ from typing import Any
 
 from linkwright.graph import ActionClient, Client, Node, Publisher
 from linkwright.graph.actions.goal import GoalStatus
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.messages import get_action, get_message, get_service, set_fields
 from linkwright.packages.programs.child_python import python_command
 from linkwright.process.interruption import interrupt

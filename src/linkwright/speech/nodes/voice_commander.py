@@ -14,8 +14,8 @@ from typing import Any
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.diagnostics.translation import ENGLISH, language_of, localized
 from linkwright.graph import LATCHED_QOS, Clock, ClockType, Graph, ParameterType, Publisher, Subscription
+from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.endpoints.commander import Commander
-from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import bad_value, log_unknown, positive
 from linkwright.nodes.velocity_topic import VelocityTopic

@@ -1,23 +1,17 @@
 """The page feature of spoken commands, which is created on demand."""
 
-from linkwright.page.protocol import voice, voice_words
-from linkwright.panels.on_demand import OnDemand
+from linkwright.panels.page_feature import OnDemand, messages
+
+_VOICE = "linkwright.page.protocol.voice"
+_WORDS = "linkwright.page.protocol.voice_words"
 
 ON_DEMAND = (
     OnDemand(
         "linkwright.speech.page.feature:VoiceFeature",
         (
-            voice_words.AskWordsFile,
-            voice_words.BeginTake,
-            voice_words.EndTake,
-            voice_words.ImportWords,
-            voice_words.RemoveWord,
-            voice_words.RenameWord,
-            voice.SayCommand,
-            voice.SoundBlock,
-            voice.Talk,
-            voice.WatchVoice,
-            voice_words.WatchWords,
+            *messages(_VOICE, "SayCommand", "SoundBlock", "Talk", "WatchVoice"),
+            *messages(_WORDS, "AskWordsFile", "BeginTake", "EndTake", "ImportWords"),
+            *messages(_WORDS, "RemoveWord", "RenameWord", "WatchWords"),
         ),
         ("/voice/command",),
     ),

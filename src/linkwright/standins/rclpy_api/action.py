@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.graph.actions import client as action_client
 from linkwright.graph.actions import server as action_server
-from linkwright.graph.introspection.answers import NamesAndTypes
+from linkwright.graph.introspection.graph_queries import NamesAndTypes
 from linkwright.standins.rclpy_api.waitable import NumberOfEntities
 
 if TYPE_CHECKING:

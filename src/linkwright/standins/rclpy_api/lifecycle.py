@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
-from linkwright.graph.loop.callback_groups import CallbackGroup
+from linkwright.graph.loop.node_handle import CallbackGroup
 from linkwright.standins.rclpy_api.node import Node
 
 

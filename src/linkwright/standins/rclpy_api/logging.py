@@ -7,9 +7,7 @@ import time
 from pathlib import Path
 
 from linkwright.graph.log.console import print_to_console
-from linkwright.graph.log.levels import LogLevel, LogLevels, level_named
-from linkwright.graph.log.logger import Logger
-from linkwright.graph.log.record import LogRecord, LogSink
+from linkwright.graph.log.logger import Logger, LogLevel, LogLevels, LogRecord, LogSink, level_named
 
 LEVELS = LogLevels()
 """The levels of all loggers of the process."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.graph.names import rules as names
-from linkwright.graph.parameters.errors import InvalidParameterException
+from linkwright.graph.parameters.parameter import InvalidParameterException
 
 TOPIC_SEPARATOR_STRING = "/"
 HIDDEN_TOPIC_PREFIX = "_"

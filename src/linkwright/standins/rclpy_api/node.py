@@ -8,8 +8,7 @@ from typing import Any
 from linkwright.graph import Node as GraphNode
 from linkwright.graph.command_line.ros_arguments import RosArguments
 from linkwright.graph.logger_services import LoggerServices
-from linkwright.graph.names.remapping import Remappings
-from linkwright.graph.names.rules import absolute_namespace, join
+from linkwright.graph.names.rules import Remappings, absolute_namespace, join
 from linkwright.graph.parameters.parameter import Parameter
 from linkwright.graph.qos.profile import ROSOUT_QOS, QoSProfile
 from linkwright.standins.rclpy_api.context import Context, read_ros_arguments

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.parameters.files import parse_value, read_parameter_file
-from linkwright.graph.parameters.parameter import Parameter
-from linkwright.graph.parameters.rules import ANY_NODE
-from linkwright.graph.parameters.services import ParameterServices
+from linkwright.graph.parameters.node_parameters import ParameterServices
+from linkwright.graph.parameters.parameter import ANY_NODE, Parameter
 
 if TYPE_CHECKING:
     from linkwright.standins.rclpy_api.node import Node

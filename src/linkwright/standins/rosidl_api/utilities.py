@@ -4,8 +4,8 @@ from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.messages import classes
+from linkwright.messages.definitions.interfaces import split_name
 from linkwright.messages.definitions.library import LIBRARY
-from linkwright.messages.definitions.names import split_name
 
 
 def get_message(identifier: str) -> Any:

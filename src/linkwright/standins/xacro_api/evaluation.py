@@ -11,10 +11,9 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.standins.xacro_api.errors import XacroException, translated
 from linkwright.standins.xacro_api.stacks import STATE, abs_filename_spec
 from linkwright.xacro.expressions import yamldata
-from linkwright.xacro.expressions.literals import truth
-from linkwright.xacro.expressions.scope import Namespace, Scope
-from linkwright.xacro.expressions.substitution import substitute
+from linkwright.xacro.expressions.scope import Namespace, Scope, truth
 from linkwright.xacro.expressions.symbols import tokenize
+from linkwright.xacro.expressions.template import substitute
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.session import Session

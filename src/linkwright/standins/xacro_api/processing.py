@@ -17,8 +17,7 @@ from linkwright.standins.xacro_api import dom
 from linkwright.standins.xacro_api.command_line import process_args
 from linkwright.standins.xacro_api.errors import XacroException, translated
 from linkwright.standins.xacro_api.stacks import STATE, StackExpander, StackSession, init_stacks
-from linkwright.xacro.engine import banner
-from linkwright.xacro.expansion import Expansion
+from linkwright.xacro.expansion import Expansion, banner
 from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.limits import room_for
 from linkwright.xmltree import Document

@@ -10,7 +10,7 @@ from linkwright.standins.xacro_api import colour
 from linkwright.standins.xacro_api.errors import XacroException
 from linkwright.standins.xacro_api.evaluation import eval_text
 from linkwright.standins.xacro_api.stacks import STATE, print_location
-from linkwright.xacro.expressions.literals import literal
+from linkwright.xacro.expressions.scope import literal
 
 _DOCUMENT, _EVERYWHERE = 2, 3
 """Above these verbosities, the properties of the document, or all of them, are logged."""

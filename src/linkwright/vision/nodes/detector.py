@@ -49,7 +49,7 @@ from linkwright.graph import (
     SetParametersResult,
     Subscription,
 )
-from linkwright.graph.loop.callback_groups import MutuallyExclusiveCallbackGroup
+from linkwright.graph.loop.node_handle import MutuallyExclusiveCallbackGroup
 from linkwright.graph.parameters.parameter import Range
 from linkwright.images import BadImageError, ImageSource, RangeFinder, Unpacker, decode_image
 from linkwright.messages import get_message, get_service

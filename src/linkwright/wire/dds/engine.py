@@ -10,7 +10,7 @@ import time
 from typing import Any
 
 from linkwright.graph.log.logger import Logger
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.dds.cyclone import CycloneError
 from linkwright.wire.dds.departures import Departures
 from linkwright.wire.dds.discovery import Discovery

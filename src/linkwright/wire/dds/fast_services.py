@@ -16,7 +16,7 @@ from functools import partial
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph.endpoints.service_introspection import RequestId
+from linkwright.graph.endpoints.service import RequestId
 from linkwright.wire.dds.names import Role, dds_topic
 from linkwright.wire.dds.rtps.participant import RtpsParticipant
 from linkwright.wire.dds.rtps.values import NO_NUMBER, PREFIX, is_reader, read_related_identity, related_identity
@@ -25,8 +25,7 @@ from linkwright.wire.service_messages import hand_request_on, hand_response_on, 
 from linkwright.wire.type_names import dds_type
 
 if TYPE_CHECKING:
-    from linkwright.graph.endpoints.client import Client
-    from linkwright.graph.endpoints.service import Service
+    from linkwright.graph.endpoints.service import Client, Service
     from linkwright.wire.dds.rtps.messages import Data
 
 _REPLY_WAITS = 10.0

@@ -16,7 +16,7 @@ from linkwright.wire.switch import is_switched_off, switched_off
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from linkwright.graph.computation_graph import Graph
+    from linkwright.graph.node import Graph
 
 
 def why_not(environment: Mapping[str, str] | None = None) -> Phrase:

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from copy import copy
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 from linkwright.wire.dds.domain import Domain
 from linkwright.wire.dds.services import Pair
 from linkwright.wire.dds.topics import MirroredTopic
 
 if TYPE_CHECKING:
-    from linkwright.graph.endpoints.presence import Presence
+    from linkwright.graph.endpoints.base import Presence
 
 
 def open_presence(presence: Presence, domain: Domain) -> QuietReader | QuietClient:

@@ -10,8 +10,8 @@ from pathlib import Path
 from threading import Lock
 from typing import Protocol
 
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.wire.dds.discovery_info import NodeEntities, ParticipantEntities
 from linkwright.wire.dds.names import (

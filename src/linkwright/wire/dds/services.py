@@ -21,7 +21,7 @@ from functools import partial
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph.endpoints.service_introspection import RequestId
+from linkwright.graph.endpoints.service import RequestId
 from linkwright.wire.dds.cyclone import (
     ANY_STATE,
     DATA_AVAILABLE,
@@ -40,8 +40,7 @@ from linkwright.wire.service_messages import hand_request_on, hand_response_on, 
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.base import Endpoint
-    from linkwright.graph.endpoints.client import Client
-    from linkwright.graph.endpoints.service import Service
+    from linkwright.graph.endpoints.service import Client, Service
     from linkwright.wire.dds.rtps.participant import RtpsParticipant
 
 HEADER = struct.Struct("<Qq")

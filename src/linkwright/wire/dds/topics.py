@@ -9,8 +9,8 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from linkwright.graph.endpoints.base import MessageInfo
 from linkwright.graph.endpoints.bus import describe_mismatch, report_to_publisher, report_to_subscription
-from linkwright.graph.endpoints.info import MessageInfo
 from linkwright.graph.qos.compatibility import incompatible_policies
 from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.messages import InterfaceNotFoundError, serialize, type_hash

@@ -17,7 +17,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.wire.zenoh.tokens import Token
 
 if TYPE_CHECKING:

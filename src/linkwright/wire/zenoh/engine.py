@@ -14,9 +14,9 @@ from typing import Any
 
 import zenoh
 
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.graph.log.logger import Logger
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.messages import InterfaceNotFoundError, type_hash
 from linkwright.wire.engine import Engine as AnyEngine
 from linkwright.wire.engine import Work, ends_by_error

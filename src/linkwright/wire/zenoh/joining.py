@@ -16,7 +16,7 @@ from linkwright.wire.zenoh.transport import ZenohTransport
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from linkwright.graph.computation_graph import Graph
+    from linkwright.graph.node import Graph
 
 
 def is_installed() -> bool:

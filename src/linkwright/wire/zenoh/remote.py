@@ -7,8 +7,8 @@ from collections import Counter
 from itertools import islice
 from threading import Lock
 
-from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
-from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
+from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.outside import Outside
 from linkwright.wire.zenoh.tokens import Token
 

@@ -12,14 +12,13 @@ from weakref import WeakSet
 import zenoh
 from zenoh.handlers import Callback
 
-from linkwright.graph.endpoints.service_introspection import RequestId
+from linkwright.graph.endpoints.service import RequestId
 from linkwright.wire.service_messages import hand_request_on, hand_response_on, written
 from linkwright.wire.zenoh import attachment
 from linkwright.wire.zenoh.tokens import Token
 
 if TYPE_CHECKING:
-    from linkwright.graph.endpoints.client import Client
-    from linkwright.graph.endpoints.service import Service
+    from linkwright.graph.endpoints.service import Client, Service
 
 _WAITS = 600.0
 """Seconds for which a request waits for its reply."""

@@ -12,7 +12,7 @@ import zenoh
 from zenoh import ext
 from zenoh.handlers import Callback
 
-from linkwright.graph.endpoints.info import MessageInfo
+from linkwright.graph.endpoints.base import MessageInfo
 from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.messages import serialize
 from linkwright.wire.zenoh import attachment

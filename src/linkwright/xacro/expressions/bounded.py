@@ -15,7 +15,11 @@ from collections.abc import Callable, Collection, Iterable
 
 from linkwright.diagnostics import phrase
 from linkwright.loading.lean_typing import Any
-from linkwright.xacro.expressions.refusal import RefusalError
+
+
+class RefusalError(Exception):
+    """An expression tried something that expressions may not do."""
+
 
 _MOST_ALIKE = 1_000
 """Python compares each of the keys that have one hash with each."""

@@ -15,10 +15,8 @@ from collections.abc import Callable, Iterator
 from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
-from linkwright.xacro.expressions.bounded import keys
-from linkwright.xacro.expressions.function_calls import call, charged, cost
-from linkwright.xacro.expressions.functions import Function, bind_parameters
-from linkwright.xacro.expressions.refusal import RefusalError
+from linkwright.xacro.expressions.bounded import RefusalError, keys
+from linkwright.xacro.expressions.functions import Function, bind_parameters, call, charged, cost
 from linkwright.xacro.expressions.scope import Environment
 from linkwright.xacro.expressions.yamldata import COPIED, YamlDict, YamlMapping, wrapped
 from linkwright.xacro.faults import Fault

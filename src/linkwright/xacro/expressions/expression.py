@@ -12,7 +12,7 @@ from types import GeneratorType
 
 from linkwright.diagnostics import foreign, phrase
 from linkwright.loading.lean_typing import Any
-from linkwright.xacro.expressions.compile_cache import TextCompiler
+from linkwright.xacro.cache import TextCompiler
 from linkwright.xacro.expressions.compiler import FAILURES, Closure, Compiler, failure
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault

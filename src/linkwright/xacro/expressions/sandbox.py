@@ -14,7 +14,7 @@ from collections.abc import Callable
 from linkwright.diagnostics import phrase
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import bounded
-from linkwright.xacro.expressions.refusal import RefusalError
+from linkwright.xacro.expressions.bounded import RefusalError
 from linkwright.xacro.expressions.scope import Namespace
 from linkwright.xacro.expressions.yamldata import YamlDict, YamlList, YamlMapping
 

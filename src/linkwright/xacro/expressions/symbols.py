@@ -14,7 +14,7 @@ from collections.abc import Callable
 from linkwright.diagnostics import Severity, foreign, phrase
 from linkwright.loading.lean_typing import Any, Protocol
 from linkwright.xacro.expressions import bounded, sandbox
-from linkwright.xacro.expressions.refusal import RefusalError
+from linkwright.xacro.expressions.bounded import RefusalError
 from linkwright.xacro.expressions.sandbox import CALLABLE_TYPES, MAX_BITS, MAX_LENGTH, Module
 from linkwright.xacro.faults import Fault
 

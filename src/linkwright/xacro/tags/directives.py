@@ -1,19 +1,251 @@
-"""The tags of the language, except macro calls, and their effects."""
+"""The tags of the language and their effects, except macro calls: arguments, properties, conditions, includes."""
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Mapping
 
-from linkwright.diagnostics import did_you_mean, phrase, term
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, display_path, phrase, term
 from linkwright.loading.lean_typing import Any
-from linkwright.xacro.expander import Container, Directive, Expander, Site
-from linkwright.xacro.expressions.literals import truth
-from linkwright.xacro.tags.attributes import check_attributes
-from linkwright.xacro.tags.includes import include
+from linkwright.xacro.expander import Container, Directive, Expander, Site, check_attributes, warn_of_global
+from linkwright.xacro.expressions.expression import is_identifier
+from linkwright.xacro.expressions.scope import Namespace, Scope, truth
+from linkwright.xacro.faults import Frame, trail
+from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.tags.macro_calls import call_dynamically, define_macro
-from linkwright.xacro.tags.properties import define_property
-from linkwright.xmltree import Element
+from linkwright.xmltree import Document, Element
+
+_MISSING = "XML101"
+_OF_PATTERNS = ("*", "[", "?")
+
+
+def include(expander: Expander, site: Site) -> None:
+    """Put the content of a file, or of all files that match a pattern, in the place of the tag."""
+    node, session = site.node, expander.session
+    check_attributes(expander, node, ("filename",), ("ns", "optional"))
+    scope, macros = _tables(expander, site)
+    optional = _is_optional(expander, node)
+    child = next(node.elements(), None)
+    if child is not None:
+        session.warn("XAC503", phrase("'{tag}' inside an include has no effect", tag=child.tag), child.span())
+    contents: list[Element] = []
+    for path in _paths(expander, site):
+        session.depends_on(path)
+        container = _content(expander, site, path, scope, macros, optional=optional)
+        if container is not None:
+            expander.lift_namespaces(container, site)
+            contents.append(container)
+    output = site.parent.children
+    mark = expander.sweeper.sweep(output, followed=site.followed)
+    for container in contents:
+        expander.splice(container, site)
+    if mark:
+        expander.sweeper.mark(output)
+
+
+def _tables(expander: Expander, site: Site) -> tuple[Scope, MacroTable]:
+    if not site.node.attributes.get("ns"):
+        return site.scope, site.macros
+    name = expander.text_value(site.node, "ns", site.scope)
+    macros = MacroTable()
+    site.macros.define(name, macros)
+    scope = Namespace(site.scope, expander.session)
+    warn_of_global(expander, site.node, name, "ns")
+    site.scope.bind(name, scope)
+    return scope, macros
+
+
+def _is_optional(expander: Expander, node: Element) -> bool:
+    written = node.attributes.get("optional")
+    if written is None:
+        return False
+    try:
+        return truth(written)
+    except ValueError:
+        message = phrase("'optional' is '{written}', which is neither true nor false", written=written)
+        hint = phrase("write true or false; it is not evaluated")
+        expander.fail_at("XAC305", message, node, node.attribute_span("optional"), hint)
+
+
+def _paths(expander: Expander, site: Site) -> list[str]:
+    name = expander.text_value(site.node, "filename", site.scope)
+    path = expander.session.absolute(name)
+    if not any(sign in path for sign in _OF_PATTERNS):
+        return [path]
+    from glob import glob
+
+    root = expander.session.root_dir or None
+    paths = sorted(glob(path, root_dir=root))  # noqa: PTH207 - kept as it is written
+    if not paths:
+        span = site.node.attribute_span("filename")
+        expander.session.warn("XAC502", phrase("no file matches '{path}'", path=path), span)
+    return paths
+
+
+def _content(
+    expander: Expander, site: Site, path: str, scope: Scope, macros: MacroTable, *, optional: bool
+) -> Element | None:
+    session = expander.session
+    around, file = session.frame, session.file
+    try:
+        document = _document(expander, site, path)
+    except LinkwrightError as error:
+        if optional and error.diagnostics[0].code == _MISSING:
+            return None
+        raise
+    expander.enter(Frame(None, site.node, around))
+    session.file = path
+    try:
+        root = document.root
+        attributes = expander.attributes(root, scope)
+        declared = {name: value for name, value in attributes.items() if name.startswith("xmlns:")}
+        container = Container(site.node.tag, declared)
+        expander.children(root, container, scope, macros)
+    finally:
+        session.frame, session.file = around, file
+    return container
+
+
+def _document(expander: Expander, site: Site, path: str) -> Document:
+    try:
+        return expander.session.read(path)
+    except LinkwrightError as error:
+        node, frame = site.node, expander.session.frame
+        first = error.diagnostics[0]
+        if first.span is None:
+            hint = first.hint or _nearest_file(expander.session.on_disk(path))
+            diagnostic = Diagnostic(
+                first.code,
+                first.message,
+                node.attribute_span("filename"),
+                notes=trail(frame),
+                hint=hint,
+                source=node.source,
+            )
+        else:
+            notes = (*first.notes, Frame(None, node, frame).note(), *trail(frame))
+            diagnostic = Diagnostic(
+                first.code, first.message, first.span, notes=notes, hint=xml_hint(first), source=first.source
+            )
+        raise LinkwrightError(diagnostic) from None
+
+
+def xml_hint(diagnostic: Diagnostic) -> Phrase | None:
+    """The hint of a mistake in the XML; for the prefix of this language, how to declare it."""
+    if diagnostic.code == "XML205" and diagnostic.message.startswith("the prefix 'xacro'"):
+        return phrase('declare it on the root element: xmlns:xacro="http://www.ros.org/wiki/xacro"')
+    return diagnostic.hint
+
+
+def _nearest_file(path: str) -> Phrase | None:
+    folder, name = os.path.split(path)
+    try:
+        return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are needed, not paths
+    except (OSError, ValueError):
+        return phrase("there is no folder '{folder}'", folder=display_path(folder))
+
+
+_OPTIONAL = ("value", "default", "remove", "scope", "lazy_eval")
+
+
+def define_property(expander: Expander, site: Site) -> None:
+    """Define a property, or remove one."""
+    node, scope = site.node, site.scope
+    expander.sweep(site)
+    check_attributes(expander, node, ("name",), _OPTIONAL)
+    name = _name(expander, node, scope)
+    attributes = node.attributes
+    if len(attributes) == 2 and "value" in attributes:  # as nearly always
+        warn_of_global(expander, node, name, "name")
+        scope.define(name, attributes["value"], lazy=True, element=node)
+        return
+    remove = _flag(expander, node, "remove", scope, default=False)
+    if ("value" in attributes) + ("default" in attributes) + remove > 1:
+        message = phrase("the property '{name}' has more than one of 'value', 'default' and 'remove'", name=name)
+        expander.fail_at("XAC304", message, node, node.span(), phrase("keep one of them"))
+    if remove and _remove(expander, node, name, scope):
+        return
+    if "default" in attributes:
+        if "scope" in attributes:
+            message = phrase(
+                "the default of '{name}' applies to this scope only; 'scope' has no effect with it", name=name
+            )
+            expander.session.warn("XAC308", message, node.attribute_span("scope"))
+        if name in scope:
+            return
+    attribute = next((key for key in ("value", "default") if key in attributes), None)
+    if attribute is None:
+        target, _ = _target(expander, node, name, scope)
+        target.bind(f"**{name}", node)
+        return
+    lazy = _flag(expander, node, "lazy_eval", scope, default=True)
+    target, local = _target(expander, node, name, scope)
+    warn_of_global(expander, node, name, "name")
+    if lazy and local:
+        target.define(name, attributes[attribute], lazy=True, element=node, attribute=attribute)
+    else:
+        target.define(name, expander.value(node, attribute, scope))
+
+
+def _name(expander: Expander, node: Element, scope: Scope) -> str:
+    name = node.attributes["name"]
+    if "$" in name:
+        name = expander.text_value(node, "name", scope)
+    if not is_identifier(name):
+        message = phrase("'{name}' cannot be the name of a property", name=name)
+        hint = phrase("a name consists of letters, digits and underscores, and is not a Python keyword")
+        expander.fail_at("XAC303", message, node, node.attribute_span("name"), hint)
+    if name.startswith("__"):
+        message = phrase("the name '{name}' begins with two underscores", name=name)
+        expander.fail_at("XAC303", message, node, node.attribute_span("name"))
+    return name
+
+
+def _flag(expander: Expander, node: Element, attribute: str, scope: Scope, *, default: bool) -> bool:
+    if not node.attributes.get(attribute):
+        return default
+    value = expander.value(node, attribute, scope)
+    try:
+        return truth(value)
+    except ValueError:
+        message = phrase(
+            "'{attribute}' is '{value}', which is neither true nor false", attribute=attribute, value=value
+        )
+        expander.fail_at("XAC305", message, node, node.attribute_span(attribute), phrase("write true or false"))
+
+
+def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
+    """Remove a value. False if there is none: then, as in ros/xacro, the element defines a block of this name."""
+    span = node.attribute_span("name")
+    if name not in scope:
+        expander.session.warn("XAC310", phrase("there is no property '{name}' to remove", name=name), span)
+        return False
+    if name in expander.session.globals.values:
+        expander.session.warn(
+            "XAC310", phrase("'{name}' is a name that xacro provides and cannot be removed", name=name), span
+        )
+    scope.remove(name)
+    return True
+
+
+def _target(expander: Expander, node: Element, name: str, scope: Scope) -> tuple[Scope, bool]:
+    """The scope that a property goes to, and whether that is the scope of its tag."""
+    where = node.attributes.get("scope")
+    if where == "global":
+        return scope.document_scope(), False
+    if where != "parent":
+        return scope, True
+    target = scope.parent
+    if not isinstance(scope, Namespace):
+        while isinstance(target, Namespace):
+            target = target.parent
+    if target is None or target.parent is None:
+        message = phrase("there is no scope around this one for '{name}'", name=name)
+        hint = phrase("'scope' is for properties defined inside a macro; leave it out here")
+        expander.fail_at("XAC307", message, node, node.attribute_span("scope"), hint)
+    return target, False
+
 
 _NAME = r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?"  # not compiled here: few files need it
 """A name in XML, nearly."""

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from linkwright.diagnostics import Note, counted, did_you_mean, joined, phrase, quoted_names
 from linkwright.loading.lean_typing import Any, NoReturn
-from linkwright.xacro.expander import Container, Expander, Site
+from linkwright.xacro.expander import Container, Expander, Site, check_attributes, warn_of_global
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.faults import Fault, attribute_name, definition_elsewhere
+from linkwright.xacro.faults import Fault, Frame, attribute_name, definition_elsewhere
 from linkwright.xacro.macros import Macro, MacroTable, Parameter, parse_parameters
-from linkwright.xacro.origin import Frame
 from linkwright.xacro.plan import PREFIX
-from linkwright.xacro.tags.attributes import check_attributes, warn_of_global
 from linkwright.xmltree import Element
 
 

@@ -8,11 +8,9 @@ from dataclasses import dataclass, field
 from linkwright.diagnostics import LinkwrightError, Span
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
-from linkwright.xacro.expressions.literals import literal
-from linkwright.xacro.expressions.scope import Lazy, Scope
-from linkwright.xacro.faults import Fault, attribute_part
+from linkwright.xacro.expressions.scope import Lazy, Scope, literal
+from linkwright.xacro.faults import Fault, Frame, attribute_part
 from linkwright.xacro.macros import Parameter, parse_parameters
-from linkwright.xacro.origin import Frame
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xacro.tracing.references import Reference, Value, references, shown, written_attribute

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from linkwright.diagnostics import Span
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import Any
-from linkwright.xacro.expressions.lexer import TokenKind, tokenize
+from linkwright.xacro.expressions.template import TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree.positions import attribute_value_range
 
@@ -58,7 +58,7 @@ def references(text: str) -> list[Reference]:
 def shown(value: Any) -> str:
     """A value as Python writes it, cut when it is long."""
     from linkwright.xacro.expressions import sandbox
-    from linkwright.xacro.expressions.refusal import RefusalError
+    from linkwright.xacro.expressions.bounded import RefusalError
 
     try:
         text = repr(value) if isinstance(value, str) else sandbox.as_text(value)

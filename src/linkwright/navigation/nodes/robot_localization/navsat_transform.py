@@ -19,6 +19,7 @@ from linkwright.geometry.single import (
     IDENTITY,
     Quaternion,
     Transform,
+    Vector3,
     compose,
     invert,
     normalized,
@@ -28,7 +29,6 @@ from linkwright.geometry.single import (
     rotate,
     rpy_from_quaternion,
 )
-from linkwright.geometry.vectors import Vector3
 from linkwright.graph import SENSOR_DATA_QOS, STATIC_TF_PUBLISHER_QOS, Graph, Parameter, ParameterType
 from linkwright.messages import TFMessage, TransformBatch, get_message, get_service
 from linkwright.navigation.estimation.geodesy import TangentPlane, Zone, convergence, degrees_of_utm, utm_of, zone_of

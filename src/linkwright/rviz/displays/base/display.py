@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from linkwright.page.audience import PageGroup
 from linkwright.page.outbox import Payload, ScaledData, Shrink
-from linkwright.page.protocol.binary import DisplayForgotten, pack_data
-from linkwright.page.protocol.displays import (
+from linkwright.page.protocol.configuration import (
     Display,
     DisplayProperties,
     DisplayStatus,
@@ -20,7 +19,7 @@ from linkwright.page.protocol.displays import (
     StatusLevel,
     StatusRow,
 )
-from linkwright.page.protocol.message import DataContent, ServerMessage
+from linkwright.page.protocol.message import DataContent, DisplayForgotten, ServerMessage, pack_data
 from linkwright.rviz.config.former_names import former_keys
 from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.rviz_config import DisplayConfig
@@ -47,6 +46,9 @@ class DisplayHost(Protocol):
 
     def robot_changed(self, gone: set[str]) -> None:
         """Handle a display's new robot; `gone` are the frames that only the former one had."""
+
+    def fading_changed(self) -> None:
+        """Handle another time after which a display hides frames, or a change of its check box."""
 
 
 Pose = NDArray[np.float64]

@@ -9,7 +9,7 @@ from typing import Any
 from linkwright.diagnostics import foreign
 from linkwright.graph import Client
 from linkwright.messages import get_message, get_service
-from linkwright.page.protocol.displays import PropertyChanged
+from linkwright.page.protocol.configuration import PropertyChanged
 from linkwright.page.protocol.markers import MarkerShape
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, Schema

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from linkwright.packages import PackageFinder
 from linkwright.page.protocol.message import PageMessage
-from linkwright.page.protocol.modelling import (
+from linkwright.page.protocol.simulation import (
     AddEntity,
     ChangeEntities,
     CopyEntities,

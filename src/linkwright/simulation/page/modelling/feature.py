@@ -17,7 +17,7 @@ from linkwright.graph import LATCHED_QOS
 from linkwright.messages import get_message, get_service
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import PageMessage, ServerMessage
-from linkwright.page.protocol.modelling import (
+from linkwright.page.protocol.simulation import (
     AskModels,
     ModellingState,
     RedoWorld,

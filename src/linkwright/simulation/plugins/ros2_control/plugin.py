@@ -22,7 +22,7 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, Logger, Node
 from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.files import read_parameter_file
-from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.graph.stepped.node import SteppedNode
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.plugin import SimulatedPlugin

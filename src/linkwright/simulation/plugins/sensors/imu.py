@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, Generic, TypeVar
 
-from linkwright.geometry import vectors
+from linkwright.geometry import single
 from linkwright.geometry.single import compose, quaternion_from_rpy
 from linkwright.messages import Header, Quaternion, Vector3, get_message
 from linkwright.sdf.noise import Noise, NoiseXyz
@@ -85,8 +85,8 @@ class OldImuParameters(FrameName):
     topic_name: str = parameter("imu", aliases=("topicName",))
     update_rate: float = parameter(0.0, aliases=("updateRate", "updateRateHZ"))
     gaussian_noise: float = parameter(0.0, aliases=("gaussianNoise",))
-    xyz_offset: vectors.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("xyzOffset", "xyzOffsets"))
-    rpy_offset: vectors.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpyOffset", "rpyOffsets"))
+    xyz_offset: single.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("xyzOffset", "xyzOffsets"))
+    rpy_offset: single.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpyOffset", "rpyOffsets"))
 
 
 class OldImu(_ImuPlugin[OldImuParameters]):

@@ -1,4 +1,4 @@
-"""rviz_default_plugins/TF."""
+"""Axes, Grid and TF, which show frames."""
 
 from __future__ import annotations
 
@@ -6,13 +6,81 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Phrase, foreign, phrase
-from linkwright.page.protocol.displays import PropertyChanged, StatusRow
+from linkwright.page.protocol.configuration import PropertyChanged, StatusRow
 from linkwright.rviz.config.rviz_config import DisplayConfig
-from linkwright.rviz.config.schema import Path, PropertySpec, Schema
+from linkwright.rviz.config.schema import FIXED_FRAME, Path, PropertySpec, Schema, alpha, line_style, line_width, vector
 from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay
+from linkwright.rviz.frames.stream import transform_status
 
 if TYPE_CHECKING:
     from linkwright.graph.names.expressions import Expression
+
+
+FRAME_TIMEOUT = "Frame Timeout"
+"""The property of TF that is the time after which it hides a frame, in seconds."""
+
+_REFERENCE = "Reference Frame"
+
+
+class AxesDisplay(ViewerDisplay):
+    """The axes of a frame: x red, y green, z blue."""
+
+    CLASS = "rviz_default_plugins/Axes"
+    SCHEMA = (
+        PropertySpec(_REFERENCE, "frame", FIXED_FRAME, "The frame whose axes are drawn."),
+        PropertySpec("Length", "float", 1.0, "Length of each axis, in metres.", minimum=0.0001),
+        PropertySpec("Radius", "float", 0.1, "Radius of each axis, in metres.", minimum=0.0001),
+    )
+
+    def start(self) -> None:
+        """Show in the status whether the frame can be placed."""
+        self.frames_changed()
+
+    def changed(self, path: Path) -> None:
+        """Update the status for another frame."""
+        if path == (_REFERENCE,):
+            self.frames_changed()
+
+    def frames_changed(self) -> None:
+        """Show in the status whether the frame can be placed."""
+        self.set_status([transform_status(self.host.frames, self.properties.text(_REFERENCE))])
+
+
+class GridDisplay(ViewerDisplay):
+    """A grid in a plane of a frame."""
+
+    CLASS = "rviz_default_plugins/Grid"
+    SCHEMA = (
+        PropertySpec(_REFERENCE, "frame", FIXED_FRAME, "The frame whose origin is the centre of the grid."),
+        PropertySpec("Plane Cell Count", "int", 10, "Cells along each side of the grid.", minimum=1, maximum=1000),
+        PropertySpec(
+            "Normal Cell Count",
+            "int",
+            0,
+            "Layers of cells along the normal of the plane; more than 0 makes a lattice.",
+            minimum=0,
+            maximum=100,
+        ),
+        PropertySpec("Cell Size", "float", 1.0, "Side of a cell, in metres.", minimum=0.0001),
+        line_style(line_width()),
+        PropertySpec("Color", "color", "#a0a0a4", "Colour of the lines."),
+        alpha("Opacity of the lines: 0 is invisible.", 0.5),
+        PropertySpec("Plane", "enum", "XY", "The plane of the grid.", options=("XY", "XZ", "YZ")),
+        vector("Offset", "The centre of the grid in the reference frame, in metres."),
+    )
+
+    def start(self) -> None:
+        """Show in the status whether the reference frame can be placed."""
+        self.frames_changed()
+
+    def changed(self, path: Path) -> None:
+        """Update the status for another reference frame."""
+        if path == (_REFERENCE,):
+            self.frames_changed()
+
+    def frames_changed(self) -> None:
+        """Show in the status whether the reference frame can be placed."""
+        self.set_status([transform_status(self.host.frames, self.properties.text(_REFERENCE))])
 
 
 class FrameFilter:
@@ -68,7 +136,7 @@ _STATIC = (
     PropertySpec("Marker Scale", "float", 1.0, "Size of names, axes and arrows.", minimum=0.0),
     PropertySpec("Update Interval", "float", 0.0, "Seconds between updates; 0 for every frame.", minimum=0.0),
     PropertySpec(
-        "Frame Timeout",
+        FRAME_TIMEOUT,
         "float",
         15.0,
         "Seconds until a frame without new transforms is removed: grey after the first third, hidden after the second.",
@@ -113,6 +181,8 @@ class TfDisplay(ViewerDisplay):
         """Follow a filter, or the check box over all frames."""
         if path in _FILTERS:
             self.frames_changed()
+        elif path == (FRAME_TIMEOUT,):
+            self.host.fading_changed()
         elif path == _ALL:
             value = self.properties.flag(*_ALL)
             for name in self._boxes():
@@ -121,6 +191,11 @@ class TfDisplay(ViewerDisplay):
         elif path[0] == "Frames" and not self.properties.flag(*path) and self.properties.flag(*_ALL):
             self.properties.set(_ALL, False)
             self.pages.publish(PropertyChanged(self.property_id(_ALL), False))
+
+    def enabled_changed(self) -> None:
+        """Show frames and their status, or none; frames that no display shows need not fade."""
+        self.host.fading_changed()
+        super().enabled_changed()
 
     def frames_changed(self) -> None:
         """List the frames again, and show the status of each."""

@@ -1,0 +1,40 @@
+"""Features that are created on demand: their messages are declared by address, and defined by the first one."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+import pytest
+
+from linkwright.loading.extensions import extensions
+from linkwright.page.protocol.message import address_of
+from linkwright.panels.page_feature import ON_DEMAND_GROUP
+from tests.imports import loaded_by
+
+DECLARED = [feature for entry in extensions(ON_DEMAND_GROUP).values() for feature in entry.load().ON_DEMAND]
+PROTOCOL = "linkwright.page.protocol.navigation"
+PROGRAM = f"""
+from linkwright.page.protocol.message import BadMessageError, decode, define_later
+from linkwright.page.protocol.message import Received
+define_later("{PROTOCOL}:WatchNavigation")
+"""
+GOOD = """
+assert decode('{"type":"watch_navigation","open":true}').open
+"""
+WRONG = """
+try:
+    decode('{"type":"watch_navigation"}')
+except BadMessageError as error:
+    assert "open" in str(error)
+"""
+
+
+@pytest.mark.parametrize("address", [message for feature in DECLARED for message in feature.receives])
+def test_an_address_is_that_of_a_class_of_messages(address: str):
+    module, _, name = address.partition(":")
+    assert address_of(getattr(import_module(module), name)) == address
+
+
+@pytest.mark.parametrize(("sent", "defined"), [("", False), (GOOD, True), (WRONG, True)])
+def test_the_first_message_defines_its_class(sent: str, defined: bool):
+    assert (PROTOCOL in loaded_by(f"exec({PROGRAM + sent!r})")) is defined

@@ -1,0 +1,34 @@
+"""How many files the data passes through: each is one that a reader of the way must open."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections import Counter
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from tests.places import REPOSITORY
+
+MOST = {"opening": 172, "slider": 22}
+"""The most files of Linkwright whose functions run: from `view` to an open page, from a slider to the page's frames."""
+
+
+@cache
+def _files() -> dict[str, list[str]]:
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.viewer.ways"], capture_output=True, text=True, cwd=REPOSITORY, check=True
+    )
+    files: dict[str, list[str]] = json.loads(done.stdout)
+    return files
+
+
+@pytest.mark.parametrize("way", MOST)
+def test_a_way_leads_through_few_files(way: str):
+    files = _files()[way]
+    rooms = Counter(Path(file).parts[0] for file in files)
+    listed = "\n".join(files)
+    assert len(files) <= MOST[way], f"{len(files)} files in {dict(rooms.most_common())}:\n{listed}"
