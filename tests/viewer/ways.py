@@ -74,7 +74,7 @@ async def _until(
 
 def _is_stored(kind: str, content: dict[str, Any]) -> bool:
     """Whether a message reports that the last minutes have messages, which is sent each second."""
-    return kind == "kept" and content["size"] > 0
+    return kind == "history_extent" and content["size"] > 0
 
 
 async def _main() -> None:

@@ -126,7 +126,7 @@ class LaunchLog:
         """Log an error."""
         self._own_line("ERROR", name, text)
 
-    def print_line(self, line: str) -> None:
+    def announce(self, line: str) -> None:
         """Print a line for programs that read our stdout, without delay."""
         self._print(1, line)
 

@@ -79,7 +79,7 @@ class ViewerHost:
         self._announce(server)
 
     def _announce(self, server: PageServer) -> None:
-        self._session.log.print_line(f"Viewer: {server.url}")
+        self._session.log.announce(f"Viewer: {server.url}")
         if self._session.options.open_browser and not server.pages_wait:
             _open_in_browser(server.url)
 
