@@ -100,19 +100,27 @@ ROBOTS = {
     "arm": ("Arm with a gripper", "带夹爪的机械臂"),
     "scara": ("SCARA", "SCARA 机械臂"),
     "delta": ("Delta robot", "并联机器人"),
+    "hand": ("Hand with five fingers", "五指灵巧手"),
+    "printer": ("3D printer", "3D 打印机"),
+    "camera_tower": ("Pan-tilt camera tower", "云台摄像塔"),
     "mobile_manipulator": ("Mobile manipulator", "移动机械臂"),
+    "mecanum_platform": ("Platform with mecanum wheels", "麦克纳姆轮平台"),
+    "balancer": ("Self-balancing robot", "两轮自平衡机器人"),
     "car": ("Car with Ackermann steering", "阿克曼转向小车"),
+    "rover": ("Rover with rockers and bogies", "摇臂式火星车"),
     "forklift": ("Forklift", "叉车"),
     "excavator": ("Excavator", "挖掘机"),
-    "rover": ("Rover with rockers and bogies", "摇臂式火星车"),
-    "quadrotor": ("Quadrotor", "四旋翼"),
+    "snake": ("Snake robot", "蛇形机器人"),
     "quadruped": ("Quadruped", "四足机器人"),
     "hexapod": ("Hexapod", "六足机器人"),
     "humanoid": ("Humanoid", "人形机器人"),
+    "quadrotor": ("Quadrotor", "四旋翼"),
+    "plane": ("Fixed-wing plane", "固定翼飞机"),
+    "underwater_vehicle": ("Underwater vehicle", "水下机器人"),
 }
 """The robots of the gallery: the name of its file -> its title in English and in Chinese."""
 
-COLUMNS = 3
+COLUMNS = 4
 
 SYSTEMS = {
     "Linux x86-64": ("linux", "x86_64"),
