@@ -15,8 +15,6 @@ DriveKind = Literal["differential", "skid", "ackermann", "mecanum", "joints"]
 """Two driven wheels; four or more that turn by slipping; two steered and two driven; wheels with rollers, which go
 every way; and no wheels: the base does not move, and the joints hold their commanded positions."""
 
-DRIVE_KINDS: tuple[DriveKind, ...] = ("differential", "skid", "ackermann", "mecanum", "joints")
-
 
 @dataclass(frozen=True, slots=True)
 class Wheel:

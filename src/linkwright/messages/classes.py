@@ -90,7 +90,6 @@ class _FieldCode:
         self.field = field
         self.name = field.name
         self.kind = field.type
-        self._classes = classes
         scope["K_" + field.name] = field.type
         if self.kind.primitive is None:
             scope["C_" + field.name] = classes[self.kind.base]

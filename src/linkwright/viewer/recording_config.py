@@ -15,7 +15,6 @@ from linkwright.sdf.poses import WORLD
 from linkwright.urdf import Robot
 from linkwright.viewer.recorded_robot import description_topic, namespace_of_transforms
 
-_TRANSFORMS = (TRANSFORMS, STATIC_TRANSFORMS)
 _FIRST_NS = 2_000_000_000
 """The time of a recording that is read for its frames, nanoseconds."""
 

@@ -26,7 +26,6 @@ class Client:
     """
 
     def __init__(self, socket: WebSocketResponse, most_bytes: int) -> None:
-        self.dropped = 0
         self._socket = socket
         self._most = most_bytes
         self._control: deque[str | bytes] = deque()
@@ -46,7 +45,6 @@ class Client:
         self._bytes += len(frame)
         while self._bytes > self._most and len(self._data) > 1:
             self._bytes -= len(self._data.popleft())
-            self.dropped += 1
         self._filled.set()
 
     async def write(self) -> None:

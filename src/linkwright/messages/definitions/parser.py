@@ -223,7 +223,7 @@ class _Reader:
     def __init__(self, source: SourceText, type_name: str, known: KnownMessages) -> None:
         self._source = source
         self._type_name = type_name
-        self._package, self._kind, self._name = type_name.split("/")
+        self._package, self._kind, _ = type_name.split("/")
         self._known = known
         self._found: list[Diagnostic] = []
 

@@ -135,7 +135,6 @@ class _Channel:
     def __init__(self, context: ViewerContext, topic: str, came: Callable[[], None]) -> None:
         self._came = came
         self.series: list[_Series] = []
-        self.changed = False
         self.tap = TopicTap(context, topic, self._receive, changed=self._class_changed)
 
     def add(self, series: _Series) -> None:

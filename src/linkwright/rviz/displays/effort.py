@@ -60,7 +60,6 @@ class EffortDisplay(RecentDisplay):
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self._joints: dict[str, Joint] | None = None
-        self._row: tuple[str, str] | None = None
         self._descriptions: Any = None
         super().__init__(host, identity, config)
 

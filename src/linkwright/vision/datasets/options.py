@@ -5,10 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 SPLITS = ("train", "val", "test")
-FORMATS = ("coco", "yolo")
-IMAGE_FORMATS = ("jpg", "png")
-VARIED = ("lights", "colours", "lens")
-"""The properties that vary between images unless they are kept: lights, colours and patterns, lens and sensor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,12 +18,12 @@ class Options:
         copies: the least number of objects of each class.
         distractors: the number of objects without a label.
         most: the largest number of objects placed in an image.
-        kept: which of `VARIED` stay as the world has them.
+        kept: what stays as the world has it, of ``lights``, ``colours`` (and patterns) and ``lens`` (and sensor).
         least_size: the shorter side of a box in pixels, below which an object is ignored; half of it for its largest
             shape.
         least_visible: the share of an object that is visible, and that of its largest shape, below which it is to be
             ignored.
-        form: the image format, one of `IMAGE_FORMATS`.
+        form: the image format, ``jpg`` or ``png``.
     """
 
     width: int = 640

@@ -44,13 +44,11 @@ class Epoch:
         number: the number of the epoch, from 1.
         losses: the mean losses of boxes and of scores.
         judged: the evaluation of the smoothed network on the validation split; None if it was skipped.
-        best: whether it is the best so far.
     """
 
     number: int
     losses: tuple[float, float]
     judged: Evaluation | None
-    best: bool
 
 
 class Course:
@@ -108,12 +106,11 @@ class Course:
             losses = self._learn(self.epoch)
             self.epoch += 1
             judged = self.judge() if self._is_evaluated() else None
-            best = judged is not None and judged.map >= self.best_map
-            if judged is not None and best:
+            if judged is not None and judged.map >= self.best_map:
                 self.best, self.best_map, self.best_epoch = deepcopy(self.smooth.state_dict()), judged.map, self.epoch
             self.seconds += time.monotonic() - began
             self.save(self.options.output / "last.pt")
-            on_epoch(Epoch(self.epoch, losses, judged, best))
+            on_epoch(Epoch(self.epoch, losses, judged))
 
     @property
     def place(self) -> str:
