@@ -95,8 +95,9 @@ def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
         name: the package.
         folder: its source folder.
     """
-    share = _share_with_files(name)
-    if share is None or not _compiles(folder):
+    text = _text_with_targets(folder)  # before the entry points, which take longer to read
+    share = None if text is None else _share_with_files(name)
+    if text is None or share is None or not _compiles(folder, text):
         return {}
     ours = {file.relative_to(share).as_posix(): file for file in sorted(share.rglob("*")) if file.is_file()}
     return {
@@ -106,12 +107,22 @@ def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
     }
 
 
-def _compiles(folder: Path) -> bool:
-    """Whether a package in its sources has to be compiled."""
+_COMPILING = ("add_executable", "add_library", "add_module", "add_subdirectory", "include", "register_node")
+"""Parts of the commands of CMake by which a file, or one that it names, declares compiled targets."""
+
+
+def _text_with_targets(folder: Path) -> str | None:
+    """Return the text of a package's CMakeLists.txt if it may declare compiled targets."""
     try:
         text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
     except OSError:
-        return False
+        return None
+    lowered = text.casefold()
+    return text if any(command in lowered for command in _COMPILING) else None
+
+
+def _compiles(folder: Path, text: str) -> bool:
+    """Whether a package with this CMakeLists.txt has to be compiled."""
     from linkwright.diagnostics import SourceText
     from linkwright.packages.readers.cmake import read_cmake
 
