@@ -81,7 +81,7 @@ def test_a_trajectory_begins_where_the_joints_are_and_ends_at_its_last_point():
     )
     assert [sampled(trajectory, time).index for time in (10.0, 11.0, 12.9, 13.0)] == [0, 0, 0, 1]
     assert [sampled(trajectory, time).ended for time in (12.9, 13.0)] == [False, True]
-    assert sampled(trajectory, 99.0).point_ns == trajectory.end_ns == 13 * SECOND
+    assert sampled(trajectory, 99.0).point_ns == 13 * SECOND
     assert sampled(trajectory, 99.0).state == MotionState([2.0], [0.0], [0.0])
 
 

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from linkwright.diagnostics import has_errors
 from linkwright.packages import PackageFinder
 from linkwright.sdf.editing import WorldText
+from linkwright.sdf.includes import resolve_includes
+from linkwright.sdf.reader import read
 from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.text import parse_as_gazebo
 
 BOX = """\
     <model name='box'><!-- in single quotes -->
@@ -47,6 +51,14 @@ def world_text(text: str, models: str = "") -> WorldText:
     """A world of a text, with the models that come with the program and those of a folder."""
     packages = PackageFinder(start=Path("/nonexistent"), environment={})
     return WorldText(text, Path("/nowhere/w.world"), ResourceFinder(packages, {"GZ_SIM_RESOURCE_PATH": models}))
+
+
+def simulators_refuse(world: WorldText) -> bool:
+    """Whether the text, or a file that it includes, has an error."""
+    document, findings = parse_as_gazebo(world.text, str(world.path))
+    reading = read(document)
+    included = resolve_includes(reading.sdf, world.path, world.finder)
+    return has_errors([*findings, *reading.diagnostics, *included.diagnostics])
 
 
 def inside(*parts: str, version: str = "1.9") -> WorldText:

@@ -15,9 +15,10 @@ from PIL import Image
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.vision.datasets.dataset import make_dataset
-from linkwright.vision.datasets.labels import box_of, mask_of
+from linkwright.vision.datasets.labels import box_of
 from linkwright.vision.datasets.making import Source, Studio, split_of
 from linkwright.vision.datasets.options import SPLITS, Options
+from tests.vision.datasets.masks import mask_of
 from tests.vision.datasets.places import BALL, GROUND, WALL, world_text, yard
 
 OPTIONS = Options(width=160, height=120, seed=3, copies=2, distractors=4)

@@ -11,10 +11,11 @@ from linkwright.simulation.rendering.choice import make_renderer
 from linkwright.simulation.rendering.renderer import Channels, axes_of
 from linkwright.vision.datasets.arranging import Shot, arrange
 from linkwright.vision.datasets.classes import objects_of, usual_rules
-from linkwright.vision.datasets.labels import box_of, label_image, mask_of, runs_of
+from linkwright.vision.datasets.labels import box_of, label_image, runs_of
 from linkwright.vision.datasets.options import Options
 from linkwright.vision.datasets.stage import Stage
 from tests.simulation.worlds import loaded
+from tests.vision.datasets.masks import mask_of
 from tests.vision.datasets.places import SIGN, world_text, yard
 
 OPTIONS = Options(width=320, height=240)

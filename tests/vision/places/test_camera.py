@@ -32,13 +32,6 @@ def test_the_rectified_camera_counts_where_k_says_nothing():
     assert camera.rays(np.array([[720.0, 240.0]])) == pytest.approx(np.array([[1.0, 0.0, 1.0]]))
 
 
-def test_the_same_view_in_another_size():
-    camera = camera_model(640, 480, K)
-    half = camera.scaled(320, 240)
-    assert half.rays(np.array([[80.0, 60.0]])) == pytest.approx(camera.rays(np.array([[160.0, 120.0]])))
-    assert camera.scaled(640, 480) is camera
-
-
 def test_a_camera_that_says_too_little_is_refused():
     with pytest.raises(ValueError, match="no focal length"):
         camera_model(640, 480, [0.0] * 9)

@@ -9,12 +9,13 @@ from linkwright.vision.places.camera import camera_model
 from linkwright.vision.places.positions import place_by_depth, place_on_ground
 
 CAMERA = camera_model(640, 480, [500.0, 0.0, 319.5, 0.0, 500.0, 239.5, 0.0, 0.0, 1.0])
+SMALL = camera_model(320, 240, [250.0, 0.0, 159.5, 0.0, 250.0, 119.5, 0.0, 0.0, 1.0])
 UP = np.array([0.0, -1.0, 0.0])
 
 
-def ball(centre, radius, behind=4.0, size=(640, 480)):
+def ball(centre, radius, behind=4.0, camera=CAMERA):
     """The depth image of a ball before a wall, and its box."""
-    camera = CAMERA.scaled(*size)
+    size = camera.width, camera.height
     columns, rows = np.meshgrid(np.arange(size[0]) + 0.5, np.arange(size[1]) + 0.5)
     rays = camera.rays(np.stack([columns.ravel(), rows.ravel()], axis=1))
     middle = np.asarray(centre, np.float64)
@@ -36,7 +37,7 @@ def test_a_ball_before_a_wall(centre):
 
 
 def test_a_depth_image_of_another_size():
-    depths, box = ball((0.3, 0.1, 2.0), 0.2, size=(320, 240))
+    depths, box = ball((0.3, 0.1, 2.0), 0.2, camera=SMALL)
     place = place_by_depth(box, depths, CAMERA)
     assert place.centre == pytest.approx((0.3, 0.1, 2.0), abs=0.05)
 

@@ -91,11 +91,6 @@ class Trajectory:
         self._index = 0
         self._end = Sample(end, len(self.points) - 1, self._starts[-1], ended=True)
 
-    @property
-    def end_ns(self) -> int:
-        """The time of the last point; only after `begin`."""
-        return self._starts[-1]
-
     def sample(self, time_ns: int) -> Sample | None:
         """The state at a time, in nanoseconds; None before it has begun.
 

@@ -75,14 +75,6 @@ class PoseGraph:
                         break
         return float(np.hypot(*(self.poses - before)[:, :2].T).max(initial=0.0))
 
-    def errors(self) -> Floats:
-        """The error of each edge, in squared standard deviations, of shape (m,)."""
-        if not self.first:
-            return np.zeros(0)
-        residuals, _, _ = self._linearized()
-        result: Floats = np.einsum("ni,nij,nj->n", residuals, np.array(self.information), residuals)
-        return result
-
     def _step(self, *, robust: bool) -> float:
         residuals, of_first, of_second = self._linearized()
         information = np.array(self.information)

@@ -10,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, has_errors, phrase
+from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.single import Transform
 from linkwright.sdf.actors import Actor
 from linkwright.sdf.editing.errors import EditError
@@ -112,17 +112,11 @@ class WorldText:
         self.element: Element = reading.sdf.worlds[0].element
         self._included = resolve_includes(replace(reading.sdf, worlds=(self._written,)), path, finder)
         resolved = self._included.sdf.worlds[0]
-        self._findings = (*reading.diagnostics, *self._included.diagnostics)
         self.world: World = as_saved(resolved)
         self.frames = Frames(self.world)
         self._models = {model.name: model for model in reversed(self.world.models)}
         self._lights = {light.name: light for light in reversed(self.world.lights)}
         self.entities: Mapping[str, Entity] = dict(self._entities())
-
-    @property
-    def errors(self) -> list[Diagnostic]:
-        """The findings for which simulators refuse it."""
-        return [finding for finding in self._findings if has_errors([finding])]
 
     @cached_property
     def taken(self) -> frozenset[str]:

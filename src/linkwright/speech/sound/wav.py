@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, missing_file_hint, phrase
 from linkwright.files.input_files import read_file
-from linkwright.files.whole_files import write_whole_file
 from linkwright.speech.sound.resampling import HIGHEST_RATE, LOWEST_RATE, resample
 from linkwright.speech.sound.samples import RATE, Samples
 
@@ -87,17 +86,8 @@ def parse_wav(data: bytes, name: str) -> Samples:
     return resample(values.mean(axis=1), form.rate)
 
 
-def write_wav(path: str | os.PathLike[str], samples: Samples) -> None:
-    """Write a WAV file of 16 bits, mono, at `RATE`, whole or not at all.
-
-    Raises:
-        OSError: it cannot be written.
-    """
-    write_whole_file(path, wav_bytes(samples))
-
-
 def wav_bytes(samples: Samples) -> bytes:
-    """The bytes of a WAV file with samples."""
+    """The bytes of a WAV file with samples: of 16 bits, mono, at `RATE`."""
     sound = samples.astype("<i2").tobytes()
     head = struct.pack("<4sI4s4sIHHIIHH4sI", b"RIFF", 36 + len(sound), b"WAVE", b"fmt ", 16, _PCM, 1, RATE,
                        2 * RATE, 2, 16, b"data", len(sound))  # fmt: skip

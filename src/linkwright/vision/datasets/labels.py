@@ -106,12 +106,6 @@ def runs_of(mask: Any) -> tuple[int, ...]:
     return tuple([0, *counts] if flat[0] else counts)
 
 
-def mask_of(counts: tuple[int, ...], height: int, width: int) -> Any:
-    """Decode run lengths, the inverse of `runs_of`: shape (height, width)."""
-    values = np.arange(len(counts)) % 2 == 1
-    return np.repeat(values, counts).reshape((height, width), order="F")
-
-
 def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box, int, int]:
     """Return the unoccluded, untruncated box of an object, its number of pixels, and that of its largest shape.
 

@@ -7,7 +7,7 @@ right, y down, z into the image. Pixel coordinates are those of boxes: pixel 0 i
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,21 +40,6 @@ class CameraModel:
     cx: float
     cy: float
     distortion: tuple[float, ...] = ()
-
-    def scaled(self, width: int, height: int) -> CameraModel:
-        """The same camera for images of another size."""
-        if (width, height) == (self.width, self.height):
-            return self
-        across, down = width / self.width, height / self.height
-        return replace(
-            self,
-            width=width,
-            height=height,
-            fx=self.fx * across,
-            fy=self.fy * down,
-            cx=self.cx * across,
-            cy=self.cy * down,
-        )
 
     def rays(self, pixels: Floats) -> Floats:
         """The viewing rays of pixels.
