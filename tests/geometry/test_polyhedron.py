@@ -29,8 +29,7 @@ clouds = st.lists(st.tuples(coordinates, coordinates, coordinates), min_size=4, 
 def test_trimesh_finds_the_same(mesh, shift):
     mesh = mesh.copy()
     mesh.apply_translation(shift)
-    body = polyhedron_properties(mesh.vertices, mesh.faces, 5.0)
-    mesh.density = 5.0
+    body = polyhedron_properties(mesh.vertices, mesh.faces)
     assert body.mass == pytest.approx(mesh.mass)
     assert np.allclose(body.center, mesh.center_mass)
     assert np.allclose(body.inertia, mesh.moment_inertia, rtol=1e-4, atol=1e-6)

@@ -63,7 +63,7 @@ def test_cylinder_against_integration(radius, length):
 @given(sizes, sizes, sizes)
 def test_a_box_is_its_mesh(a, b, c):
     mesh = trimesh.creation.box((a, b, c))
-    body, solid = shape_properties(Box((a, b, c)), 3.0), polyhedron_properties(mesh.vertices, mesh.faces, 3.0)
+    body, solid = shape_properties(Box((a, b, c))), polyhedron_properties(mesh.vertices, mesh.faces)
     assert solid.mass == pytest.approx(body.mass)
     assert np.allclose(solid.center, 0, atol=1e-12)
     assert np.allclose(solid.inertia, body.inertia, rtol=1e-9, atol=1e-15)

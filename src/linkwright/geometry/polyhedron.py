@@ -12,8 +12,8 @@ from linkwright.geometry.outlines import POINT, STEPS
 Faces = NDArray[np.int64]
 
 
-def polyhedron_properties(vertices: Array, faces: Faces, density: float = 1.0) -> MassProperties:
-    """Mass properties of the solid that a closed surface bounds.
+def polyhedron_properties(vertices: Array, faces: Faces) -> MassProperties:
+    """Mass properties of the solid of density 1 that a closed surface bounds.
 
     Each triangle spans a tetrahedron with a common point. With ``det = a . (b x c)`` and ``s = a + b + c``, its signed
     volume is ``det / 6``, its first moment ``det / 24 s`` and its second moment ``det / 120 (ss' + aa' + bb' + cc')``;
@@ -23,7 +23,6 @@ def polyhedron_properties(vertices: Array, faces: Faces, density: float = 1.0) -
     Args:
         vertices: in m, shape (vertices, 3).
         faces: indices of corners, shape (faces, 3); it does not matter whether they turn outwards or inwards.
-        density: in kg/m3.
 
     Returns:
         In the frame of the vertices; without mass when the surface bounds no volume.
@@ -47,7 +46,7 @@ def polyhedron_properties(vertices: Array, faces: Faces, density: float = 1.0) -
     if volume < 0:
         volume, second = -volume, -second
     inertia = np.trace(second) * np.eye(3) - second
-    return MassProperties(density * volume, center + shift, density * inertia)
+    return MassProperties(volume, center + shift, inertia)
 
 
 def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:

@@ -108,7 +108,7 @@ def triangle_excess(tensor: Array | Matrix) -> float:
     return (large - small - middle) / large if large > 0 else 0.0
 
 
-def excessive_products(tensor: Array | Matrix, tolerance: float = TOLERANCE) -> list[tuple[str, float]]:
+def excessive_products(tensor: Array | Matrix) -> list[tuple[str, float]]:
     """Return products of inertia larger than the moments on the diagonal allow, with the largest allowed.
 
     ``ab <= (a2 + b2) / 2`` under the integral gives ``|Ixy| <= Izz / 2`` and so on, and a positive definite tensor has
@@ -123,7 +123,7 @@ def excessive_products(tensor: Array | Matrix, tolerance: float = TOLERANCE) -> 
         if min(first, second, third) <= 0:
             continue
         limit = min(third / 2, sqrt(first * second))
-        if abs(float(tensor[i][j])) > limit * (1 + tolerance):
+        if abs(float(tensor[i][j])) > limit * (1 + TOLERANCE):
             found.append((name, limit))
     return found
 

@@ -29,6 +29,6 @@ class WrongValueError(FieldValueError, TypeError):
     """A field cannot have a value."""
 
 
-def data_error(code: str, message: Phrase, hint: Phrase | None = None) -> MessageDataError:
+def data_error(code: str, message: Phrase) -> MessageDataError:
     """The error for bytes that cannot be read, or for a message that cannot be written."""
-    return MessageDataError(Diagnostic(code, message, hint=hint))
+    return MessageDataError(Diagnostic(code, message))

@@ -66,11 +66,11 @@ def _noise_of(type: str, old_type: str, **parts: float) -> Noise:  # noqa: A002 
     return Noise(old_type or type or ("gaussian" if any(parts.values()) else "none"), **parts)
 
 
-def noise_rule(tag: str = "noise", meaning: str = "noise on the value", target: str = "") -> ElementRule:
+def noise_rule() -> ElementRule:
     """The rule of an element of noise."""
     return ElementRule(
-        tag,
-        meaning,
+        "noise",
+        "noise on the value",
         (AttributeRule("type", TEXT, "none, gaussian or gaussian_quantized", default=""),),
         (
             value("type", TEXT, "the kind of noise, up to SDF 1.4", default="", field="old_type", get=unwritten),
@@ -79,7 +79,7 @@ def noise_rule(tag: str = "noise", meaning: str = "noise on the value", target: 
         make=_noise_of,
         keeps=True,
         default=NO_NOISE,
-        field=target or tag,
+        field="noise",
     )
 
 

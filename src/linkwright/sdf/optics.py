@@ -149,12 +149,12 @@ class Optics:
         return placed
 
 
-def optics_of(camera: Camera, *, near: float | None = None, far: float | None = None) -> Optics:
-    """The optics of a camera of SDF; `near` and `far` in m replace those of its element."""
+def optics_of(camera: Camera) -> Optics:
+    """The optics of a camera of SDF."""
     width, height = max(camera.image.width, 1), max(camera.image.height, 1)
     clip = camera.clip
-    nearest = max(clip.near if near is None else near, 1e-3)
-    farthest = max(clip.far if far is None else far, nearest * 2)
+    nearest = max(clip.near, 1e-3)
+    farthest = max(clip.far, nearest * 2)
     given, lens = camera.distortion, camera.intrinsics
     lossy = given is not None and any((given.k1, given.k2, given.k3, given.p1, given.p2))
     focal = width / (2 * tan(min(max(camera.horizontal_fov, 1e-3), 3.1) / 2))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi, tan
 
 import numpy as np
@@ -103,7 +104,7 @@ def test_what_reaches_into_the_image_is_seen(make, place):
 
 def test_what_is_too_near_or_too_far_is_not_seen(make):
     simulation = simulated(block("near", "0.3 0.1 0 0 0 0", "0.1 0.1 0.1"), block("far", "60 0 0 0 0 0", "1 90 90"))
-    optics = optics_of(CAMERA, near=0.5)
+    optics = replace(optics_of(CAMERA), near=0.5)
     rendered = make(simulation).render(optics, IDENTITY, Channels.DEPTH | Channels.COLOUR)
     assert np.isinf(rendered.depth).all()
     assert (rendered.colour == round(0.7 * 255)).all()

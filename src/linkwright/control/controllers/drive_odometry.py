@@ -110,12 +110,12 @@ class DriveOdometry:
         self._published_ns = last + period
         return True
 
-    def serve(self, node: ControllerNode, name: str = "~/set_odometry") -> None:
-        """Offer ``control_msgs/srv/SetOdometry``, by which others set the pose."""
+    def serve(self, node: ControllerNode) -> None:
+        """Offer ``~/set_odometry`` of type ``control_msgs/srv/SetOdometry``, by which others set the pose."""
 
         def asked(request: Any, response: Any) -> Any:
             self.odometer.reset(request.x, request.y, request.yaw)
             response.success = True
             return response
 
-        node.service("control_msgs/srv/SetOdometry", name, asked)
+        node.service("control_msgs/srv/SetOdometry", "~/set_odometry", asked)

@@ -14,7 +14,7 @@ from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any, TypeVar
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, SourceText, Span
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, Span
 from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.packages.programs.code_files import is_ours
 
@@ -197,7 +197,6 @@ def error_at(
     message: Phrase,
     hint: Phrase | None = None,
     *,
-    notes: tuple[Note, ...] = (),
     ros_error: Exception | None = None,
 ) -> LinkwrightError:
     """Return a new error about the text at a place.
@@ -207,10 +206,9 @@ def error_at(
         code: the code of the diagnostic.
         message: the message of the diagnostic.
         hint: the hint of the diagnostic.
-        notes: the notes of the diagnostic.
         ros_error: the exception that ROS raises here; the error has its class and text, for programs that check them.
     """
-    return located(as_ros_error(ros_error, Diagnostic(code, message, notes=notes, hint=hint)), place)
+    return located(as_ros_error(ros_error, Diagnostic(code, message, hint=hint)), place)
 
 
 def _characters(line: str, byte_offset: int) -> int:

@@ -8,22 +8,21 @@ from numpy.typing import NDArray
 from linkwright.navigation.grids.library import load_scipy
 
 
-def distance_field(marked: NDArray[np.bool_], resolution: float, limit: float = np.inf) -> NDArray[np.float64]:
+def distance_field(marked: NDArray[np.bool_], resolution: float) -> NDArray[np.float64]:
     """Return the distances of cells from the nearest marked one, from centre to centre.
 
     Args:
         marked: the marked cells, of shape (rows, columns).
         resolution: the side of a cell, in metres.
-        limit: the distance of all cells if no cell is marked, in metres.
 
     Returns:
-        Metres, of the same shape, 0 in marked cells.
+        Metres, of the same shape, 0 in marked cells; infinite if no cell is marked.
 
     Raises:
         LinkwrightError: NAV101, SciPy is not installed.
     """
     if not marked.any():
-        return np.full(marked.shape, limit)
+        return np.full(marked.shape, np.inf)
     distances: NDArray[np.float64] = load_scipy("ndimage").distance_transform_edt(~marked)
     distances *= resolution
-    return np.minimum(distances, limit, out=distances)
+    return distances

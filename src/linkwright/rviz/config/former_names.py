@@ -86,9 +86,9 @@ def _deviation(variance: str) -> str:
         return variance
 
 
-def _quality(topic: Path, *, depth: str = "Queue Size") -> dict[Path, FormerKey]:
+def _quality(topic: Path) -> dict[Path, FormerKey]:
     return {
-        (*topic, "Depth"): FormerKey(depth),
+        (*topic, "Depth"): FormerKey("Queue Size"),
         (*topic, "Reliability Policy"): FormerKey("Unreliable", _reliability, _unreliable),
     }
 

@@ -273,7 +273,6 @@ def topic_spec(
     *,
     depth: int = 5,
     durability: str = "Volatile",
-    reliability: str = "Reliable",
     filter_size: int | None = None,
     durability_help: str = "Whether to receive messages that were published before.",
     when: tuple[Path, str] | None = None,
@@ -287,7 +286,6 @@ def topic_spec(
         description: the tooltip.
         depth: RViz's default for the queue size.
         durability: RViz's default.
-        reliability: RViz's default.
         filter_size: default number of messages that wait for transforms; None if they need none.
         durability_help: the tooltip of ``Durability Policy``.
         when: as `PropertySpec.when`.
@@ -305,7 +303,7 @@ def topic_spec(
         PropertySpec(
             "Reliability Policy",
             "enum",
-            reliability,
+            "Reliable",
             "Whether every message must arrive, or may be lost.",
             options=("Reliable", "Best Effort", SYSTEM_DEFAULT),
         ),

@@ -114,14 +114,14 @@ def ramp_pose(size: tuple[float, ...]) -> Pose:
     return Pose((0.0, size[1] / 2, 0.0), (pi / 2, 0.0, 0.0))
 
 
-def solid(kind: str, size: tuple[float, ...], density: float = 1.0) -> MassProperties:
-    """Mass, centre of mass and inertia of a solid shape, in the frame of its link."""
+def solid(kind: str, size: tuple[float, ...]) -> MassProperties:
+    """Mass, centre of mass and inertia of a solid shape of density 1, in the frame of its link."""
     if kind == "cylinder":
-        return shape_properties(Cylinder(*size), density)
+        return shape_properties(Cylinder(*size))
     if kind == "sphere":
-        return shape_properties(Sphere(*size), density)
+        return shape_properties(Sphere(*size))
     x, y, z = size
-    box = shape_properties(Box((x, y, z)), density)
+    box = shape_properties(Box((x, y, z)))
     if kind != "ramp":
         return box
     mass = box.mass / 2

@@ -151,15 +151,14 @@ def audio_data(data: bytes) -> Any:
     return message
 
 
-def audio_stamped(data: bytes, stamp: Any, frame_id: str = "") -> Any:
+def audio_stamped(data: bytes, stamp: Any) -> Any:
     """An AudioDataStamped of samples.
 
     Args:
         data: the samples' bytes.
         stamp: when the first of them was heard, a builtin_interfaces/Time.
-        frame_id: of the microphone.
     """
     message = get_message(AUDIO_STAMPED)()
-    message.header.stamp, message.header.frame_id = stamp, frame_id
+    message.header.stamp = stamp
     message.audio.data = np.frombuffer(data, np.uint8)
     return message
