@@ -18,7 +18,7 @@ class Options:
         copies: the least number of objects of each class.
         distractors: the number of objects without a label.
         most: the largest number of objects placed in an image.
-        kept: what stays as the world has it, of ``lights``, ``colours`` (and patterns) and ``lens`` (and sensor).
+        kept: which of ``lights``, ``colours`` (with patterns) and ``lens`` (with sensor) stay as the world has them.
         least_size: the shorter side of a box in pixels, below which an object is ignored; half of it for its largest
             shape.
         least_visible: the share of an object that is visible, and that of its largest shape, below which it is to be
