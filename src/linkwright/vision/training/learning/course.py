@@ -250,7 +250,6 @@ class Course:
         try:
             state: dict[str, Any] = torch.load(path, map_location=self._device, weights_only=True)
             saved = state["shape"], state["names"]
-            state["optimizer"]["momenta"]  # which those of earlier versions lack
         except (OSError, RuntimeError, pickle.UnpicklingError, KeyError, EOFError, TypeError):
             message = phrase("'{path}' is not a checkpoint of a training", path=display_path(path))
             hint = phrase("leave out --resume to start from scratch")

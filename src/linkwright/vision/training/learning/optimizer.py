@@ -65,14 +65,9 @@ class Optimizer:
         return {"adamw": self._adamw.state_dict(), "momenta": self._momenta}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Restore the state of `state_dict`.
-
-        Raises:
-            KeyError: it is the state of another optimizer.
-        """
-        momenta = state["momenta"]
+        """Restore the state of `state_dict`."""
         self._adamw.load_state_dict(state["adamw"])
-        for mine, other in zip(self._momenta, momenta, strict=True):
+        for mine, other in zip(self._momenta, state["momenta"], strict=True):
             mine.copy_(other)
 
 
