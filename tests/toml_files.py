@@ -22,9 +22,9 @@ PYPROJECT = read_toml((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"
 PROJECT: dict[str, Any] = PYPROJECT["project"]
 ENGINE: dict[str, Any] = read_toml((REPOSITORY / "core" / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 EXTRAS: dict[str, list[str]] = {
-    name: needed for name, needed in PROJECT["optional-dependencies"].items() if needed and name != "all"
+    name: needed for name, needed in PROJECT["optional-dependencies"].items() if name != "all"
 }
-"""The extras that bring something, without ``all``."""
+"""The extras, without ``all``."""
 
 TOGETHER = frozenset(re.split(r"[\[,\]]", PROJECT["optional-dependencies"]["all"][0])[1:-1])
 """Those that ``all`` brings."""

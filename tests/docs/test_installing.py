@@ -74,4 +74,4 @@ def test_what_all_leaves_out_is_named(page: str, sentence: str) -> None:
 def test_extras_in_brackets_exist() -> None:
     for page in [*REPOSITORY.glob("*.md"), *(REPOSITORY / "docs").rglob("*.md")]:
         for names in re.findall(r"(?:linkwright|\.whl|'\.)\[([a-z, ]+)\]", page.read_text(encoding="utf-8")):
-            assert set(re.split(", ?", names)) <= {*EXTRAS, "all", "foxglove"}, page
+            assert set(re.split(", ?", names)) <= {*EXTRAS, "all"}, page
