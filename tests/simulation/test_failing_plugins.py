@@ -157,7 +157,6 @@ def test_the_test_of_a_plugin_fails_where_the_plugin_does(tmp_path):
 
 # --- subscriptions that come and go at any moment ---------------------------------------------------------------------
 
-LEFT_EYE = EYE.replace("<camera>", '<camera name="left">')
 _PICTURES = ("camera", "depth", "rgbd", "segmentation", "boundingbox")
 CLASSIC = {
     "classic ray": sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so"), "a"),

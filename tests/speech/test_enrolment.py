@@ -141,11 +141,6 @@ def test_there_is_a_most_of_words():
     assert len(words.takes("7")) == 2
 
 
-def damage(document, change):
-    change(document)
-    return json.dumps(document)
-
-
 @pytest.mark.parametrize(
     ("change", "why"),
     [
