@@ -13,9 +13,10 @@ from linkwright.hosting.view import ModelView
 from linkwright.hosting.xacro_calls import DescriptionError, Descriptions, XacroCall
 
 if TYPE_CHECKING:
-    from linkwright.descriptions import Description
+    from linkwright.descriptions import Description, DescriptionLibrary
     from linkwright.descriptions.pairs import Model, Pair
     from linkwright.diagnostics import Diagnostic
+    from linkwright.packages import PackageFinder
     from linkwright.rviz import RvizConfig
     from linkwright.viewer import Viewer
 
@@ -62,7 +63,7 @@ class ComparedView(ModelView):
         super().__init__(_call_of(pair.new), pair.new.finder, options, log)
         self._pair = pair
         self._old_call = _call_of(pair.old)
-        self._old = _OldDescriptions(pair.old.finder)
+        self._old = _OldDescriptions(pair.old.finder, self.descriptions.library)
         self.reload = LiveReload(self.descriptions, self._show_findings, log)
         self._old_reload = LiveReload(self._old, self._show_findings, log)
 
@@ -122,6 +123,10 @@ class ComparedView(ModelView):
 
 class _OldDescriptions(Descriptions):
     """Descriptions with unique texts: both files may have the same content."""
+
+    def __init__(self, finder: PackageFinder, library: DescriptionLibrary) -> None:
+        super().__init__(finder)
+        self._library = library
 
     def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
         """Store a description; returns the text that identifies it."""
