@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from linkwright.bag.writing import BagWriter
+from linkwright.messages import String, serialize
 from tests.docs.pages import blocks
 from tests.places import REPOSITORY
 
@@ -15,6 +17,9 @@ PAGE = REPOSITORY / "docs" / "api.md"
 
 def test_the_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
+    with BagWriter(tmp_path / "drive.mcap", single_file=True) as writer:
+        writer.add_topic("/chatter", "std_msgs/msg/String")
+        writer.write("/chatter", 1, serialize(String(data="hello")))
     names: dict[str, object] = {}
     ran = 0
     for block in blocks(PAGE):
@@ -25,6 +30,8 @@ def test_the_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPat
             ran += 1
     assert ran >= 6
     printed = capsys.readouterr().out
+    assert "/chatter std_msgs/msg/String 1" in printed
+    assert (tmp_path / "balls" / "annotations").is_dir()
     assert "arm.xacro:3:3" in printed
     assert "length 0.4" in printed
     assert "base_link revolute (0.0, 0.0, 0.2)" in printed

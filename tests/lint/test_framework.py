@@ -150,3 +150,13 @@ def test_errors_of_every_room_can_be_ignored_and_have_a_severity(tmp_path, name,
     assert not [each for each in check(path, settings=Settings(ignore=(code,))) if each.code.startswith(code)]
     changed = check(path, settings=Settings(severity={code: Severity.WARNING}))
     assert {each.severity for each in changed if each.code.startswith(code)} == {Severity.WARNING}
+
+
+def test_a_text_is_checked_as_a_file_is(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "linkwright.toml").write_text('ignore = ["URDF110"]\n')
+    assert [finding.code for finding in check('<sdf version="1.6"><world name="w"/><world name="w"/></sdf>')]
+    robot = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:wheel/></robot>'
+    (finding,) = check(robot)
+    assert (finding.code, str(finding.span)) == ("XAC401", "<robot_description>:1:61")
+    assert not check('<robot name="r"><link name="a"/><link name="a"/></robot>')

@@ -13,13 +13,12 @@ from linkwright.cli.numbers import positive_int, unsigned_int
 from linkwright.diagnostics import counted, display_path, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.process.interruption import INTERRUPTED
-from linkwright.process.processors import usable_processors
+from linkwright.vision.datasets.options import FORMATS
 
 if TYPE_CHECKING:
     from linkwright.vision.datasets.making import Studio
 
 _SMALLEST, _LARGEST = 32, 4096
-_FORMATS = ("coco", "yolo")
 _KEPT = ("lights", "colours", "lens")
 
 
@@ -40,7 +39,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--size", metavar="WIDTHxHEIGHT", type=_size, default=(640, 480), help="the size of images (default: 640x480)"
     )
     parser.add_argument(
-        "--format", metavar="FORMATS", type=_formats, default=_FORMATS, help="coco, yolo or both (default: coco,yolo)"
+        "--format", metavar="FORMATS", type=_formats, default=FORMATS, help="coco, yolo or both (default: coco,yolo)"
     )
     parser.add_argument(
         "--image-format", choices=("jpg", "png"), default="jpg", help="the file format of images (default: %(default)s)"
@@ -115,7 +114,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Make the dataset, and return the exit status; 130 if it was interrupted."""
     from linkwright.vision.datasets.dataset import make_dataset
-    from linkwright.vision.datasets.making import Source
     from linkwright.vision.datasets.options import Options
     from linkwright.vision.datasets.statistics import as_table
 
@@ -133,15 +131,17 @@ def run(arguments: argparse.Namespace) -> int:
         least_visible=arguments.min_visible,
         form=arguments.image_format,
     )
-    source = Source(tuple(arguments.worlds), tuple(arguments.add), arguments.classes, options)
     path = Path(arguments.output)
     progress = _Progress(arguments.images)
     made = make_dataset(
-        source,
+        arguments.worlds,
         path,
         arguments.images,
+        models=arguments.add,
+        classes=arguments.classes,
+        options=options,
         formats=arguments.format,
-        workers=arguments.workers or usable_processors(),
+        workers=arguments.workers,
         force=arguments.force,
         append=arguments.append,
         progress=progress.update,
@@ -205,7 +205,7 @@ def _size(text: str) -> tuple[int, int]:
 
 
 def _formats(text: str) -> tuple[str, ...]:
-    return _some_of(text, _FORMATS)
+    return _some_of(text, FORMATS)
 
 
 def _kept(text: str) -> tuple[str, ...]:

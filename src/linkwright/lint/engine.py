@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 
@@ -9,6 +10,7 @@ from linkwright.descriptions import Description, Packages, examine_world, is_wor
 from linkwright.descriptions import examine as examine_description
 from linkwright.descriptions.service import TRUE_OF_PARTS
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, phrase
+from linkwright.diagnostics.diagnostic import TEXT_NAME, is_text
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.finding import Finding
 from linkwright.lint.missing_files import judged_files
@@ -19,6 +21,7 @@ from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
 from linkwright.lint.suppression import Suppressions
 from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST
@@ -32,6 +35,7 @@ if TYPE_CHECKING:
 
 _PREFIX_MISSING, _NO_LINKS = "LW720", "URDF106"
 _NO_PACKAGE, _NO_PACKAGE_OF_MESHES = "PKG101", "LW423"
+_SDF_TEXT = lazy_pattern(r"(?:\s|<\?.*?\?>|<!--.*?-->)*<sdf\b", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,26 +58,26 @@ class Checked:
 
 
 def check(
-    path: str | Path,
+    path_or_text: str | Path,
     *,
     arguments: Mapping[str, str] | None = None,
     packages: Packages = None,
     settings: Settings | None = None,
 ) -> list[Diagnostic]:
-    """Return all findings about a URDF, xacro or SDF file, in the order of the text.
+    """Return all findings about a URDF, xacro or SDF file or text, in the order of the text.
 
     Args:
-        path: the file.
+        path_or_text: the file, or a text, which is recognized by its ``<``.
         arguments: values for the file's ``<xacro:arg>``.
         packages: where packages are: package name -> share folder, or a finder.
         settings: which rules run; by default those of the ``linkwright.toml`` or ``pyproject.toml`` found upwards from
-            the file.
+            the file, or from the current folder for a text.
     """
-    return list(examine(path, arguments=arguments, packages=packages, settings=settings).diagnostics)
+    return list(examine(path_or_text, arguments=arguments, packages=packages, settings=settings).diagnostics)
 
 
 def examine(
-    path: str | Path,
+    path_or_text: str | Path,
     *,
     arguments: Mapping[str, str] | None = None,
     packages: Packages = None,
@@ -83,10 +87,10 @@ def examine(
     xacro: bool | None = None,
     contexts: Contexts | None = None,
 ) -> Checked:
-    """Check a URDF, xacro or SDF file; arguments as for `check`.
+    """Check a URDF, xacro or SDF file or text; arguments as for `check`.
 
     Args:
-        path: the file.
+        path_or_text: see `check`.
         arguments: see `check`.
         packages: see `check`.
         settings: see `check`.
@@ -95,7 +99,8 @@ def examine(
         xacro: whether to expand a robot; None to decide by the file.
         contexts: data that checks share at one moment.
     """
-    path = Path(path)
+    text = str(path_or_text) if is_text(path_or_text) else None
+    path = Path(path_or_text) if text is None else Path(TEXT_NAME)
     trouble: tuple[Diagnostic, ...] = ()
     if settings is None:
         from linkwright.lint.configuration import settings_for
@@ -103,7 +108,9 @@ def examine(
         settings, trouble = settings_for(path)
     trouble = (*unusable_rules(), *trouble)
     finder = _finder(path, packages)
-    if is_world(str(path)):
+    if text is not None:
+        overlay = Overlay({path: text})
+    if is_world(str(path)) or (text is not None and _SDF_TEXT.match(text)):
         return _examine_world(path, arguments, finder, settings, trouble, overlay)
     try:
         description = examine_description(

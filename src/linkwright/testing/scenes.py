@@ -25,7 +25,7 @@ class _CacheEntry(NamedTuple):
 _cache: dict[tuple[object, ...], _CacheEntry] = {}
 
 
-def read_world(name: str) -> LoadedWorld:
+def read_world(name: str | Path) -> LoadedWorld:
     """Return a world by its file or name, with its includes, as `load_world` reads it.
 
     Raises:
@@ -33,7 +33,7 @@ def read_world(name: str) -> LoadedWorld:
     """
 
     def read() -> tuple[LoadedWorld, tuple[Path, ...]]:
-        loaded = load_world(name)
+        loaded = load_world(str(name))
         return loaded, loaded.files
 
     world: LoadedWorld = _read_once(("world", str(Path.cwd()), name), read)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from linkwright.descriptions import DescriptionLibrary, examine
+from linkwright.descriptions import DescriptionLibrary, Packages, examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.diagnostics.diagnostic import is_text
 from linkwright.packages import PackageFinder
@@ -51,6 +51,7 @@ def show(
     robot: str | Path | Robot,
     *,
     arguments: Mapping[str, str] | None = None,
+    packages: Packages = None,
     height: int = 480,
 ) -> RobotCell:
     """Show a robot in a cell of a notebook, as the value of its last line.
@@ -58,7 +59,8 @@ def show(
     Args:
         robot: a path to a URDF or xacro file, a text, or a `Robot` that was loaded.
         arguments: values for the file's ``<xacro:arg>``.
-        height: of the cell, in pixels.
+        packages: where packages are: package name -> share folder, or a finder.
+        height: the height of the cell, in pixels.
 
     Raises:
         LinkwrightError: the description cannot be read or expanded, or has no robot.
@@ -66,7 +68,7 @@ def show(
     library = DescriptionLibrary()
     source = save(robot) if isinstance(robot, Robot) else robot
     folders = [Path.cwd()] if is_text(source) else [Path(source).absolute().parent, Path.cwd()]
-    finder = PackageFinder(start=folders)
+    finder = packages if isinstance(packages, PackageFinder) else PackageFinder(start=folders, extra=packages)
     description = examine(source, arguments=arguments, packages=finder)
     shown = description.robot
     if shown is None or not shown.root:

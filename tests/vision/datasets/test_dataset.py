@@ -30,8 +30,14 @@ def source(tmp_path):
 
 
 def make(source, path, images, **options):
-    words = {"formats": ("coco", "yolo"), "workers": 1, **options}
-    return make_dataset(source, path, images, **words)
+    given = {"options": source.options, "models": source.added, "classes": source.classes, "workers": 1, **options}
+    return make_dataset(source.worlds, path, images, **given)
+
+
+def test_a_world_and_a_folder_are_enough(tmp_path):
+    made = make_dataset(yard(tmp_path), str(tmp_path / "made"), 2)
+    assert (made.added, made.folder.count) == (2, 2)
+    assert {"annotations", "labels"} <= {path.name for path in (tmp_path / "made").iterdir()}
 
 
 def files(folder: Path) -> dict[str, bytes]:

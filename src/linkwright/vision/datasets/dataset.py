@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -11,9 +11,11 @@ from typing import Any
 
 from linkwright._version import __version__
 from linkwright.files.whole_files import write_whole_file
+from linkwright.process.processors import usable_processors
 from linkwright.vision.datasets.contact_sheet import MOST, contact_sheet
 from linkwright.vision.datasets.folder import SHEET, DatasetFolder, cannot_write
 from linkwright.vision.datasets.making import CHAPTER, LabelledImage, Source, Studio
+from linkwright.vision.datasets.options import FORMATS, Options
 from linkwright.vision.datasets.workers import make_in_processes
 
 
@@ -33,25 +35,31 @@ class DatasetResult:
 
 
 def make_dataset(
-    source: Source,
-    path: Path,
-    images: int,
+    worlds: str | Path | Sequence[str | Path],
+    path: str | Path,
+    images: int = 1000,
     *,
-    formats: tuple[str, ...],
-    workers: int,
+    models: Sequence[str | Path] = (),
+    classes: str | Path | None = None,
+    options: Options | None = None,
+    formats: Sequence[str] = FORMATS,
+    workers: int | None = None,
     force: bool = False,
     append: bool = False,
     progress: Callable[[int], object] = lambda _: None,
     begin: Callable[[Studio], object] = lambda _: None,
 ) -> DatasetResult:
-    """Make a dataset.
+    """Make a dataset of labelled images.
 
     Args:
-        source: the worlds and options.
+        worlds: the world, or the worlds, by file or name.
         path: the folder of the dataset.
         images: the number of images to make.
-        formats: ``coco``, ``yolo``.
-        workers: the number of processes.
+        models: the files of robots or models to add to each world.
+        classes: the YAML file of classes; None for a class for each model.
+        options: the options of making images, such as their size and the random seed; None for the defaults.
+        formats: the formats of the labels, ``coco`` and ``yolo``.
+        workers: the number of processes; None for one on each usable processor.
         force: remove the dataset that is in the folder.
         append: add to the dataset that is in the folder.
         progress: called with the number of finished images.
@@ -60,10 +68,14 @@ def make_dataset(
     Raises:
         LinkwrightError: VISION201 to VISION208, or an error in a world. The dataset written so far is complete.
     """
-    options = source.options
+    path = Path(path)
+    options = options or Options()
+    names = (worlds,) if isinstance(worlds, (str, Path)) else worlds
+    source = Source(tuple(map(str, names)), tuple(map(str, models)), str(classes) if classes else None, options)
+    workers = workers or usable_processors()
     with closing(Studio(source)) as studio:
         begin(studio)
-        folder = DatasetFolder(path, studio.classes, (options.width, options.height), formats, options.form)
+        folder = DatasetFolder(path, studio.classes, (options.width, options.height), tuple(formats), options.form)
         folder.open(force=force, append=append)
         card = _card(source, studio)
         numbers = range(folder.first, folder.first + images)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 SPLITS = ("train", "val", "test")
+FORMATS = ("coco", "yolo")
+"""The formats in which labels are written."""
 
 
 @dataclass(frozen=True, slots=True)
