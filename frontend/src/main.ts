@@ -6,7 +6,7 @@ import "./styles/controls.css";
 import "./styles/scene.css";
 import "./styles/panels.css";
 import "./styles/shell.css";
-import "./styles/pictures.css";
+import "./styles/images.css";
 import "./styles/description.css";
 import "./styles/monitor.css";
 import "./styles/plots.css";

@@ -6,7 +6,7 @@ import type { PanelId } from "../src/panels/panel";
 import type { Configuration, PageMessage, PanelName, ServerMessage } from "../src/protocol";
 import { Signal } from "../src/signal";
 
-/** A dock without a picture: what the browser keeps is a list of panels for each file. */
+/** A dock without a scene: the browser stores a list of panels for each file. */
 class BareDock implements Arrangement {
   readonly changed = new Signal();
   readonly kept = new Map<string, readonly PanelId[]>();

@@ -5,7 +5,7 @@ import { MaterialPool, type Look } from "../src/scene/materials";
 
 const LOOK: Look = { color: [1, 1, 1], alpha: 1, map: null, vertexColors: false, doubleSided: true };
 
-test("it is put into the shader where three.js has the tone of pictures", () => {
+test("it is put into the shader where three.js has its tone mapping", () => {
   const material = filmic(new MeshLambertMaterial());
   const shader = { ...ShaderLib.lambert };
   material.onBeforeCompile(shader as never, null as never);

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { legibleView } from "../src/widgets/legible-view";
 
-describe("a picture that opens", () => {
+describe("the first view", () => {
   it("is shown whole and in the middle where its texts can be read", () => {
     expect(legibleView([400, 100], [832, 332], 12, [0, 0])).toEqual({ x: 216, y: 116, scale: 1 });
     expect(legibleView([880, 100], [832, 332], 11, [0, 0])).toEqual({ x: 16, y: (332 - 100 * (800 / 880)) / 2, scale: 800 / 880 });

@@ -22,7 +22,7 @@ describe("what is dropped", () => {
   });
 
   it("is none without files with messages", () => {
-    expect(recordingAmong("pictures", named("a.png", "mcap")).files).toEqual([]);
+    expect(recordingAmong("images", named("a.png", "mcap")).files).toEqual([]);
     expect(recordingAmong("drive", named("metadata.yaml")).files).toEqual([]);
     expect(recordingAmong("robot.urdf", named("robot.urdf")).files).toEqual([]);
   });

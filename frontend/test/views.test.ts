@@ -199,7 +199,7 @@ describe("another class of view", () => {
     expect(ORBIT.mimic(look("FPS", values))).toMatchObject({ Distance: 5, "Focal Point/X": 8, "Focal Point/Z": 4 });
   });
 
-  it("XYOrbit keeps the picture where the camera sees the ground", () => {
+  it("XYOrbit keeps the view where the camera sees the ground", () => {
     const values: ViewValues = { Yaw: 0.3, Pitch: 0.7, "Position/X": 3, "Position/Y": 1, "Position/Z": 4 };
     const fly = FLY.camera(values);
     const mimicked = GROUND.mimic(look("FPS", values));

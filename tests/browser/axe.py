@@ -1,6 +1,6 @@
 """What axe-core finds in a page: the rules of WCAG 2.1, levels A and AA, that a program can judge.
 
-axe-core leaves a contrast undecided where a picture is behind the text. So that every one is judged, the scene is one
+axe-core leaves a contrast undecided where an image is behind the text. So that each is judged, the scene is one
 colour meanwhile, the one that is worst for what lies over it; the arrows of choices, and what ``::before`` and
 ``::after`` draw, marks and lines beside texts, are left out; and what is undecided even so, such as texts in boxes of
 drawings, is computed here. The letters of the axes belong to the scene: nobody is told of them (``aria-hidden``), and

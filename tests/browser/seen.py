@@ -1,4 +1,4 @@
-"""What the pages of a failed test showed: a picture of each, its text, and what it says of itself."""
+"""What the pages of a failed test showed: a screenshot of each, its text and its state."""
 
 from __future__ import annotations
 

@@ -101,7 +101,7 @@ def test_a_sweep_moves_joints_until_it_is_stopped(page):
 
 
 def test_a_link_that_is_dragged_moves_its_joint(page):
-    # Seen along the joints' axis, from the right: x to the right of the picture, z up.
+    # Seen along the joints' axis, from the right: x to the right of the image, z up.
     page.keyboard.press("z")  # about the root
     for name, value in (("Yaw", "-1.5707963"), ("Pitch", "0"), ("Distance", "2")):
         row = page.locator(".row").filter(has=page.get_by_text(name, exact=True))

@@ -1,4 +1,4 @@
-"""Meshes of a robot that moves, on a page that is slow: fewer triangles, and no other picture."""
+"""Meshes of a robot that moves, on a page that is slow: fewer triangles, and the same image."""
 
 from __future__ import annotations
 

@@ -200,7 +200,7 @@ def test_an_image_has_a_panel_of_its_own(live, open_page):
     assert drawn(page)["corner"] == [255, 0, 0, 255]
 
     def looks() -> tuple[bool, list[Color]]:
-        box = page.locator(".picture-panel canvas").bounding_box()
+        box = page.locator(".image-panel canvas").bounding_box()
         places = [(0.4, box["height"] / 2), (0.6, box["height"] / 2), (0.5, 1.0)]
         colors = colors_at(page, *((box["x"] + share * box["width"], box["y"] + down) for share, down in places))
         return box["height"] > box["width"] / 2, colors
@@ -210,13 +210,13 @@ def test_an_image_has_a_panel_of_its_own(live, open_page):
 
     page.locator(".panel-tab", has_text="Image").locator(".tab-close").click()
     until(page, "lw.displays[0].enabled === false")
-    page.locator(".picture-panel").wait_for(state="detached")
+    page.locator(".image-panel").wait_for(state="detached")
     wait_until(lambda: not viewer.viewer.displays[0].enabled)  # the page knows first
     viewer.run(lambda: viewer.viewer.manager.tree.check(viewer.viewer.displays[0], True))
-    page.locator(".picture-panel").wait_for()
+    page.locator(".image-panel").wait_for()
     page.reload()
-    page.locator(".picture-panel").wait_for()
-    assert page.locator(".picture-panel").count() == 1
+    page.locator(".image-panel").wait_for()
+    assert page.locator(".image-panel").count() == 1
 
 
 def layers(page: Any) -> list[str]:
@@ -245,7 +245,7 @@ def test_an_image_is_composed_without_painting_the_page_around_it(live, open_pag
 def test_a_compressed_image_is_read_by_the_browser(live, open_page):
     viewer = live(config(entry("Image", Topic={"Value": "/image/compressed"})))
     page = open_page(viewer, wait=False)
-    # A picture of one blue pixel.
+    # An image of one blue pixel.
     data = page.evaluate(
         "async () => { const c = new OffscreenCanvas(1, 1); const g = c.getContext('2d'); g.fillStyle = '#0000ff';"
         " g.fillRect(0, 0, 1, 1); const b = await c.convertToBlob({ type: 'image/png' });"

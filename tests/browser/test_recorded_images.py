@@ -66,7 +66,7 @@ def place(page: Page, selector: str) -> dict[str, float]:
 
 def boxes(page: Page) -> list[dict[str, float]]:
     """The pictures that are seen."""
-    found = (each.bounding_box() for each in page.locator(".picture-panel").all())
+    found = (each.bounding_box() for each in page.locator(".image-panel").all())
     return [dict(box) for box in found if box is not None]
 
 
@@ -78,7 +78,7 @@ def switch(page: Page, name: str) -> None:
 @pytest.mark.parametrize("size", [(1280, 800), (800, 600)])
 def test_where_there_are_only_images_they_have_the_place_of_the_scene(shown, size):
     page = shown(*size, scans=False)
-    becomes(lambda: place(page, ".picture-panel")["width"] >= size[0] / 2 and page.locator(".canvas-box").count(), 0)
+    becomes(lambda: place(page, ".image-panel")["width"] >= size[0] / 2 and page.locator(".canvas-box").count(), 0)
     page.locator(".dv-tab", has_text="3D View").dispatch_event("pointerdown")
     page.locator(".canvas-box").wait_for()
     page.locator(".dv-tab", has_text="raw").dispatch_event("pointerdown")
@@ -91,7 +91,7 @@ def test_where_there_are_only_images_they_have_the_place_of_the_scene(shown, siz
 def test_in_a_small_window_the_image_stands_beside_the_scene(shown):
     page = shown(800, 600, scans=True)
     becomes(lambda: place(page, ".canvas-box")["width"] > 400, True)
-    scene, panel = place(page, ".canvas-box"), place(page, ".picture-panel")
+    scene, panel = place(page, ".canvas-box"), place(page, ".image-panel")
     assert scene["x"] + scene["width"] <= panel["x"]
     assert panel["width"] > 300
     assert panel["height"] > 200
@@ -101,5 +101,5 @@ def test_in_a_small_window_the_image_stands_beside_the_scene(shown):
 def test_in_place_of_an_image_stands_why_there_is_none(shown):
     page = shown(1280, 800, scans=False)
     switch(page, "cut/compressed")
-    notice = page.locator(".picture-notice", has_text="The image cannot be read")
+    notice = page.locator(".image-notice", has_text="The image cannot be read")
     notice.get_by_text("The image's file is truncated").wait_for()

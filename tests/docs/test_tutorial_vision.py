@@ -52,7 +52,7 @@ def test_the_program_of_the_page_drives_to_something_red(tmp_path: Path):
         names["FollowColour"]()
         test.advance(20.0)
         assert test.distance() < 1.2
-        assert abs(test.commands.last.angular.z) < 0.2, "it is in the middle of the picture"
+        assert abs(test.commands.last.angular.z) < 0.2, "it is in the middle of the image"
 
 
 @pytest.mark.slow

@@ -129,7 +129,7 @@ def unpack(frame: bytes) -> Transforms:
 
 @dataclass
 class Client:
-    """A page without a picture: keeps what it is told."""
+    """A page without a scene, which stores the messages that it receives."""
 
     socket: aiohttp.ClientWebSocketResponse
     messages: list[dict | Transforms | bytes] = field(default_factory=list)

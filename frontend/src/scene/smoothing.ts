@@ -3,9 +3,9 @@ import { SCREEN_VERTEX, ScreenQuad } from "./objects/screen-quad";
 
 const SAMPLES = 4;
 const FRAGMENT = /* glsl */ `
-  uniform sampler2D picture;
+  uniform sampler2D source;
   varying vec2 vUv;
-  void main() { gl_FragColor = vec4(texture2D(picture, vUv).rgb, 1.0); }
+  void main() { gl_FragColor = vec4(texture2D(source, vUv).rgb, 1.0); }
 `;
 
 /** Antialiasing that can be left out frame by frame, which the browser's own cannot. */
@@ -15,7 +15,7 @@ export class Smoothing {
     new ShaderMaterial({
       vertexShader: SCREEN_VERTEX,
       fragmentShader: FRAGMENT,
-      uniforms: { picture: { value: this.target.texture } },
+      uniforms: { source: { value: this.target.texture } },
       depthTest: false,
       depthWrite: false,
     }),

@@ -119,12 +119,12 @@ export class Stage {
   }
 
   /** The scene as PNG, without what is selected or shown while the camera moves. */
-  async picture(scale: number): Promise<Blob | null> {
+  async screenshot(scale: number): Promise<Blob | null> {
     this.aids.visible = false;
-    const picture = this.viewport.picture(scale);
+    const screenshot = this.viewport.screenshot(scale);
     this.aids.visible = true;
     this.draw(FINEST);
-    return picture;
+    return screenshot;
   }
 
   /** Whether some display has things that the Interact tool moves. */

@@ -48,7 +48,7 @@ export class SkyAndFog {
     const wanted = daylight ?? backdrop;
     if (wanted !== this.made) {
       this.sky?.dispose();
-      this.sky = wanted === null ? null : pictureOf(typeof wanted === "number" ? skyAt(wanted) : skyOf(wanted));
+      this.sky = wanted === null ? null : skyTexture(typeof wanted === "number" ? skyAt(wanted) : skyOf(wanted));
       this.made = wanted;
     }
     if (!flat) this.scene.background = this.sky;
@@ -86,7 +86,7 @@ function mix(a: Rgb, b: Rgb, share: number): Rgb {
   return [at(0), at(1), at(2)];
 }
 
-function pictureOf(sky: Sky): DataTexture {
+function skyTexture(sky: Sky): DataTexture {
   const pixels = new Uint8Array(4 * HEIGHT);
   for (let row = 0; row < HEIGHT; row++) {
     const rgb = colorAt(Math.sin(((row + 0.5) / HEIGHT - 0.5) * Math.PI), sky);

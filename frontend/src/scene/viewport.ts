@@ -29,7 +29,7 @@ const NOTHING = { background: null, daylight: null, fog: null };
 /** What programs call themselves that draw on the processor. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 /** Longest side of an image, pixels. */
-const LARGEST_PICTURE = 8192;
+const LARGEST_SCREENSHOT = 8192;
 
 // RViz writes colours to the screen as they are in the URDF; a surface facing the camera shows exactly its colour.
 ColorManagement.enabled = false;
@@ -148,17 +148,17 @@ export class Viewport {
   }
 
   /** The scene as PNG, so many times as large as the canvas, or as large as the graphics can. */
-  picture(scale: number): Promise<Blob | null> {
+  screenshot(scale: number): Promise<Blob | null> {
     const { renderer, canvas } = this;
     const { width, height } = this.size;
-    const largest = Math.min(renderer.capabilities.maxTextureSize, LARGEST_PICTURE) / Math.max(width, height);
+    const largest = Math.min(renderer.capabilities.maxTextureSize, LARGEST_SCREENSHOT) / Math.max(width, height);
     renderer.setPixelRatio(Math.min(scale, largest));
     renderer.setSize(width, height, false);
     this.render(true);
     // The drawn frame exists until the browser continues.
-    const picture = new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
+    const screenshot = new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
     this.fit();
-    return picture;
+    return screenshot;
   }
 
   private project(seen: Camera, near: number): void {

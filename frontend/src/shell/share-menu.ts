@@ -64,7 +64,7 @@ export class ShareMenu {
   }
 
   private async saveImage(scale: number): Promise<void> {
-    const image = await this.stage?.picture(scale);
+    const image = await this.stage?.screenshot(scale);
     if (image) saveBlob(this.fileName("png"), image);
   }
 

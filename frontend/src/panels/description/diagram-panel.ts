@@ -24,7 +24,7 @@ export class DiagramPanel implements Panel {
   readonly element: HTMLElement;
   private readonly canvas = h("div", { class: "diagram", tabIndex: 0, role: "group", aria: { label: strings.description.diagram.label } });
   private readonly svg = svg("svg", {});
-  private readonly picture = svg("g", {});
+  private readonly drawing = svg("g", {});
   private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
   private readonly panZoom: PanZoom;
   private readonly nodes = new Map<string, SVGGElement>();
@@ -36,11 +36,11 @@ export class DiagramPanel implements Panel {
 
   constructor(private readonly session: Session) {
     const words = strings.description.diagram;
-    this.svg.append(this.picture);
+    this.svg.append(this.drawing);
     this.canvas.append(this.svg);
     this.panZoom = new PanZoom(
       this.canvas,
-      (x, y, scale) => this.picture.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`),
+      (x, y, scale) => this.drawing.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`),
       () => this.fit(),
     );
     const origins = button(words.originsHint, () => this.toggleOrigins(origins), "tool on", words.origins);
@@ -107,7 +107,7 @@ export class DiagramPanel implements Panel {
       this.nodes.set(key(node.element), shape);
       shapes.append(shape);
     }
-    this.picture.replaceChildren(edges, shapes);
+    this.drawing.replaceChildren(edges, shapes);
   }
 
   private node(node: DiagramNode, model: DescriptionModel): SVGGElement {
@@ -134,7 +134,7 @@ export class DiagramPanel implements Panel {
 
   private focused(): void {
     const { current } = this.session.focus;
-    for (const old of this.picture.querySelectorAll(".node.selected")) old.classList.remove("selected");
+    for (const old of this.drawing.querySelectorAll(".node.selected")) old.classList.remove("selected");
     if (!current) return;
     this.nodes.get(key(current))?.classList.add("selected");
     const node = this.diagram?.nodes.find(({ element }) => same(element, current));

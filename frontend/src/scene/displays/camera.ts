@@ -2,19 +2,19 @@ import { Camera, Group, Matrix4 } from "three";
 import type { DisplayData } from "../../connection/data";
 import type { CameraModel } from "../../protocol";
 import { strings } from "../../strings";
-import { cameraInImageFrame, imageZoom, projection } from "../pictures/camera-projection";
-import { OwnPanel } from "../pictures/own-panel";
-import { PictureCanvas } from "../pictures/picture-canvas";
-import { ScenePicture } from "../pictures/scene-picture";
-import { seenThrough } from "../pictures/seen-through";
+import { cameraInImageFrame, imageZoom, projection } from "../images/camera-projection";
+import { OwnPanel } from "../images/own-panel";
+import { ImageCanvas } from "../images/image-canvas";
+import { SceneImage } from "../images/scene-image";
+import { seenThrough } from "../images/seen-through";
 import { dataPose } from "../pose";
 import type { Drawing, DrawingContext, DrawnScene } from "./drawing";
 
 /** rviz_default_plugins/Camera: the scene as a camera sees it and the camera's image, in a panel of its own. */
 export class CameraDrawing implements Drawing {
   readonly root = new Group();
-  private readonly picture = new PictureCanvas();
-  private readonly scene = new ScenePicture();
+  private readonly image = new ImageCanvas();
+  private readonly scene = new SceneImage();
   private readonly canvas = document.createElement("canvas");
   private readonly panel: OwnPanel;
   private readonly camera = new Camera();
@@ -27,7 +27,7 @@ export class CameraDrawing implements Drawing {
   constructor(private readonly context: DrawingContext) {
     this.camera.matrixAutoUpdate = false;
     this.panel = new OwnPanel(context, "camera", this.canvas);
-    this.panel.say(strings.pictures.none);
+    this.panel.say(strings.images.none);
     this.panel.match();
     this.resizing = new ResizeObserver(() => this.context.invalidate());
     this.resizing.observe(this.panel.element);
@@ -42,18 +42,18 @@ export class CameraDrawing implements Drawing {
     if (content.kind !== "image_frame") return;
     this.data = data;
     this.model = content.camera;
-    this.picture.take(content, (shown) => {
-      if (!shown) this.panel.say(strings.pictures.unreadable);
-      else this.panel.say(this.model ? "" : strings.pictures.noCameraInfo);
+    this.image.take(content, (shown) => {
+      if (!shown) this.panel.say(strings.images.unreadable);
+      else this.panel.say(this.model ? "" : strings.images.noCameraInfo);
       this.context.invalidate();
     });
   }
 
   dataForgotten(): void {
     this.data = this.model = null;
-    this.picture.clear();
+    this.image.clear();
     this.canvas.width = this.canvas.height = 0;
-    this.panel.say(strings.pictures.none);
+    this.panel.say(strings.images.none);
   }
 
   update(): void {
@@ -90,7 +90,7 @@ export class CameraDrawing implements Drawing {
     return {
       width,
       height,
-      image: [this.picture.canvas.width, this.picture.canvas.height],
+      image: [this.image.canvas.width, this.image.canvas.height],
       middle: at(0.5, 0.5),
       position: new Matrix4().copy(this.camera.matrix).elements.slice(12, 15),
     };
@@ -122,10 +122,10 @@ export class CameraDrawing implements Drawing {
     if (!context) return;
     const [w, h] = [width * zoom[0], height * zoom[1]];
     const image = (alpha: number): void => {
-      if (this.picture.isEmpty) return;
+      if (this.image.isEmpty) return;
       context.globalAlpha = alpha;
       context.imageSmoothingEnabled = false;
-      context.drawImage(this.picture.canvas, (width - w) / 2, (height - h) / 2, w, h);
+      context.drawImage(this.image.canvas, (width - w) / 2, (height - h) / 2, w, h);
       context.globalAlpha = 1;
     };
     context.fillStyle = scene.background;

@@ -19,7 +19,7 @@ export class DetectionImageDrawing extends ImageDrawing {
 
   constructor(context: DrawingContext) {
     super(context);
-    this.overlay.className = "picture-overlay";
+    this.overlay.className = "image-overlay";
     this.overlay.setAttribute("aria-hidden", "true");
     this.panel.element.append(this.overlay);
   }

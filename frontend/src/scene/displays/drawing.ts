@@ -3,7 +3,7 @@ import type { DisplayData } from "../../connection/data";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import type { MeshLibrary } from "../meshes/mesh-library";
-import type { MovingPicture } from "../robot/moving-meshes";
+import type { MovingView } from "../robot/moving-meshes";
 import type { PanelHost } from "./display-panel";
 import type { Described, Hit, Interaction, ScenePointer, SelectionBox } from "../picking";
 
@@ -44,7 +44,7 @@ export interface Drawing {
   /** Called before every frame drawn while the display is enabled: put everything where it is now. */
   update(): void;
   /** Called before a frame of a moving scene that is drawn coarsely: draw less where no user sees it; null after it: all again. */
-  move?(picture: MovingPicture | null): void;
+  move?(view: MovingView | null): void;
   /** New content; a drawing made later receives the earlier content, too. */
   dataChanged?(data: DisplayData): void;
   /** The content under a key, or all of it (null), is to be drawn no more. */

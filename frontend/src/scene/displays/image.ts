@@ -2,15 +2,15 @@ import { Group } from "three";
 import type { DisplayData } from "../../connection/data";
 import type { ImageFrame } from "../../protocol";
 import { strings } from "../../strings";
-import { OwnPanel } from "../pictures/own-panel";
-import { PictureCanvas } from "../pictures/picture-canvas";
+import { OwnPanel } from "../images/own-panel";
+import { ImageCanvas } from "../images/image-canvas";
 import type { Drawing, DrawingContext } from "./drawing";
 
 /** rviz_default_plugins/Image: nothing in the scene, a panel of its own with the image. */
 export class ImageDrawing implements Drawing {
   readonly root = new Group();
   readonly isElsewhere = true;
-  private readonly picture: PictureCanvas;
+  private readonly image: ImageCanvas;
   protected readonly panel: OwnPanel;
   /** When the image on the canvas was taken, s. */
   protected imageStamp = 0;
@@ -23,8 +23,8 @@ export class ImageDrawing implements Drawing {
   private state: "none" | "shown" | "unreadable" = "none";
 
   constructor(protected readonly context: DrawingContext) {
-    this.picture = new PictureCanvas(context.beside);
-    this.panel = new OwnPanel(context, "image", this.picture.canvas);
+    this.image = new ImageCanvas(context.beside);
+    this.panel = new OwnPanel(context, "image", this.image.canvas);
     this.explain();
     this.panel.match();
     this.resizing.observe(this.panel.element);
@@ -39,7 +39,7 @@ export class ImageDrawing implements Drawing {
   dataChanged({ content, stamp }: DisplayData): void {
     if (content.kind !== "image_frame") return;
     this.frame = content;
-    this.picture.take(content, (shown) => {
+    this.image.take(content, (shown) => {
       this.state = shown ? "shown" : "unreadable";
       this.explain();
       if (!shown) return;
@@ -51,7 +51,7 @@ export class ImageDrawing implements Drawing {
   dataForgotten(key: string | null): void {
     if (key) return; // the image has none
     this.frame = null;
-    this.picture.clear();
+    this.image.clear();
     this.state = "none";
     this.explain();
   }
@@ -61,13 +61,13 @@ export class ImageDrawing implements Drawing {
   }
 
   inspect(): object {
-    const { canvas } = this.picture;
+    const { canvas } = this.image;
     const [x, y] = [Math.floor(canvas.width / 2), Math.floor(canvas.height / 2)];
     return {
-      images: this.picture.count,
+      images: this.image.count,
       ...this.size,
-      middle: this.picture.colorAt(x, y),
-      corner: this.picture.colorAt(0, 0),
+      middle: this.image.colorAt(x, y),
+      corner: this.image.colorAt(0, 0),
     };
   }
 
@@ -78,7 +78,7 @@ export class ImageDrawing implements Drawing {
 
   /** Pixels of the message's image, 0 while there is none. */
   protected get size(): { width: number; height: number } {
-    const { canvas } = this.picture;
+    const { canvas } = this.image;
     return { width: this.frame?.width || canvas.width, height: this.frame?.height || canvas.height };
   }
 
@@ -90,7 +90,7 @@ export class ImageDrawing implements Drawing {
 
   /** Shows the reason why there is no image, as a rule from the display's status. */
   private explain(): void {
-    const { none, unreadable } = strings.pictures;
+    const { none, unreadable } = strings.images;
     const cause = this.context.display.troubles[0]?.text;
     if (this.state === "shown") this.panel.say("");
     else this.panel.say(this.state === "unreadable" ? unreadable : none, cause);

@@ -1,7 +1,7 @@
 import { Box3, Group, Matrix4, Vector3, type Mesh, type Object3D, type Raycaster } from "three";
 import type { LinkScene, RobotScene } from "../../protocol";
 import { framePose } from "../pose";
-import type { MovingPicture } from "../robot/moving-meshes";
+import type { MovingView } from "../robot/moving-meshes";
 import type { Displacement } from "../robot/link-drawing";
 import { RobotDrawing } from "../robot/robot-drawing";
 import type { Lighting } from "../light";
@@ -112,8 +112,8 @@ export class RobotModelDrawing implements Drawing {
     this.shown?.look(this.context.camera());
   }
 
-  move(picture: MovingPicture | null): void {
-    this.shown?.move(picture);
+  move(view: MovingView | null): void {
+    this.shown?.move(view);
   }
 
   settled(): boolean {

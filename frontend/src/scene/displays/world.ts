@@ -3,7 +3,7 @@ import type { DisplayData } from "../../connection/data";
 import type { WorldPoses, WorldScene } from "../../protocol";
 import type { Described, Hit, SelectionBox } from "../picking";
 import { dataPose, poseMatrix } from "../pose";
-import type { MovingPicture } from "../robot/moving-meshes";
+import type { MovingView } from "../robot/moving-meshes";
 import { RobotDrawing } from "../robot/robot-drawing";
 import type { OwnLight } from "../surroundings";
 import { WorldLights } from "../world-lights";
@@ -89,8 +89,8 @@ export class WorldDrawing implements Drawing {
     shown.look(context.camera());
   }
 
-  move(picture: MovingPicture | null): void {
-    this.shown?.move(picture);
+  move(view: MovingView | null): void {
+    this.shown?.move(view);
   }
 
   /** What lights it. */

@@ -19,7 +19,7 @@ import { litSlotMaterial, slotTexture, writeSlot } from "../objects/slot-materia
 const UNSEEN = 1;
 
 /** The moving image for which stand-ins are drawn. */
-export interface MovingPicture {
+export interface MovingView {
   readonly camera: Camera;
   /** Its own pixels, which may be larger than those of the screen. */
   readonly height: number;
@@ -60,11 +60,11 @@ export class MovingMeshes {
   }
 
   /** Draws pieces in place of meshes, until `end`. */
-  begin(pieces: readonly MovingPiece[], meshes: readonly Mesh[], picture: MovingPicture): void {
+  begin(pieces: readonly MovingPiece[], meshes: readonly Mesh[], view: MovingView): void {
     const mesh = this.hold(pieces);
     pieces.forEach(({ matrix, color }, slot) => writeSlot(this.texels, slot, matrix, color));
     this.slots.value.needsUpdate = true;
-    this.arrange(mesh.geometry, pieces, picture);
+    this.arrange(mesh.geometry, pieces, view);
     for (const each of meshes) {
       each.layers.disable(0);
       each.layers.enable(TOUCHED);
@@ -125,8 +125,8 @@ export class MovingMeshes {
   }
 
   /** Puts into the index what the camera sees, each piece as coarse as is not seen. */
-  private arrange(geometry: BufferGeometry, pieces: readonly MovingPiece[], picture: MovingPicture): void {
-    const levels = levelsFor(pieces, picture);
+  private arrange(geometry: BufferGeometry, pieces: readonly MovingPiece[], view: MovingView): void {
+    const levels = levelsFor(pieces, view);
     if (levels.length === this.levels.length && levels.every((level, i) => level === this.levels[i])) return;
     this.levels = levels;
     const { index } = geometry;
@@ -145,7 +145,7 @@ export class MovingMeshes {
 }
 
 /** The number of the coarsest level of each piece that looks as the finest does; null for what the camera does not see. */
-export function levelsFor(pieces: readonly MovingPiece[], { camera, height }: MovingPicture): (number | null)[] {
+export function levelsFor(pieces: readonly MovingPiece[], { camera, height }: MovingView): (number | null)[] {
   const { elements } = camera.projectionMatrix;
   const isPerspective = elements[11] !== 0;
   const frustum = new Frustum().setFromProjectionMatrix(camera.projectionMatrix);

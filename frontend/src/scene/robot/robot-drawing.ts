@@ -7,7 +7,7 @@ import { describedPose } from "../described-pose";
 import type { Lighting } from "../light";
 import { MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
-import { MovingMeshes, type MovingPicture, type MovingPiece } from "./moving-meshes";
+import { MovingMeshes, type MovingView, type MovingPiece } from "./moving-meshes";
 import { groundOf } from "./ground";
 import { LinkDrawing, type Displacement, type FindLink } from "./link-drawing";
 import { RobotExtras } from "./robot-extras";
@@ -150,13 +150,13 @@ export class RobotDrawing {
   }
 
   /** Draws meshes for an image of a moving robot by fewer triangles, as far as no user sees it; null: as they are. */
-  move(picture: MovingPicture | null): void {
+  move(view: MovingView | null): void {
     this.moving.end();
     const { standIns } = this.meshes;
-    if (!picture || !standIns || this.pool.isLit) return;
+    if (!view || !standIns || this.pool.isLit) return;
     const [pieces, meshes]: [MovingPiece[], Mesh[]] = [[], []];
     const found = [...this.links.values()].map((link) => link.addPieces(standIns, meshes, pieces));
-    if (pieces.length > 0 && found.every((complete) => complete)) this.moving.begin(pieces, meshes, picture);
+    if (pieces.length > 0 && found.every((complete) => complete)) this.moving.begin(pieces, meshes, view);
   }
 
   pick(ray: Raycaster): Hit | null {

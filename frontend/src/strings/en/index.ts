@@ -166,7 +166,7 @@ export const en = {
   close: "Close",
   closeTab: "Close (Delete)",
   suggestions: "Suggestions",
-  pictures: {
+  images: {
     none: "No image",
     unreadable: "The image cannot be read",
     noCameraInfo: "No CameraInfo",

@@ -154,7 +154,7 @@ export const zh: Strings = {
   close: "关闭",
   closeTab: "关闭（Delete）",
   suggestions: "建议",
-  pictures: {
+  images: {
     none: "没有图像",
     unreadable: "无法读取图像",
     noCameraInfo: "没有 CameraInfo",

@@ -2,7 +2,7 @@ import type { ImageFrame } from "../../protocol";
 
 /** An image that is to be painted. */
 interface Waiting {
-  picture: ImageFrame | ImageBitmap;
+  image: ImageFrame | ImageBitmap;
   done: (shown: boolean) => void;
 }
 
@@ -14,7 +14,7 @@ interface Packed {
 }
 
 /** The newest image of a display, on a canvas of its size. Of files that come faster than they are unpacked only the newest is. */
-export class PictureCanvas {
+export class ImageCanvas {
   readonly canvas = document.createElement("canvas");
   private readonly context: CanvasRenderingContext2D;
   private taken = 0;
@@ -45,7 +45,7 @@ export class PictureCanvas {
   take(frame: ImageFrame, done: (shown: boolean) => void): void {
     const turn = ++this.taken;
     if (frame.encoding !== "file") {
-      this.hold(turn, { picture: frame, done });
+      this.hold(turn, { image: frame, done });
       return;
     }
     this.packed = { turn, frame, done };
@@ -71,8 +71,8 @@ export class PictureCanvas {
       this.packed = null;
       const { turn, frame, done } = next;
       try {
-        const picture = await createImageBitmap(new Blob([frame.data as Uint8Array<ArrayBuffer>]));
-        this.hold(turn, { picture, done });
+        const image = await createImageBitmap(new Blob([frame.data as Uint8Array<ArrayBuffer>]));
+        this.hold(turn, { image, done });
       } catch {
         done(false);
       }
@@ -86,8 +86,8 @@ export class PictureCanvas {
       this.newest = turn;
       this.drop();
     }
-    if (isOld || waiting.picture.width === 0 || waiting.picture.height === 0) {
-      if (isBitmap(waiting.picture)) waiting.picture.close();
+    if (isOld || waiting.image.width === 0 || waiting.image.height === 0) {
+      if (isBitmap(waiting.image)) waiting.image.close();
       return;
     }
     this.waiting = waiting;
@@ -95,27 +95,27 @@ export class PictureCanvas {
   }
 
   private drop(): void {
-    if (this.waiting && isBitmap(this.waiting.picture)) this.waiting.picture.close();
+    if (this.waiting && isBitmap(this.waiting.image)) this.waiting.image.close();
     this.waiting = null;
   }
 
   private readonly paint = (): void => {
     const { waiting, canvas, context } = this;
     if (!waiting) return;
-    const { picture, done } = waiting;
-    const [width, height] = isBitmap(picture) ? [picture.width, picture.height] : [picture.columns, picture.rows];
+    const { image, done } = waiting;
+    const [width, height] = isBitmap(image) ? [image.width, image.height] : [image.columns, image.rows];
     if (canvas.width !== width) canvas.width = width;
     if (canvas.height !== height) canvas.height = height;
-    if (isBitmap(picture)) context.drawImage(picture, 0, 0);
-    else context.putImageData(new ImageData(pixels(picture), width, height), 0, 0);
+    if (isBitmap(image)) context.drawImage(image, 0, 0);
+    else context.putImageData(new ImageData(pixels(image), width, height), 0, 0);
     this.drop();
     this.painted += 1;
     done(true);
   };
 }
 
-function isBitmap(picture: ImageFrame | ImageBitmap): picture is ImageBitmap {
-  return "close" in picture;
+function isBitmap(image: ImageFrame | ImageBitmap): image is ImageBitmap {
+  return "close" in image;
 }
 
 /** Red, green, blue and alpha of each pixel. */

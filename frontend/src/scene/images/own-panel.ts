@@ -10,7 +10,7 @@ const NOTHING_TO_SEE = new Set(["rviz_default_plugins/Grid", "rviz_default_plugi
 /** The panel of an Image or Camera display: there as long as the display is enabled, as in RViz. */
 export class OwnPanel {
   readonly element: HTMLElement;
-  private readonly notice = h("p", { class: "picture-notice" });
+  private readonly notice = h("p", { class: "image-notice" });
   private readonly key: string;
   private title = "";
   private offered = false;
@@ -22,7 +22,7 @@ export class OwnPanel {
   ) {
     this.key = `display:${context.display.id}`;
     canvas.setAttribute("role", "img");
-    this.element = h("div", { class: "picture-panel" }, canvas, this.notice);
+    this.element = h("div", { class: "image-panel" }, canvas, this.notice);
   }
 
   /** Text over the image, or in its place, and what it comes from, where that is known; empty for none. */
@@ -46,7 +46,7 @@ export class OwnPanel {
       this.offered = true;
       this.title = display.name;
       const closed = (): void => session.setProperty(display.enabledId, false);
-      panels.offer({ key: this.key, title: this.title, icon: this.icon, element: this.element, instead: showsPicturesAlone(session), closed });
+      panels.offer({ key: this.key, title: this.title, icon: this.icon, element: this.element, instead: showsOnlyImages(session), closed });
     } else if (this.title !== display.name) {
       this.title = display.name;
       panels.retitle(this.key, this.title);
@@ -60,7 +60,7 @@ export class OwnPanel {
 }
 
 /** Whether the page shows a recording with only its images switched on. */
-function showsPicturesAlone({ timeline, displays }: Session): boolean {
+function showsOnlyImages({ timeline, displays }: Session): boolean {
   const nothing = (display: DisplayState): boolean => !display.enabled || display.isGroup || NOTHING_TO_SEE.has(display.drawing);
   return timeline.timeline?.live === false && displays.displays.every(nothing);
 }

@@ -1,7 +1,7 @@
 import { Color, LinearSRGBColorSpace, WebGLRenderTarget, type Camera, type Scene, type WebGLRenderer } from "three";
 
 /** The scene drawn to a canvas of its own, see-through where there is nothing; edges are not smoothed, to be quick. */
-export class ScenePicture {
+export class SceneImage {
   readonly canvas = document.createElement("canvas");
   private readonly target = new WebGLRenderTarget(1, 1, { colorSpace: LinearSRGBColorSpace });
   private bytes = new Uint8Array(0);

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import type { ImageFrame } from "../src/protocol";
-import { PictureCanvas } from "../src/scene/pictures/picture-canvas";
+import { ImageCanvas } from "../src/scene/images/image-canvas";
 
 /** Unpacking that goes on until the test ends it. */
 let unpacking: ((bitmap: ImageBitmap) => void)[] = [];
@@ -33,8 +33,8 @@ afterEach(() => vi.unstubAllGlobals());
 describe("files of images", () => {
   it("are unpacked one at a time, and of those that come meanwhile only the newest", async () => {
     const shown: number[] = [];
-    const picture = new PictureCanvas();
-    for (let i = 0; i < 30; i++) picture.take(file(), () => shown.push(i));
+    const image = new ImageCanvas();
+    for (let i = 0; i < 30; i++) image.take(file(), () => shown.push(i));
     expect(unpacking).toHaveLength(1);
     await unpacked();
     expect(unpacking).toHaveLength(1);
@@ -45,12 +45,12 @@ describe("files of images", () => {
   });
 
   it("are not shown after they were taken away", async () => {
-    const picture = new PictureCanvas();
-    picture.take(file(), () => undefined);
-    picture.take(file(), () => undefined);
-    picture.clear();
+    const image = new ImageCanvas();
+    image.take(file(), () => undefined);
+    image.take(file(), () => undefined);
+    image.clear();
     await unpacked();
     expect(unpacking).toHaveLength(0);
-    expect([picture.isEmpty, picture.count, open]).toEqual([true, 0, 0]);
+    expect([image.isEmpty, image.count, open]).toEqual([true, 0, 0]);
   });
 });
