@@ -78,6 +78,7 @@ def lab(tmp_path: Path):
 def test_a_cell_of_jupyterlab_shows_the_robot_and_its_slider_moves_it(browser, lab):
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.goto(lab)
+    page.get_by_text("(ipykernel) | Idle").wait_for()  # a cell that is run earlier is forgotten
     page.locator(".jp-Cell .cm-content").first.click()
     page.keyboard.press("Shift+Enter")
     frame = page.wait_for_selector("iframe[title=arm]").content_frame()
