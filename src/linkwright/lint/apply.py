@@ -74,15 +74,20 @@ def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = Tr
     return result
 
 
-def write_text(path: Path, text: str) -> None:
+def write_text(path: Path, text: str, encoding: str = "utf-8") -> None:
     """Write a file whole or not at all, with its permissions and its byte order mark; a link stays a link.
+
+    Args:
+        path: the file.
+        text: its new text, without a byte order mark.
+        encoding: the encoding that it has.
 
     Raises:
         LinkwrightError: LINT201, it cannot be written.
     """
     try:
         before = path.read_bytes()
-        write_whole_file(path, (_MARK if before.startswith(_MARK) else b"") + text.encode("utf-8"))
+        write_whole_file(path, (_MARK if before.startswith(_MARK) else b"") + text.encode(encoding))
     except OSError as error:
         message = phrase(
             "cannot write '{path}': {strerror}", path=display_path(path), strerror=foreign(error.strerror or error)
@@ -167,7 +172,10 @@ def _is_sound(file: str, text: str) -> bool:
 
 
 def _diff(file: str, text: str) -> str:
-    before = _text(file) or ""
-    name = display_path(file)
-    lines = unified_diff(before.splitlines(keepends=True), text.splitlines(keepends=True), name, name)
+    return unified(display_path(file), _text(file) or "", text)
+
+
+def unified(name: str, before: str, after: str) -> str:
+    """Return the changes of a file as a unified diff, as ``patch -p0`` takes it."""
+    lines = unified_diff(before.splitlines(keepends=True), after.splitlines(keepends=True), name, name)
     return "".join(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines)

@@ -34,11 +34,12 @@ from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.loading.lean_typing import Any
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
+from linkwright.xmltree.style import Style
 
 CONFIGURATION = "linkwright.toml"
 _PROJECT = "pyproject.toml"
 _PROJECT_TABLE = ("tool", "linkwright")
-KEYS = ("select", "extend-select", "ignore", "severity", "per-file-ignores", "options", "arguments")
+KEYS = ("select", "extend-select", "ignore", "severity", "per-file-ignores", "options", "arguments", "format")
 
 _HEADER = lazy_pattern(r"^[ \t]*\[(?!\[)([^\]\n]+)\]", re.MULTILINE)
 _PLACE = lazy_pattern(r"\(at line (\d+), column (\d+)\)")
@@ -147,6 +148,7 @@ class _Reader:
             dict(self._options(self._table("options", table))),
             folder,
             tuple(self._arguments(self._table("arguments", table))),
+            Style(**dict(self._style(self._table("format", table)))),
         )
 
     def _table(self, key: str, table: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -202,6 +204,17 @@ class _Reader:
                         'write {written} = [{{ prefix = "left_" }}, {{ prefix = "right_" }}]', written=f'"{pattern}"'
                     ),
                 )
+
+    def _style(self, table: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
+        for key, value in table.items():
+            path = ("format", key)
+            if key not in Style._fields:
+                hint = did_you_mean(key, Style._fields) or phrase("the settings are {keys}", keys=joined(Style._fields))
+                self._add("LINT102", phrase("there is no setting '{key}'", key=key), path, hint)
+            elif type(value) is not int or value < 1:
+                self._wrong(path, phrase("is not a positive integer"), phrase("write {key} = 2", key=key), shown=value)
+            else:
+                yield key, value
 
     def _options(self, table: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, OptionValue]]]:
         for key, value in table.items():

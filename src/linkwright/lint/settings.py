@@ -11,6 +11,7 @@ from linkwright.lint.option import OptionValue
 from linkwright.lint.selectors import specificity
 from linkwright.loading.lean_dataclasses import dataclass, field, replace
 from linkwright.loading.lean_typing import Protocol
+from linkwright.xmltree.style import Style
 
 
 class Switched(Protocol):
@@ -41,6 +42,7 @@ class Settings:
         per_file_ignores: pairs of a pattern of paths and the selectors not to report in files that match it.
         options: rule name -> option -> value.
         arguments: pairs of a pattern of paths and the sets of values that descriptions which match it are checked with.
+        style: the style in which `linkwright format` writes files.
         folder: what the patterns of paths are relative to; None where there is no configuration file.
     """
 
@@ -52,6 +54,7 @@ class Settings:
     options: Mapping[str, Mapping[str, OptionValue]] = field(default_factory=dict)
     folder: Path | None = None
     arguments: tuple[tuple[str, tuple[Mapping[str, str], ...]], ...] = ()
+    style: Style = Style()
 
     def runs(self, rule: Switched) -> bool:
         """Return whether a rule is to run at all."""

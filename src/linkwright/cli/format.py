@@ -1,0 +1,148 @@
+"""``linkwright format``: write XML files of robot packages in a uniform layout."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.cli.endings import FINE, print_message
+from linkwright.cli.numbers import positive_int
+from linkwright.diagnostics import Diagnostic, LinkwrightError, counted, display_path, joined, phrase, print_diagnostics
+from linkwright.diagnostics.translation import localized
+
+if TYPE_CHECKING:
+    from linkwright.xmltree.style import Style
+
+_STDIN = "-"
+_CHANGES = 1
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument(
+        "paths",
+        metavar="FILE|FOLDER",
+        nargs="*",
+        default=["."],
+        help="files to format, folders to search for descriptions, worlds, launch files and manifests in XML, or - for "
+        "standard input (default: the current folder)",
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="change nothing; exit with status 1 if a file would change"
+    )
+    parser.add_argument(
+        "--diff", action="store_true", help="change nothing; print the changes, and exit as --check does"
+    )
+    parser.add_argument("--indent", metavar="N", type=positive_int, help="the spaces for each level (default: 2)")
+    parser.add_argument(
+        "--width", metavar="N", type=positive_int, help="the longest line, in characters (default: 120)"
+    )
+    parser.add_argument(
+        "--range", metavar="FIRST-LAST", type=_lines, help="change only these lines, counted from 1, of a single file"
+    )
+    parser.add_argument(
+        "--stdin-filename", metavar="NAME", help="the file that standard input stands for, whose settings apply"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Format the files, and return the exit status."""
+    from linkwright.lint.targets import find_xml_files
+
+    if arguments.paths == [_STDIN]:
+        return _format_stdin(arguments)
+    files = find_xml_files(map(Path, arguments.paths))
+    if not files:
+        named = ", ".join(f"'{path}'" for path in arguments.paths)
+        raise LinkwrightError(Diagnostic("CLI305", phrase("there is no XML file to format in {named}", named=named)))
+    if arguments.range and len(files) > 1:
+        hint = phrase("name one file: linkwright format --range 10-20 robot.xacro")
+        raise LinkwrightError(Diagnostic("CLI306", phrase("--range needs a single file"), hint=hint))
+    reads_only = arguments.check or arguments.diff
+    changes = [_format_file(file, arguments, reads_only=reads_only) for file in files]
+    changed, failed = changes.count(True), None in changes
+    _summarise(changed, changes.count(False), reads_only=reads_only)
+    return _CHANGES if failed or (changed and reads_only) else FINE
+
+
+def _format_file(file: Path, arguments: argparse.Namespace, *, reads_only: bool) -> bool | None:
+    """Format a file, and return whether it changes; None if it is not XML, or cannot be read or written."""
+    try:
+        return _is_changed(file, arguments, reads_only=reads_only)
+    except LinkwrightError as error:
+        print_diagnostics(error.diagnostics, sys.stderr)
+        return None
+
+
+def _is_changed(file: Path, arguments: argparse.Namespace, *, reads_only: bool) -> bool:
+    from linkwright.lint.apply import unified, write_text
+    from linkwright.xmltree.decoding import decoded
+    from linkwright.xmltree.reader import read_bytes
+
+    before, encoding = decoded(read_bytes(file), str(file))
+    after = _formatted(before, file, arguments)
+    if after == before:
+        return False
+    if arguments.diff:
+        sys.stdout.write(unified(display_path(file), before, after))
+    elif arguments.check:
+        print(localized(phrase("would format {file}", file=display_path(file))))
+    if not reads_only:
+        write_text(file, after, encoding)
+    return True
+
+
+def _format_stdin(arguments: argparse.Namespace) -> int:
+    from linkwright.lint.apply import unified
+    from linkwright.xmltree.decoding import decoded
+
+    name = arguments.stdin_filename or "<stdin>"
+    before = decoded(sys.stdin.buffer.read(), name).text
+    after = _formatted(before, Path(arguments.stdin_filename or Path.cwd() / "stdin.xacro"), arguments, name)
+    if arguments.diff:
+        sys.stdout.write(unified(name, before, after))
+    elif not arguments.check:
+        sys.stdout.buffer.write(after.encode("utf-8"))
+    return _CHANGES if after != before and (arguments.check or arguments.diff) else FINE
+
+
+def _formatted(text: str, file: Path, arguments: argparse.Namespace, name: str | None = None) -> str:
+    from linkwright.xmltree.formatting import changes, format_text, with_changes
+
+    after = format_text(text, name or str(file), _style(file, arguments))
+    return with_changes(text, changes(text, after, arguments.range)) if arguments.range else after
+
+
+def _style(file: Path, arguments: argparse.Namespace) -> Style:
+    """Return the style of the settings for a file, with that of the command line."""
+    from linkwright.lint.configuration import settings_for
+
+    settings, trouble = settings_for(file)
+    print_diagnostics(trouble, sys.stderr)
+    style = settings.style
+    return style._replace(indent=arguments.indent or style.indent, width=arguments.width or style.width)
+
+
+def _summarise(changed: int, others: int, *, reads_only: bool) -> None:
+    parts = []
+    if changed and reads_only:
+        parts.append(counted("{count} file would be formatted", "{count} files would be formatted", changed))
+    elif changed:
+        parts.append(counted("{count} file formatted", "{count} files formatted", changed))
+    if others:
+        parts.append(counted("{count} file left unchanged", "{count} files left unchanged", others))
+    print_message(localized(joined(parts)))
+
+
+def _lines(text: str) -> tuple[int, int]:
+    """Parse a range of lines, and return the first one and the one behind the last, from 0.
+
+    Raises:
+        argparse.ArgumentTypeError: the text is not such a range.
+    """
+    first, dash, last = text.partition("-")
+    if not dash or not first.isdigit() or not last.isdigit() or not 0 < int(first) <= int(last):
+        raise argparse.ArgumentTypeError("value must be two line numbers such as 10-20")
+    return int(first) - 1, int(last)

@@ -1,0 +1,307 @@
+"""Formatting XML as people write it: indentation, spaces in tags, blank lines. Nothing that means anything changes.
+
+Kept as they are: the order of attributes, quotes, entities, comments, processing instructions, the line ends of the
+file, every text that is not only blanks with all that is beside it, and values that extend over lines. An element that
+is written on one line stays there if it fits, and attributes keep their lines. Comments stay beside what they are
+written beside. Runs of blank lines become one. So a robot expands to the same bytes before and after.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator, Sequence
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.loading.lean_dataclasses import NamedTuple, dataclass, field
+from linkwright.loading.lean_patterns import lazy_pattern
+from linkwright.xmltree.nodes import Document, Element, Node, Text
+from linkwright.xmltree.reader import parse
+from linkwright.xmltree.style import Style
+from linkwright.xmltree.tokens import Kind, Token, TokenAttribute, tokens
+
+_BOM = "\ufeff"
+_SPACED_END, _TIGHT_END = lazy_pattern(r"[^\S\n]/>"), lazy_pattern(r"\S/>")
+
+
+class TextEdit(NamedTuple):
+    """Lines `first` to `last` (exclusive, from 0) of a text become `lines`."""
+
+    first: int
+    last: int
+    lines: tuple[str, ...]
+
+
+@dataclass(slots=True)
+class _Node:
+    """A token with the content of its element.
+
+    Attributes:
+        token: the start tag of an element, or any other token.
+        children: the nodes of an element's content, texts among them.
+        closing: the end tag of an element; None for ``<a/>`` and other tokens.
+    """
+
+    token: Token
+    children: list[_Node] = field(default_factory=list)
+    closing: Token | None = None
+
+    @property
+    def end(self) -> int:
+        """The offset behind it."""
+        return self.token.end if self.closing is None else self.closing.end
+
+    @property
+    def is_blank(self) -> bool:
+        """Whether it is a text of blanks."""
+        return self.token.kind is Kind.TEXT and not self.token.text.strip()
+
+    @property
+    def is_verbatim(self) -> bool:
+        """Whether blanks in its content may matter: there is other text, or nothing else."""
+        kinds = (Kind.TEXT, Kind.CDATA)
+        return (
+            all(child.is_blank for child in self.children)
+            or any(child.token.kind in kinds and not child.is_blank for child in self.children)
+            or any(attribute.name == "xml:space" for attribute in self.token.attributes())
+        )
+
+
+def format_text(text: str, name: str, style: Style = Style()) -> str:  # noqa: B008 - a tuple of numbers
+    """Return a text of XML in a uniform format; the same text again for a formatted one.
+
+    Args:
+        text: the text, with the line ends and the byte order mark of its file.
+        name: the name of the text in messages.
+        style: the options.
+
+    Raises:
+        LinkwrightError: it is not XML; see `linkwright.xmltree.parse`.
+    """
+    before = parse(text, name)
+    mark = _BOM if text.startswith(_BOM) else ""
+    newline = "\r\n" if text.count("\r\n") * 2 > text.count("\n") else "\n"
+    body = text[len(mark) :]
+    layout = _Layout(body, style, newline)
+    formatted = mark + layout.document(_nodes(body))
+    if not _alike(_top(before), _top(parse(formatted, name))):
+        message = phrase("'{file}' cannot be formatted without changing its meaning", file=name)
+        raise LinkwrightError(Diagnostic("XML303", message, hint=phrase("please report this file as an error")))
+    return formatted
+
+
+def changes(before: str, after: str, lines: tuple[int, int] | None = None) -> list[TextEdit]:
+    """Return the changed lines between two texts.
+
+    Args:
+        before: the text.
+        after: the text it becomes.
+        lines: the first and the last (exclusive) line, from 0, that a change must touch; None for all changes.
+    """
+    old, new = before.splitlines(keepends=True), after.splitlines(keepends=True)
+    matcher = difflib.SequenceMatcher(None, old, new, autojunk=False)
+    return [
+        TextEdit(first, last, tuple(new[start:end]))
+        for kind, first, last, start, end in matcher.get_opcodes()
+        if kind != "equal" and (lines is None or (first < lines[1] and max(last, first + 1) > lines[0]))
+    ]
+
+
+def with_changes(before: str, edits: Sequence[TextEdit]) -> str:
+    """Return a text with some of its lines changed."""
+    lines = before.splitlines(keepends=True)
+    for edit in sorted(edits, reverse=True):
+        lines[edit.first : edit.last] = edit.lines
+    return "".join(lines)
+
+
+def _nodes(text: str) -> list[_Node]:
+    """Return the nodes of a well-formed text."""
+    top: list[_Node] = []
+    parents: list[_Node] = []
+    for token in tokens(text):
+        if token.kind is Kind.END:
+            parents.pop().closing = token
+            continue
+        node = _Node(token)
+        (parents[-1].children if parents else top).append(node)
+        if token.kind is Kind.START and not token.is_whole:
+            parents.append(node)
+    return top
+
+
+class _Layout:
+    """Writes nodes.
+
+    Args:
+        text: the text that they are from.
+        style: the options.
+        newline: the line end to write.
+    """
+
+    def __init__(self, text: str, style: Style, newline: str) -> None:
+        self._text = text
+        self._style = style
+        self._newline = newline
+        spaced, others = len(_SPACED_END.findall(text)), len(_TIGHT_END.findall(text))
+        self._whole = " />" if spaced > others else "/>"
+
+    def document(self, nodes: Sequence[_Node]) -> str:
+        """Return the text of a document."""
+        return self._lines(nodes, 0).strip("\r\n") + self._newline
+
+    def _lines(self, nodes: Sequence[_Node], depth: int) -> str:
+        """Return nodes on lines of their own, each line with its end, and comments beside what they are beside."""
+        parts: list[str] = []
+        before: _Node | None = None
+        blanks = ""
+        for node in nodes:
+            if node.is_blank:
+                blanks = node.token.text
+                continue
+            if before is not None and "\n" not in blanks and self._is_beside(before, node):
+                parts[-1:] = [" ", self._node(node, depth), self._newline]
+            else:
+                if blanks.count("\n") > 1:
+                    parts.append(self._newline)
+                parts += [self._margin(depth), self._node(node, depth), self._newline]
+            before, blanks = node, ""
+        if blanks.count("\n") > 1:
+            parts.append(self._newline)
+        return "".join(parts)
+
+    @staticmethod
+    def _is_beside(before: _Node, node: _Node) -> bool:
+        """Return whether two nodes on one line belong there: a comment, and what it is about."""
+        return Kind.COMMENT in (before.token.kind, node.token.kind) and Kind.INSTRUCTION not in (
+            before.token.kind,
+            node.token.kind,
+        )
+
+    def _node(self, node: _Node, depth: int) -> str:
+        if node.token.kind is not Kind.START:
+            return node.token.text
+        start = self._start_tag(node.token, depth)
+        if node.closing is None:
+            return start
+        end = f"</{node.closing.name}>"
+        if node.is_verbatim:
+            return start + self._text[node.token.end : node.closing.start] + end
+        if "\n" not in self._text[node.token.start : node.end]:
+            line = self._line(node)
+            if len(self._margin(depth)) + len(line) <= self._style.width:
+                return line
+        inner = self._lines(node.children, depth + 1)
+        return start + self._newline + inner + self._margin(depth) + end
+
+    def _line(self, node: _Node) -> str:
+        """Return a node that is written on one line."""
+        if node.token.kind is not Kind.START:
+            return node.token.text
+        start = self._one_line(node.token)
+        if node.closing is None:
+            return start
+        if node.is_verbatim:
+            content = self._text[node.token.end : node.closing.start]
+        else:
+            content = "".join(self._beside(node.children))
+        return f"{start}{content}</{node.closing.name}>"
+
+    def _beside(self, nodes: Sequence[_Node]) -> Iterator[str]:
+        """Yield the nodes of a line; blanks around comments become one space, others are left out."""
+        before: _Node | None = None
+        has_blanks = False
+        for node in nodes:
+            if node.is_blank:
+                has_blanks = True
+                continue
+            if has_blanks and before is not None and self._is_beside(before, node):
+                yield " "
+            yield self._line(node)
+            before, has_blanks = node, False
+
+    def _start_tag(self, tag: Token, depth: int) -> str:
+        """Return a start tag; attributes keep their lines, and continue on the next one where a line is too long."""
+        attributes = tag.attributes()
+        margin = self._margin(depth)
+        line = self._one_line(tag)
+        is_broken = bool(attributes) and "\n" in tag.text[: attributes[-1].end - tag.start]
+        if not attributes or (not is_broken and len(margin) + len(line) <= self._style.width):
+            return line
+        rows = self._rows(tag, attributes)
+        opening = f"<{tag.name}"
+        step = self._margin(depth + 1)
+        if rows[0] and len(rows) > 1 and self._column(rows[1][0]) == self._column(rows[0][0]):
+            step = margin + " " * (len(opening) + 1)
+        lines = [margin + opening]
+        for number, row in enumerate(rows):
+            if number:
+                lines.append(step.removesuffix(" "))
+            for attribute in row:
+                written = _written(attribute)
+                has_company = lines[-1].strip() not in ("", opening)
+                first_line = written.split("\n")[0].rstrip("\r")
+                if has_company and len(lines[-1].rsplit("\n", 1)[-1]) + 1 + len(first_line) > self._style.width:
+                    lines.append(step.removesuffix(" "))
+                lines[-1] += " " + written
+        ending = self._ending(tag)
+        if not rows[0] and "\n" in tag.text[attributes[-1].end - tag.start :]:
+            lines.append(margin + ending.strip())
+        else:
+            lines[-1] += ending
+        return self._newline.join(lines).removeprefix(margin)
+
+    def _column(self, attribute: TokenAttribute) -> int:
+        return attribute.start - self._text.rfind("\n", 0, attribute.start)
+
+    def _one_line(self, tag: Token) -> str:
+        written = "".join(f" {_written(attribute)}" for attribute in tag.attributes())
+        return f"<{tag.name}{written}{self._ending(tag)}"
+
+    def _ending(self, tag: Token) -> str:
+        return self._whole if tag.is_whole else ">"
+
+    @staticmethod
+    def _rows(tag: Token, attributes: Sequence[TokenAttribute]) -> list[list[TokenAttribute]]:
+        """Return the attributes by the lines they are on; the first row is beside the tag's name, and may be empty."""
+        rows: list[list[TokenAttribute]] = [[]]
+        at = tag.name_start + len(tag.name)
+        for attribute in attributes:
+            if "\n" in tag.text[at - tag.start : attribute.start - tag.start]:
+                rows.append([])
+            rows[-1].append(attribute)
+            at = attribute.end
+        return rows
+
+    def _margin(self, depth: int) -> str:
+        return " " * (self._style.indent * depth)
+
+
+def _written(attribute: TokenAttribute) -> str:
+    return f"{attribute.name}={attribute.quote}{attribute.value}{attribute.quote}"
+
+
+def _top(document: Document) -> list[Node]:
+    return [*document.prolog, document.root, *document.epilog]
+
+
+def _alike(some: Sequence[Node], others: Sequence[Node]) -> bool:
+    """Return whether nodes are equal but for texts of blanks."""
+    pairs = [([*some], [*others])]
+    while pairs:
+        left, right = ([node for node in nodes if not _is_blank(node)] for nodes in pairs.pop())
+        if len(left) != len(right):
+            return False
+        for node, other in zip(left, right, strict=True):
+            if type(node) is not type(other):
+                return False
+            if isinstance(node, Element) and isinstance(other, Element):
+                if node.tag != other.tag or [*node.attributes.items()] != [*other.attributes.items()]:
+                    return False
+                pairs.append((node.children, other.children))
+            elif getattr(node, "data", None) != getattr(other, "data", None):
+                return False
+    return True
+
+
+def _is_blank(node: Node) -> bool:
+    return isinstance(node, Text) and not node.cdata and not node.data.strip()

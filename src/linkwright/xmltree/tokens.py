@@ -1,0 +1,150 @@
+"""The tokens of an XML text, whatever its state: every character belongs to one of them.
+
+Editors ask about texts that are being typed, and a formatter must keep what a tree leaves out. So a token is found in
+any text. Where markup is not complete, it ends before the next ``<``, and an attribute without its closing quote ends
+with its line or tag.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from enum import Enum
+
+from linkwright.loading.lean_dataclasses import NamedTuple
+from linkwright.loading.lean_patterns import lazy_pattern
+
+_MARKUP = lazy_pattern(
+    r"""
+    (?P<comment><!--.*?(?:-->|\Z))
+    | (?P<cdata><!\[CDATA\[.*?(?:\]\]>|\Z))
+    | (?P<instruction><\?.*?(?:\?>|\Z))
+    | (?P<declaration><!(?:[^<>\["']|"[^"]*(?:"|\Z)|'[^']*(?:'|\Z)
+                        |\[(?:[^\]"']|"[^"]*(?:"|\Z)|'[^']*(?:'|\Z))*(?:\]|\Z))*>?)
+    | (?P<end></[^<>]*>?)
+    | (?P<start><(?:[^<>"']|"[^"<]*"|'[^'<]*'|["'][^<>\n]*)*>?)
+    """,
+    re.DOTALL | re.VERBOSE,
+)
+_NAME = lazy_pattern(r"</?\s*([^\s/>=\"'<]*)")
+_ATTRIBUTE = lazy_pattern(
+    r"""([^\s=/>"'<]+)            # the name
+        (?:(\s*=\s*)              # what stands between it and the quote
+        (?:(["'])([^"'<]*?)\3 | (["'])([^<]*?)\5 | ["']([^<>\n]*?)(?=\s*/?>|\n|<|\Z) | ([^\s"'<>/]*)))?""",
+    re.VERBOSE,
+)
+_ENDS = {"comment": "-->", "cdata": "]]>", "instruction": "?>"}
+
+
+class Kind(Enum):
+    """What a token is."""
+
+    TEXT = "text"
+    START = "start"
+    END = "end"
+    COMMENT = "comment"
+    CDATA = "cdata"
+    INSTRUCTION = "instruction"
+    DECLARATION = "declaration"
+
+
+class TokenAttribute(NamedTuple):
+    """An attribute of a start tag, by character offsets in the text.
+
+    Attributes:
+        name: the name as written.
+        start: the first character of the name.
+        value: the value as written, entities unresolved; None if there is no ``=``.
+        value_start: the first character of the value; where one can be written if there is none.
+        value_end: behind the value.
+        quote: the quote around the value; empty if it lacks one.
+        end: behind the closing quote.
+    """
+
+    name: str
+    start: int
+    value: str | None
+    value_start: int
+    value_end: int
+    quote: str
+    end: int
+
+
+class Token(NamedTuple):
+    """A token of a text.
+
+    Attributes:
+        kind: what it is.
+        text: its characters, as written.
+        start: its first character's offset.
+        is_closed: whether its end is written, such as the ``>`` of a tag; always true for texts.
+    """
+
+    kind: Kind
+    text: str
+    start: int
+    is_closed: bool
+
+    @property
+    def end(self) -> int:
+        """The offset behind its last character."""
+        return self.start + len(self.text)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is a whole element, ``<a/>``."""
+        return self.kind is Kind.START and self.text.endswith("/>")
+
+    @property
+    def name(self) -> str:
+        """The name of a tag, as written; empty while it is not typed, and for other tokens."""
+        found = _NAME.match(self.text) if self.kind in (Kind.START, Kind.END) else None
+        return "" if found is None else str(found[1])
+
+    @property
+    def name_start(self) -> int:
+        """The offset of the first character of a tag's name."""
+        found = _NAME.match(self.text)
+        return self.start if found is None else self.start + found.start(1)
+
+    def attributes(self) -> list[TokenAttribute]:
+        """Return the attributes of a start tag, in the order of the text."""
+        if self.kind is not Kind.START:
+            return []
+        return [*_attributes(self)]
+
+
+def tokens(text: str) -> Iterator[Token]:
+    """Yield the tokens of a text, which may be no XML; their texts together are the text."""
+    at = 0
+    while at < len(text):
+        opening = text.find("<", at)
+        if opening < 0:
+            opening = len(text)
+        if opening > at:
+            yield Token(Kind.TEXT, text[at:opening], at, True)
+        at = opening
+        if at == len(text):
+            return
+        found = _MARKUP.match(text, at)
+        assert found is not None  # a start tag may consist of its ``<``
+        name = str(found.lastgroup)
+        yield Token(Kind(name), found[0], at, found[0].endswith(_ENDS.get(name, ">")))
+        at = found.end()
+
+
+def _attributes(tag: Token) -> Iterator[TokenAttribute]:
+    at = tag.name_start - tag.start + len(tag.name)
+    for found in _ATTRIBUTE.finditer(tag.text, at):
+        name, equals = found[1], found[2]
+        start = tag.start + found.start(1)
+        if equals is None:
+            end = tag.start + found.end(1)
+            yield TokenAttribute(name, start, None, end, end, "", end)
+            continue
+        group = next((number for number in (4, 6, 7, 8) if found[number] is not None), 8)
+        value = found[group] or ""
+        value_start = tag.start + found.start(group)
+        quote = found[3] or found[5] or (tag.text[found.start(group) - 1] if group == 7 else "")
+        end = tag.start + found.end()
+        yield TokenAttribute(name, start, value, value_start, value_start + len(value), quote, end)

@@ -1,0 +1,98 @@
+"""The tokens of a text in any state, such as one that is being typed; those of a whole text are the reader's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.xmltree import Element, parse
+from linkwright.xmltree.tokens import Kind, tokens
+
+ROBOTS = sorted((Path(__file__).parents[2] / "robots").rglob("*.xacro"))
+MARKUP = st.text(alphabet="<>/!?-[]=\"' \nab:", max_size=60)
+
+
+def kinds(text: str) -> list[tuple[str, str, bool]]:
+    return [(token.kind.name, token.text, token.is_closed) for token in tokens(text)]
+
+
+def attributes(text: str) -> list[tuple[str, str | None, str]]:
+    (tag,) = tokens(text)
+    return [(attribute.name, attribute.value, attribute.quote) for attribute in tag.attributes()]
+
+
+@given(MARKUP)
+def test_each_character_belongs_to_one_token(text: str):
+    found = [*tokens(text)]
+    assert "".join(token.text for token in found) == text
+    assert [token.start for token in found] == [sum(len(each.text) for each in found[:at]) for at in range(len(found))]
+
+
+@given(MARKUP)
+def test_attributes_are_where_they_say(text: str):
+    for token in tokens(text):
+        for attribute in token.attributes():
+            assert text[attribute.start :].startswith(attribute.name)
+            assert token.start < attribute.start <= attribute.value_start <= attribute.value_end <= attribute.end
+            assert attribute.value in (None, text[attribute.value_start : attribute.value_end])
+
+
+def _elements(element: Element):
+    yield element
+    for child in element.elements():
+        yield from _elements(child)
+
+
+@pytest.mark.parametrize("path", ROBOTS, ids=lambda path: path.name)
+def test_start_tags_are_those_of_the_tree(path: Path):
+    text = path.read_text(encoding="utf-8")
+    tree = {element.offset: element for element in _elements(parse(text, path.name).root)}
+    starts = [token for token in tokens(text) if token.kind is Kind.START]
+    assert [token.start for token in starts] == sorted(tree)
+    for token in starts:
+        assert token.name == tree[token.start].tag
+        assert [attribute.name for attribute in token.attributes()] == [*tree[token.start].attributes]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("a<!-- b", [("TEXT", "a", True), ("COMMENT", "<!-- b", False)]),
+        ("<a<b/>", [("START", "<a", False), ("START", "<b/>", True)]),
+        ("<![CDATA[<a>]]></b", [("CDATA", "<![CDATA[<a>]]>", True), ("END", "</b", False)]),
+        ('<a b="1>0">', [("START", '<a b="1>0">', True)]),
+        ('<a b="\n<c/>', [("START", '<a b="\n', False), ("START", "<c/>", True)]),
+        (
+            '<!DOCTYPE a [<!ENTITY b "]>">]><a/>',
+            [("DECLARATION", '<!DOCTYPE a [<!ENTITY b "]>">]>', True), ("START", "<a/>", True)],
+        ),
+    ],
+)
+def test_markup_that_is_not_complete_ends_before_the_next_tag(text, expected):
+    assert kinds(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("<a b", [("b", None, "")]),
+        ("<a b=", [("b", "", "")]),
+        ('<a b="', [("b", "", '"')]),
+        ('<a b="x y', [("b", "x y", '"')]),
+        ('<a b=\'"\' c = "d"/>', [("b", '"', "'"), ("c", "d", '"')]),
+        ("<a b=1 c>", [("b", "1", ""), ("c", None, "")]),
+        ('<a b="x/>', [("b", "x", '"')]),
+    ],
+)
+def test_attributes_that_are_not_complete_are_found(text, expected):
+    assert attributes(text) == expected
+
+
+@pytest.mark.parametrize("piece", ["<", "<!", "<![", '<a b="', "<!--", "<a '", "<a b=", '"', "<!DOCTYPE ["])
+def test_hostile_texts_take_no_longer_than_others(piece: str):
+    """A quadratic pattern would take minutes, and the test would run into its time limit."""
+    found = [token.attributes() for token in tokens("<a " + piece * 200_000)]
+    assert found
