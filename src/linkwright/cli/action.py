@@ -1,4 +1,4 @@
-"""``linkwright action``: the actions of the running graph, and goals for them."""
+"""``linkwright action``: list and describe the actions of the running graph, and send goals."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ _LONGEST_CANCEL = 3.0
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``action list``."""
     add_session_arguments(parser)
     add_types_argument(parser, types_help="show the type of each action beside it")
     add_count_argument(parser, "action")
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the actions' names, as ros2 does."""
+    """Print the names of the actions, as ros2 does."""
 
     async def job(session: Session) -> int:
         print_names_and_types(session.node.get_action_names_and_types(), arguments)
@@ -44,7 +44,7 @@ def run_list(arguments: argparse.Namespace) -> int:
 
 
 def configure_info(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``action info``."""
     add_session_arguments(parser)
     parser.add_argument("action_name", metavar="ACTION", help="the action, such as /fibonacci")
     parser.add_argument("-t", "--show-types", action="store_true", help="show the action's type beside each node")
@@ -52,7 +52,7 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
 
 
 def run_info(arguments: argparse.Namespace) -> int:
-    """Print the nodes, as ros2 does."""
+    """Print the nodes that use an action, as ros2 does."""
     name = absolute(arguments.action_name)
 
     async def job(session: Session) -> int:
@@ -78,13 +78,13 @@ def run_info(arguments: argparse.Namespace) -> int:
 
 
 def configure_type(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``action type``."""
     add_session_arguments(parser)
     parser.add_argument("action_name", metavar="ACTION", help="the action, such as /fibonacci")
 
 
 def run_type(arguments: argparse.Namespace) -> int:
-    """Print the types of the action, a line each."""
+    """Print the types of the action, one per line."""
     actions = Kind(
         lambda session: session.node.get_action_names_and_types(),
         "CLI429",
@@ -95,7 +95,7 @@ def run_type(arguments: argparse.Namespace) -> int:
 
 
 def configure_send_goal(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``action send_goal``."""
     add_session_arguments(parser)
     parser.add_argument("action_name", metavar="ACTION", help="the action, such as /fibonacci")
     parser.add_argument(
@@ -113,7 +113,7 @@ def configure_send_goal(parser: argparse.ArgumentParser) -> None:
 
 
 def run_send_goal(arguments: argparse.Namespace) -> int:
-    """Print the progress of the goal as ros2 does; Ctrl-C cancels the goal."""
+    """Send a goal and print its progress as ros2 does; Ctrl-C cancels the goal."""
     from linkwright.messages import get_action, to_yaml
 
     name = absolute(arguments.action_name)

@@ -1,4 +1,7 @@
-"""Replace this process by another program, which then gets the signals and sets the exit status."""
+"""Replacement of this process by another program.
+
+That program then receives the signals and sets the exit status.
+"""
 
 from __future__ import annotations
 

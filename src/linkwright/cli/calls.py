@@ -1,4 +1,4 @@
-"""Call services of running nodes from a command."""
+"""Calls from a command to the services of running nodes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ APPEARS_WITHIN = 5.0
 
 
 class NoAnswerError(LinkwrightError):
-    """A service did not appear or did not respond in time."""
+    """Raised when a service does not appear or does not respond in time."""
 
 
 async def call(
@@ -93,8 +93,8 @@ async def find_node(session: Session, name: str, *, hidden: bool = False, timeou
     Args:
         session: the session of the command.
         name: the node's name, with or without the leading slash.
-        hidden: whether hidden nodes count.
-        timeout: how long to wait for it, in seconds.
+        hidden: whether to include hidden nodes.
+        timeout: how long to wait for the node, in seconds.
 
     Raises:
         LinkwrightError: CLI423, there is no such node.

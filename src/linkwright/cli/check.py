@@ -90,12 +90,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def without_options(words: list[str]) -> SimpleNamespace | None:
-    """Return the arguments for files, folders and values alone; None if there are none."""
+    """Return the arguments of a command line that has only files, folders and values.
+
+    The result is None if it has none of them.
+    """
     return SimpleNamespace(words=words, **_DEFAULTS) if words else None
 
 
 def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
-    """Check the files; the tree and machine-readable findings go to standard output, text to standard error."""
+    """Check the files.
+
+    The tree and machine-readable findings are written to standard output, text to standard error.
+    """
     paths = [Path(word) for word in arguments.words if ":=" not in word]
     if not paths:
         return _usage("name a file or folder to check")
@@ -133,7 +139,10 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _Words:
-    """The settings of the command line, for every file; `folders` are the folders to check."""
+    """The settings from the command line, which apply to every file.
+
+    `folders` are the folders to check.
+    """
 
     values: dict[str, str]
     select: tuple[str, ...] | None
@@ -145,7 +154,10 @@ class _Words:
     callers: list[ArgumentSets] = field(default_factory=list)
 
     def finder(self, file: Path) -> PackageFinder:
-        """Return the package finder for a file: one for each folder, with one search of each source tree for all."""
+        """Return the package finder for a file.
+
+        There is one finder per folder, and all of them share a single search of each source tree.
+        """
         from linkwright.packages import PackageFinder
 
         folder = file.absolute().parent
@@ -156,7 +168,10 @@ class _Words:
         return self.finders[folder]
 
     def sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
-        """Return the values that callers give to a file's arguments; the callers are read once for all files."""
+        """Return the values that callers give to a file's arguments.
+
+        The callers are read only once for all files.
+        """
         from linkwright.descriptions.argument_sets import ArgumentSets
 
         if not self.callers:
@@ -164,7 +179,7 @@ class _Words:
         return self.callers[0].of(file, self.finder(file))
 
     def unknown_selector(self) -> str | None:
-        """Return the finding on a selector that selects nothing, or None."""
+        """Return the finding about a selector that selects nothing, or None."""
         from linkwright.lint.selector_words import is_selector, selector_hint
 
         for word in (*(self.select or ()), *self.ignore):
@@ -173,7 +188,7 @@ class _Words:
         return None
 
     def settings(self, path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
-        """Return the settings for a file or folder, with the findings on their text."""
+        """Return the settings for a file or folder, with the findings about their text."""
         from linkwright.lint.configuration import read_settings, settings_for
         from linkwright.lint.selector_words import canonical
 
@@ -232,7 +247,7 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
 
 
 def _add(found: _Found, more: Iterable[Diagnostic]) -> None:
-    """Add the new findings; a file that two robots include has the same findings twice."""
+    """Add the findings that are new; a file that two robots include has the same findings twice."""
     from linkwright.lint.finding import without_element
 
     for diagnostic in more:
@@ -242,12 +257,12 @@ def _add(found: _Found, more: Iterable[Diagnostic]) -> None:
 
 
 def _place(diagnostic: Diagnostic) -> Span | None:
-    """Return the location, no matter whether the file was named or included."""
+    """Return the location of a finding, whether its file was named or included."""
     from linkwright.lint.folders import MISSING_PACKAGE
 
     span = diagnostic.span
     if span is None or diagnostic.code == MISSING_PACKAGE:
-        return None  # there is one thing to fix, however many files name it
+        return None  # one fix is enough, however many files name it
     return span._replace(file=str(Path(span.file).resolve()))
 
 
@@ -317,7 +332,7 @@ def _print_diff(paths: Sequence[Path], words: _Words, *, unsafe: bool) -> int:
 
 def _print(found: Sequence[Diagnostic], form: str, *, everything: bool) -> None:
     if form == "text":
-        with suppress(OSError):  # as with `print_message`
+        with suppress(OSError):  # as in `print_message`
             print_diagnostics(found if everything else group_similar(found), sys.stderr)
     else:
         sys.stdout.write(format_diagnostics(found, form))

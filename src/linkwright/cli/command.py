@@ -1,6 +1,6 @@
-"""The ``linkwright`` command: finds the verb, runs it, turns errors into messages and exit statuses.
+"""The ``linkwright`` command: finds and runs the verb, and reports errors.
 
-Exit statuses: 0 fine, 1 findings or an error in what the user gave, 2 wrong usage, 3 a bug of ours, 130 interrupted.
+Exit statuses: 0 success, 1 findings or an error in the user's input, 2 wrong usage, 3 a bug of ours, 130 interrupted.
 """
 
 from __future__ import annotations
@@ -72,10 +72,10 @@ class Verb(Protocol):
 
 
 def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
-    """Run the command line and return its exit status; never raises.
+    """Run the command line and return its exit status; never raises an exception.
 
     Args:
-        words: the command line after the program's name; this process's if omitted.
+        words: the command line after the program's name; by default that of this process.
         program: the program's name in usage lines, such as ``ros2``; empty if the command is the program.
     """
     whole_process = words is None
@@ -100,7 +100,7 @@ def _collect_seldom() -> None:
 
 
 def groups() -> dict[str, dict[str, str]]:
-    """Return the help texts of the installed commands by group, in the order in which the help lists them."""
+    """Return the help texts of the installed commands by group, in the order of the help."""
     workbench = _workbench()
     others: dict[str, dict[str, str]] = {} if workbench is None else workbench.GROUPS
     engine = {**others.get(_ENGINE_GROUP, {}), **COMMANDS}
@@ -113,7 +113,10 @@ def help_texts() -> dict[str, str]:
 
 
 def _workbench() -> Any:
-    """Return the table of the commands beside those of the engine; None where linkwright-core is installed alone."""
+    """Return the table of commands other than the engine's.
+
+    The result is None if only linkwright-core is installed.
+    """
     try:
         return import_module("linkwright.cli.workbench")
     except ModuleNotFoundError:
@@ -161,7 +164,10 @@ def _dispatch(words: list[str], program: str) -> int:
 
 
 def _without_options(module: Verb, words: list[str]) -> argparse.Namespace | None:
-    """Return the arguments of a command line without options, if the command can read them without a parser."""
+    """Return the arguments of a command line without options, read without a parser.
+
+    Returns None if the command cannot read them without a parser.
+    """
     known: Callable[[list[str]], argparse.Namespace | None] | None = getattr(module, "without_options", None)
     return None if known is None or any(word.startswith("-") for word in words) else known(words)
 

@@ -1,4 +1,4 @@
-"""``linkwright component``: component containers of the running graph, and the nodes in them."""
+"""``linkwright component``: list, load and unload components in the running graph."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def configure_types(parser: argparse.ArgumentParser) -> None:
 
 
 def run_types(arguments: argparse.Namespace) -> int:
-    """Print the components' names below their packages, as ros2 does."""
+    """Print the names of the components, grouped by package, as ros2 does."""
     from linkwright.nodes.options import COMPONENTS
 
     by_package: dict[str, list[str]] = {}
@@ -95,7 +95,7 @@ def configure_load(parser: argparse.ArgumentParser) -> None:
 
 
 def run_load(arguments: argparse.Namespace) -> int:
-    """Load a component, and print the node's number and name."""
+    """Load a component, and print the number and name of its node."""
 
     async def job(session: Session) -> int:
         container = await find_container(session, arguments.container_node_name)
@@ -156,7 +156,7 @@ def run_standalone(arguments: argparse.Namespace) -> int:
 
 @asynccontextmanager
 async def _container_process(name: str) -> AsyncIterator[Process]:
-    """Run a process with an empty container until the end of the block."""
+    """Run a process with an empty container while the context is entered."""
     words = ("-m", "linkwright.node_program", "rclcpp_components", "component_container")
     process = await asyncio.create_subprocess_exec(sys.executable, *words, "--ros-args", "-r", f"__node:={name}")
     try:
@@ -175,7 +175,10 @@ async def _container_process(name: str) -> AsyncIterator[Process]:
 
 
 def containers(session: Session) -> list[str]:
-    """Return the full names of the containers, sorted: the nodes with all three services of containers."""
+    """Return the sorted full names of the containers.
+
+    A container is a node with all three services of containers.
+    """
     services = dict(session.node.get_service_names_and_types())
     return [
         name
@@ -208,7 +211,7 @@ async def held_nodes(session: Session, container: str) -> list[tuple[int, str]]:
 
 
 async def _load_component(session: Session, container: str, arguments: argparse.Namespace) -> tuple[int, str]:
-    """Make a container load a component; return the node's number and full name.
+    """Let a container load a component; return the node's number and full name.
 
     Raises:
         LinkwrightError: CLI433, the container could not load it.
@@ -237,7 +240,7 @@ async def _load_component(session: Session, container: str, arguments: argparse.
 
 
 async def _unload_component(session: Session, container: str, uid: int) -> None:
-    """Make a container unload a node.
+    """Let a container unload a node.
 
     Raises:
         LinkwrightError: CLI434, the container could not unload it.
@@ -261,7 +264,7 @@ async def _unload_component(session: Session, container: str, uid: int) -> None:
 
 
 def add_component_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the component and the options of its node."""
+    """Declare the arguments for a component and the options of its node."""
     parser.add_argument("package_name", metavar="PACKAGE", help="the package of the component")
     parser.add_argument("plugin_name", metavar="COMPONENT", help="the component, such as composition::Talker")
     parser.add_argument("-n", "--node-name", metavar="NAME", help="the node's name")

@@ -1,6 +1,6 @@
 """``linkwright control``: the controllers and the hardware of ros2_control's controller manager.
 
-Source: ros2controlcli (verbs, options, output without its colours).
+Source: ros2controlcli (verbs, options, output without colours).
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def _fail(text: str) -> int:
     return 1
 
 
-# --- looking ----------------------------------------------------------------------------------------------------------
+# --- queries ----------------------------------------------------------------------------------------------------------
 
 
 def _configure_list_controllers(parser: argparse.ArgumentParser) -> None:
@@ -196,7 +196,7 @@ def _diagram(controllers: Sequence[Any]) -> str:
     return "\n".join([*lines, "}", ""])
 
 
-# --- changing ---------------------------------------------------------------------------------------------------------
+# --- changes ----------------------------------------------------------------------------------------------------------
 
 
 _OLD_STATES = {"start": "active", "stop": "inactive", "configure": "inactive"}

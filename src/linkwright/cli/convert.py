@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     print_diagnostics(converted.diagnostics, sys.stderr)
     if converted.sdf is None or (arguments.to != "sdf" and has_errors(converted.diagnostics)):
-        return 1  # a robot or a MuJoCo model is written completely or not at all
+        return 1  # write a robot or a MuJoCo model completely or not at all
     text, remarks = write(converted.sdf, finder)
     print_diagnostics(remarks, sys.stderr)
     if text is None:
@@ -109,7 +109,7 @@ def _writer(form: str) -> Writer:
     """Return the function that writes a format.
 
     Raises:
-        LinkwrightError: CLI323, the package that brings it is not installed.
+        LinkwrightError: CLI323, the package that provides the format is not installed.
     """
     if form in _WRITERS:
         return _WRITERS[form]

@@ -1,4 +1,7 @@
-"""``linkwright daemon``: accepted because scripts for ROS 2 start and stop ros2's daemon; Linkwright has none."""
+"""``linkwright daemon``: accepted for scripts that start and stop ros2's daemon.
+
+Linkwright has none.
+"""
 
 from __future__ import annotations
 

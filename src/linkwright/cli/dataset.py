@@ -1,4 +1,4 @@
-"""``linkwright dataset``: make labelled images of worlds, to train a detector."""
+"""``linkwright dataset``: render labelled images of worlds, to train a detector."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Make the dataset, and return the exit status; 130 if it was interrupted."""
+    """Render the data set, and return the exit status; 130 if it was interrupted."""
     from linkwright.vision.datasets.dataset import make_dataset
     from linkwright.vision.datasets.options import Options
     from linkwright.vision.datasets.statistics import as_table
@@ -163,7 +163,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 class _Progress:
-    """A line of progress, printed only to a terminal."""
+    """A progress line, which is printed only to a terminal."""
 
     def __init__(self, count: int) -> None:
         self._count = count
@@ -189,7 +189,7 @@ class _Progress:
             print(f"\r{words}\x1b[K", end="", file=sys.stderr, flush=True)
 
     def end(self) -> None:
-        """End the line."""
+        """End the progress line."""
         if self._shown:
             print(file=sys.stderr)
 

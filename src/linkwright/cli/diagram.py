@@ -21,7 +21,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "words",
         metavar="OUT",
         nargs="*",
-        default=[],  # otherwise argparse lists them as missing too
+        default=[],  # without a default, argparse lists them as missing, too
         help="base name of the two files, default the robot's name; the extension .pdf, .svg or .png selects "
         "the format of the drawing. Arguments NAME:=VALUE are values for the file's <xacro:arg>",
     )

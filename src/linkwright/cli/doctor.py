@@ -64,14 +64,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Observe the graph, and print the findings; return 1 if something needs a fix. Or run the subcommand."""
+    """Observe the graph, and print the findings; return 1 if something needs a fix.
+
+    If a subcommand is given, run it instead.
+    """
     if "run_verb" in arguments:
         return run_nested(arguments)
     from linkwright.doctor import examine, examine_parameter_files, observe, report
     from linkwright.wire.unfollowed import new_unfollowed_settings
 
     frames = _fixed_frames(arguments)
-    settings = new_unfollowed_settings()  # reported with the other findings, not on joining
+    settings = new_unfollowed_settings()  # reported with the other findings, not when joining the graph
 
     async def job(session: Session) -> int:
         if arguments.format == "text":

@@ -62,7 +62,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Infer the missing elements, then drive, print or write; return 1 if the description has errors."""
+    """Infer the missing elements, then drive the robot, or print or write the elements.
+
+    Returns 1 if the description has errors.
+    """
     from linkwright.descriptions import examine
     from linkwright.hosting.plans import HostOptions
     from linkwright.hosting.simulated import SimulatedWorld, run_simulated
@@ -97,7 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
         print_diagnostics(written.refused, sys.stderr)
         return 1 if written.refused else 0
     load_mujoco()
-    load_world(arguments.world)  # report a missing world at once, not in the middle of a log
+    load_world(arguments.world)  # report a missing world immediately, not in the middle of a log
     print_diagnostics(
         [diagnostic for diagnostic in found.diagnostics if diagnostic.severity is not Severity.INFO], sys.stderr
     )
@@ -138,7 +141,7 @@ def _summary(robot: Robot, found: Inference) -> Phrase:
 
 
 def _listed(found: Inference) -> str:
-    """Return each inference with its place, its reason and the element that states it."""
+    """Return a text that lists each inference with its place, message and added elements."""
     from linkwright.xmltree.patches import block
 
     lines: list[str] = []

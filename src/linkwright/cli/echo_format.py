@@ -1,4 +1,4 @@
-"""The output of ``topic echo`` and ``service echo``: the options, and messages as text."""
+"""The output format of ``topic echo`` and ``service echo``: options, and messages as text."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ _TRUNCATE = 128
 
 
 def add_format_arguments(parser: argparse.ArgumentParser, *, flow_help: str) -> None:
-    """Declare the format options that `EchoFormat.of` reads; `flow_help` is the help text of ``--flow-style``."""
+    """Declare the format options that `EchoFormat.of` reads.
+
+    `flow_help` is the help text of ``--flow-style``.
+    """
     parser.add_argument("--csv", action="store_true", help="print the values separated by commas")
     parser.add_argument("-f", "--full-length", action="store_true", help="do not truncate long arrays and strings")
     parser.add_argument(
@@ -42,11 +45,11 @@ class EchoFormat:
     Attributes:
         field: the path of the field to print; empty for the entire message.
         csv: print comma-separated values instead of YAML.
-        truncate_length: the length at which arrays and strings are truncated; None for never.
+        truncate_length: the length at which arrays and strings are truncated; None to print them completely.
         no_arr: omit the elements of arrays.
         no_str: omit strings.
         flow_style: print each message on one line of YAML.
-        message_info: print the times of sending and reception before each message.
+        message_info: print the times of publication and reception before each message.
     """
 
     field: tuple[str, ...] = ()
@@ -103,7 +106,7 @@ class EchoFormat:
 
 
 def field_path(text: str | None) -> tuple[str, ...]:
-    """Return the path of ``--field``, such as ``pose.pose.position``, as names.
+    """Return the path given with ``--field``, such as ``pose.pose.position``, as names.
 
     Raises:
         LinkwrightError: CLI414, a name is missing between dots.

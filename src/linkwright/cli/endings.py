@@ -1,4 +1,4 @@
-"""The end of a command: errors become one message and an exit status."""
+"""The end of a command, where errors are turned into one message and an exit status."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def status_of(command: Callable[[], int]) -> int:
         accept_any_text()
         try:
             status = command()
-        except SystemExit as stop:  # argparse
+        except SystemExit as stop:  # raised by argparse
             status = stop.code if isinstance(stop.code, int) else USAGE
         print(end="", flush=True)  # flush here, where a closed output can be handled
     except UnknownLanguageError as error:
@@ -70,7 +70,8 @@ def status_of(command: Callable[[], int]) -> int:
 def open_closed_streams() -> None:
     """Open null devices for standard streams that were closed when the process was started.
 
-    Otherwise the next opened files would take their file descriptors. Reading gets nothing, writing to the output
+    Otherwise files that are opened later would get their file descriptors. Reading returns nothing, writing to the
+    output
     fails, and messages are discarded.
     """
     if sys.stdin is None:
@@ -112,8 +113,11 @@ def _trouble_of_the_system(error: OSError) -> Diagnostic | None:
 
 
 def _leave_output() -> None:
-    """Redirect the output to the null device, so that Python does not report a second error when it exits."""
-    from contextlib import suppress  # slow to import, and rarely needed
+    """Redirect the output to the null device.
+
+    Otherwise Python would report a second error when it exits.
+    """
+    from contextlib import suppress  # imported here: slow to import, and rarely needed
 
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -128,7 +132,7 @@ def _print(diagnostics: Iterable[Diagnostic]) -> None:
 
 def print_message(text: str) -> None:
     """Print a line to standard error; a failure to write does not change the exit status."""
-    from contextlib import suppress  # slow to import, and rarely needed
+    from contextlib import suppress  # imported here: slow to import, and rarely needed
 
     with suppress(OSError):
         print(text, file=sys.stderr, flush=True)

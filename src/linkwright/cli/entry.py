@@ -1,4 +1,7 @@
-"""The entry point of the command line, which makes Ctrl-C end the process quietly before it imports anything."""
+"""The entry point of the command line.
+
+It first lets Ctrl-C end the process quietly, before anything else is imported.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ def main(words: list[str] | None = None, *, program: str = "linkwright") -> int:
     """Run the command line; see `linkwright.cli.command.main`.
 
     Args:
-        words: the command line after the program's name; this process's if omitted.
+        words: the command line after the program's name; by default that of this process.
         program: the program's name in usage lines.
 
     Returns:

@@ -18,7 +18,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the page."""
+    """Print the explanation."""
     from linkwright.lint.explain import find_page, nearest_codes
     from linkwright.urdf.vocabulary import meanings, names
 

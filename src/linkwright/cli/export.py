@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
-    """Write the file of one description, or of two."""
+    """Write the file for one description, or for a comparison of two."""
     from linkwright.descriptions import DescriptionLibrary, examine
     from linkwright.descriptions.pairs import text_of_old
     from linkwright.packages import PackageFinder
@@ -97,7 +97,10 @@ def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
 
 
 def _from_outside(files: Sequence[Path]) -> Diagnostic:
-    """Return a warning about exported files outside packages; includes and ``file://`` reach any file."""
+    """Return a warning about exported files outside packages.
+
+    Includes and ``file://`` can reach any file.
+    """
     message = counted(
         "the export contains a file from outside the packages",
         "the export contains {count} files from outside the packages",

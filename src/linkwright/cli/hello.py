@@ -1,4 +1,4 @@
-"""``linkwright doctor hello``: test whether computers reach each other over a topic and by multicast."""
+"""``linkwright doctor hello``: test connections over a topic and by multicast."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Send greetings, and print the senders of received ones, until interrupted."""
+    """Send greetings and print the senders of received greetings until interrupted."""
     return run_in_graph(arguments, lambda session: _greet(session, arguments))
 
 

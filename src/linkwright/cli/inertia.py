@@ -59,7 +59,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print or write the blocks; return 1 if the description has errors or a block could not be written."""
+    """Print or write the blocks; return 1 for errors in the description or unwritten blocks."""
     from linkwright.descriptions import examine
     from linkwright.inertia import MeshLibrary, estimate
     from linkwright.inertia.reports import as_json, as_text
@@ -121,7 +121,7 @@ def _selected_links(names: Sequence[str], robot: Robot) -> list[str]:
     """Return the selected links, in file order.
 
     Raises:
-        LinkwrightError: CLI311 for a link the robot does not have.
+        LinkwrightError: CLI311, the robot does not have a selected link.
     """
     unknown = [_unknown(name, robot) for name in names if name not in robot.links]
     if unknown:
@@ -133,7 +133,7 @@ def _masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
     """Return the masses by link from arguments such as ``arm=1.5``.
 
     Raises:
-        LinkwrightError: CLI311 for a link the robot does not have, CLI312 for an argument without a mass.
+        LinkwrightError: CLI311, the robot does not have a link; CLI312, an argument has no mass.
     """
     masses: dict[str, float] = {}
     wrong = []

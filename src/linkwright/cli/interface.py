@@ -36,7 +36,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the types' names by kind, as ros2 does."""
+    """Print the names of the types by kind, as ros2 does."""
     from linkwright.messages import interface_names
 
     for kind in _kinds(arguments):
@@ -52,7 +52,7 @@ def configure_packages(parser: argparse.ArgumentParser) -> None:
 
 
 def run_packages(arguments: argparse.Namespace) -> int:
-    """Print their names, a line each."""
+    """Print the names of the packages that define interfaces, one per line."""
     from linkwright.messages import interface_names
 
     for package in sorted({name.split("/")[0] for kind in _kinds(arguments) for name in interface_names(kind)}):
@@ -67,7 +67,7 @@ def configure_package(parser: argparse.ArgumentParser) -> None:
 
 
 def run_package(arguments: argparse.Namespace) -> int:
-    """Print their names, a line each."""
+    """Print the names of a package's interfaces, one per line."""
     from linkwright.messages import interface_names
 
     package = arguments.package_name
@@ -95,7 +95,7 @@ def configure_show(parser: argparse.ArgumentParser) -> None:
 
 
 def run_show(arguments: argparse.Namespace) -> int:
-    """Print the definition, as ros2 does."""
+    """Print the definition of an interface, as ros2 does."""
     from linkwright.messages import definition_text, get_interface
 
     name = arguments.type
@@ -122,7 +122,10 @@ def configure_proto(parser: argparse.ArgumentParser) -> None:
 
 
 def run_proto(arguments: argparse.Namespace) -> int:
-    """Print the message with its defaults: for a service the request, for an action the goal, as ros2 does."""
+    """Print a message with its defaults, as ros2 does.
+
+    For a service this is the request, for an action the goal.
+    """
     from linkwright.messages import prototype
 
     text = prototype(arguments.type)
@@ -138,8 +141,8 @@ def definition_lines(
     Args:
         name: ``package/kind/Name``.
         source: returns the text of the interface file for a name.
-        comments: whether comments and blank lines are kept.
-        nested_comments: whether they are kept in nested definitions.
+        comments: whether to keep comments and blank lines.
+        nested_comments: whether to keep them in nested definitions.
     """
     yield from _lines(name, source, comments, nested_comments, 0)
 
@@ -159,7 +162,10 @@ def _lines(name: str, source: Callable[[str], str], comments: bool, nested_comme
 
 
 def nested_type(line: str, package: str) -> str | None:
-    """Return the full name of the message type of the field in a line of a definition, or None."""
+    """Return the full message type of the field in a line of a definition.
+
+    The result is None if the field has no message type.
+    """
     found = _FIELD.match(line)
     if found is None or found["equals"] or found["type"] in _PRIMITIVES:
         return None

@@ -14,11 +14,13 @@ _OPTION = "--lang"
 
 
 class UnknownLanguageError(Exception):
-    """``--lang`` lacks a language, or names one without a translation."""
+    """Raised when ``--lang`` lacks a language, or names one without a translation."""
 
 
 def take_language(words: Sequence[str]) -> list[str]:
-    """Set the language, and return the words without ``--lang LANGUAGE``, which is accepted anywhere before ``--``.
+    """Set the language, and return the words without ``--lang LANGUAGE``.
+
+    The option is accepted anywhere before ``--``.
 
     Raises:
         UnknownLanguageError: there is no such language.

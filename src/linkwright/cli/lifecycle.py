@@ -25,7 +25,7 @@ _GET_STATE = "lifecycle_msgs/srv/GetState"
 
 
 def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
-    """Declare the node."""
+    """Declare the arguments that select a node, and those of the session."""
     add_session_arguments(parser)
     if optional:
         parser.add_argument(
@@ -60,7 +60,7 @@ def configure_get(parser: argparse.ArgumentParser) -> None:
 
 
 def run_get(arguments: argparse.Namespace) -> int:
-    """Print the states, as ros2 does."""
+    """Print the current states of nodes, as ros2 does."""
 
     async def job(session: Session) -> int:
         hidden = arguments.include_hidden_nodes
@@ -94,7 +94,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the transitions, as ros2 does."""
+    """Print the available transitions, as ros2 does."""
 
     async def job(session: Session) -> int:
         node = await find_node(session, arguments.node_name, hidden=arguments.include_hidden_nodes)
@@ -146,7 +146,10 @@ def run_set(arguments: argparse.Namespace) -> int:
 
 
 def managed_nodes(session: Session, *, hidden: bool = False) -> list[str]:
-    """Return the full names of the managed nodes, sorted: those with a service for their state."""
+    """Return the sorted full names of the managed nodes.
+
+    A managed node is a node with a service for its state.
+    """
     services = dict(session.node.get_service_names_and_types())
     names = dict.fromkeys(node_names(session, hidden=hidden))
     return [name for name in names if _GET_STATE in services.get(f"{name}/get_state", ())]
@@ -161,7 +164,10 @@ async def state(session: Session, node: str, timeout: float | None = None) -> An
 
 
 async def transitions(session: Session, node: str, *, every: bool = False) -> Sequence[Any]:
-    """Return the transitions (lifecycle_msgs/msg/TransitionDescription) of a node's state, or of all states."""
+    """Return the transitions of a node's state, or of all states.
+
+    They are lifecycle_msgs/msg/TransitionDescription messages.
+    """
     from linkwright.messages import get_service
 
     kind = "lifecycle_msgs/srv/GetAvailableTransitions"
@@ -172,7 +178,7 @@ async def transitions(session: Session, node: str, *, every: bool = False) -> Se
 
 
 async def change(session: Session, node: str, transition: Any) -> bool:
-    """Trigger a transition of a node (lifecycle_msgs/msg/Transition), and return whether it succeeded."""
+    """Trigger a lifecycle_msgs/msg/Transition of a node, and return whether it succeeded."""
     from linkwright.messages import get_service
 
     kind = "lifecycle_msgs/srv/ChangeState"

@@ -1,4 +1,4 @@
-"""Find names of the running graph that a user gives, and suggest similar ones for unknown names."""
+"""Lookup of graph names that a user gives, with suggestions of similar names for unknown ones."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ _POLL = 0.1
 
 
 def visible(found: NamesAndTypes, *, hidden: bool) -> list[tuple[str, list[str]]]:
-    """Return names with their types, sorted; hidden names only on request."""
+    """Return names with their types, sorted; hidden names are included only if `hidden` is true."""
     from linkwright.graph.names.rules import is_hidden
 
     return [(name, list(types)) for name, types in sorted(found) if hidden or not is_hidden(name)]
 
 
 def absolute(name: str) -> str:
-    """Return a name with its leading slash, as the graph has it.
+    """Return a name with a leading slash, as in the graph.
 
     Raises:
-        InvalidNameError: it is not a valid name.
+        InvalidNameError: the name is not valid.
     """
     from linkwright.graph.names.rules import expand_topic_name
 
@@ -40,7 +40,7 @@ def unknown(code: str, message: Phrase, name: str, known: Iterable[str], nothing
 
     Args:
         code: the code of the diagnostic.
-        message: the message; that of ros2 if it has one.
+        message: the message, which is that of ros2 if it has one.
         name: the name that the user gave.
         known: the existing names.
         nothing: the hint if no name is similar.
@@ -87,17 +87,18 @@ async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
 async def topic_type(
     session: Session, name: str, given: str | None = None, *, wait: bool = False, raw: bool = False
 ) -> Any:
-    """Return the class of a topic's messages.
+    """Return the message class of a topic.
 
     Args:
         session: the session of the command.
         name: the absolute name.
-        given: the type's name, if the user gave it.
+        given: the name of the type, if the user gave it.
         wait: see `topic_types`.
-        raw: whether only the bytes of messages are needed; for an unknown type, its name is returned then.
+        raw: whether only the bytes of messages are needed; in that case the name of an unknown type is returned.
 
     Raises:
-        LinkwrightError: MSG101, there is no such type; CLI411 as `topic_types`; CLI412, the topic has several types.
+        LinkwrightError: MSG101, there is no such type; CLI411, as for `topic_types`; CLI412, the topic has several
+            types.
     """
     if given is not None:
         return _message_class(given, raw=raw)

@@ -1,4 +1,7 @@
-"""The arguments of commands for descriptions: the file, xacro values, and the description to compare with."""
+"""The arguments of commands for descriptions.
+
+These are the file, xacro arguments, and the description to compare with.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:
-    """Declare `file`, a robot's description, and `values` for its arguments."""
+    """Declare the argument `file` for a robot's description, and `values` for its xacro arguments."""
     parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
     add_values(parser, values_help="values for the file's <xacro:arg>")
 
@@ -21,13 +24,16 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 def add_values(
     parser: argparse.ArgumentParser, *, values_help: str, name: str = "values", metavar: str = "NAME:=VALUE"
 ) -> None:
-    """Declare any number of arguments ``name:=value``; the help says whether others may be among them."""
-    nothing: list[str] = []  # without a default, argparse lists them as missing too
+    """Declare any number of arguments ``name:=value``.
+
+    The help states whether other words may be among them.
+    """
+    nothing: list[str] = []  # without a default, argparse lists them as missing, too
     parser.add_argument(name, metavar=metavar, nargs="*", default=nothing, help=values_help)
 
 
 def add_second_model(parser: argparse.ArgumentParser) -> None:
-    """Declare `words`, a second file to compare with and values for both, and the option `against`."""
+    """Declare `words`, for a second file and values for both files, and the option `against`."""
     add_values(
         parser,
         values_help="a second file to compare FILE with, the new one, and NAME:=VALUE for <xacro:arg>",
@@ -47,14 +53,14 @@ def add_against(parser: argparse.ArgumentParser) -> None:
 
 
 def names_file(word: str) -> bool:
-    """Return whether a word names a file, and is neither ``name:=value`` nor a mistyped ``name=value``."""
-    from pathlib import Path  # imported late: `xacro`, which runs often, needs only the declarations above
+    """Return whether a word names a file, as opposed to ``name:=value`` or a mistyped ``name=value``."""
+    from pathlib import Path  # imported late: the frequent command `xacro` needs only the declarations above
 
     return ":=" not in word and ("=" not in word or Path(word).exists())
 
 
 def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
-    """Return the two descriptions to compare, or None if the command line does not name two.
+    """Return the two descriptions to compare; None if the command line does not name two.
 
     Args:
         arguments: `file`, `words` and `against`.

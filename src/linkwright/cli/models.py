@@ -27,7 +27,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the available models, and which are downloaded."""
+    """Print the available models, and whether they are downloaded."""
     from linkwright.model_files import is_installed, model_table, models_folder
 
     if arguments.json:
@@ -186,7 +186,7 @@ VERBS = {
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the commands."""
+    """Declare the subcommands."""
     configure_nested(parser, VERBS)
 
 

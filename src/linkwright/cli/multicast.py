@@ -65,7 +65,7 @@ def _up_to(most: int, text: str) -> int:
 
 
 def add_ttl_argument(parser: argparse.ArgumentParser) -> None:
-    """Declare ``--ttl``."""
+    """Declare the option ``--ttl``."""
     parser.add_argument(
         "--ttl", type=time_to_live, help="TTL of the datagrams (default: 1, which routers do not forward)"
     )

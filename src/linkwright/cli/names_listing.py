@@ -1,4 +1,4 @@
-"""The parts of commands that list names of the graph with their types: options, output and errors."""
+"""Common parts of the commands that list graph names with their types."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """A kind of names with types: topics, services or actions.
+    """A kind of graph names with types: topics, services or actions.
 
     Attributes:
         found: returns the existing names.
         code: the code of the error for an unknown name.
         missing: the message of that error for a name that the user gave.
-        hint: its hint if no name is similar.
+        hint: the hint of that error if no name is similar.
     """
 
     found: Callable[[Session], NamesAndTypes]
@@ -37,7 +37,7 @@ class Kind:
 
         Raises:
             LinkwrightError: with `code`, the name does not exist.
-            InvalidNameError: it is not a valid name.
+            InvalidNameError: the name is not valid.
         """
         name = absolute(given)
         found = dict(visible(self.found(session), hidden=hidden))
@@ -56,7 +56,7 @@ class Kind:
         return run_in_graph(arguments, job, only_looks=True)
 
     def print_of_type(self, arguments: argparse.Namespace, wanted: str, *, hidden: bool) -> int:
-        """Print the names that have a type, and return the exit status."""
+        """Print the names that have the given type, and return the exit status."""
 
         async def job(session: Session) -> int:
             found = visible(self.found(session), hidden=hidden)
@@ -84,7 +84,10 @@ def add_count_argument(parser: argparse.ArgumentParser, kind: str) -> None:
 
 
 def add_hidden_argument(parser: argparse.ArgumentParser, option: str, *, hidden_help: str) -> None:
-    """Declare ``--include-hidden-topics`` or a similar option, which is also accepted before the subcommand."""
+    """Declare ``--include-hidden-topics`` or a similar option.
+
+    The option is also accepted before the subcommand.
+    """
     parser.add_argument(
         option,
         "-a",
@@ -96,12 +99,12 @@ def add_hidden_argument(parser: argparse.ArgumentParser, option: str, *, hidden_
 
 
 def print_names(names: Sequence[str], arguments: argparse.Namespace) -> None:
-    """Print names, one per line, or their number."""
+    """Print names, one per line, or only their number."""
     for line in [len(names)] if arguments.count else names:
         print(line)
 
 
 def print_names_and_types(found: NamesAndTypes, arguments: argparse.Namespace) -> None:
-    """Print names, with their types if requested, or their number, as ros2 does."""
+    """Print names, with their types if requested, or only their number, as ros2 does."""
     lines = [f"{name} [{', '.join(types)}]" if arguments.show_types else name for name, types in found]
     print_names(lines, arguments)

@@ -11,9 +11,9 @@ class SubVerb(NamedTuple):
     """A subcommand.
 
     Attributes:
-        configure: declares its arguments.
-        run: runs it and returns the exit status.
-        help: its help text, in one line.
+        configure: declares the arguments.
+        run: runs the subcommand and returns the exit status.
+        help: the help text, in one line.
     """
 
     configure: Callable[[argparse.ArgumentParser], None]
@@ -26,7 +26,7 @@ def configure_nested(parser: argparse.ArgumentParser, verbs: Mapping[str, SubVer
 
     Args:
         parser: the command's parser.
-        verbs: name -> subcommand.
+        verbs: the subcommands by name.
     """
     below = parser.add_subparsers(dest="verb", metavar="COMMAND", title="commands")
     for name, verb in verbs.items():

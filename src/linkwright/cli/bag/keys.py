@@ -1,4 +1,4 @@
-"""Read single keys from the terminal while an event loop runs."""
+"""Reading of single keys from the terminal while an event loop runs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def listening(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
     """Call the action of each key that is pressed while the context is entered.
 
     Args:
-        actions: key -> the action to call.
+        actions: the action to call for each key.
 
     Yields:
         Whether keys are read: standard input must be a terminal, with this process in its foreground.
@@ -33,7 +33,7 @@ def listening(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
 
     def read() -> None:
         text = os.read(descriptor, 64).decode(errors="replace")
-        while text:  # keys that are typed quickly arrive together
+        while text:  # keys that are typed quickly arrive in one read
             key = next((action for action in actions if text.startswith(action)), "")
             if key:
                 actions[key]()

@@ -1,4 +1,4 @@
-"""Options that the commands for recordings share: ``--storage`` and ``--qos-profile-overrides-path``."""
+"""Common options of bag commands: ``--storage`` and ``--qos-profile-overrides-path``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def add_storage_argument(parser: argparse.ArgumentParser) -> None:
-    """Declare the option."""
+    """Declare the option ``--storage``."""
     parser.add_argument(
         "-s",
         "--storage",
@@ -22,7 +22,7 @@ def add_storage_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def add_overrides_argument(parser: argparse.ArgumentParser) -> None:
-    """Declare the option."""
+    """Declare the option ``--qos-profile-overrides-path``."""
     parser.add_argument(
         "--qos-profile-overrides-path",
         metavar="FILE",
@@ -32,7 +32,7 @@ def add_overrides_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def read_overrides(arguments: argparse.Namespace) -> dict[str, QoSProfile]:
-    """Return the QoS overrides of the file that the command line names, if any.
+    """Return the QoS overrides of the file that the command line names; empty if it names none.
 
     Raises:
         LinkwrightError: BAG106, the file cannot be read or has another structure.

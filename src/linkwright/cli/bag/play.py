@@ -98,7 +98,7 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
 
 
 def run_play(arguments: argparse.Namespace) -> int:
-    """Play until the end, or until the user interrupts it."""
+    """Play a recording until its end, or until the user interrupts it."""
     from linkwright.bag import BagReader, PlayOptions
     from linkwright.cli.session import run_in_graph
 

@@ -1,4 +1,4 @@
-"""``linkwright bag convert``, ``reindex`` and ``list``: rewrite recordings, and list the storage formats."""
+"""``linkwright bag convert``, ``reindex`` and ``list``: rewrite recordings, list storage formats."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print our equivalents of rosbag2's plugins of a kind."""
+    """Print our equivalents of one kind of rosbag2's plugins."""
     if arguments.verbose:
         print(f"available {arguments.kind} plugins are:")
     for plugin in _PLUGINS[arguments.kind]:

@@ -1,4 +1,4 @@
-"""``linkwright completion``: completion of command lines in a shell."""
+"""``linkwright completion``: completion of command lines in shells."""
 
 from linkwright.cli.completion.verb import configure, run
 

@@ -1,7 +1,11 @@
-"""The program that shells run for TAB: ``python -m linkwright.cli.completion (--line LINE | WORD ...)``.
+"""The program that shells run when TAB is pressed.
 
-The words are those of the command line: the program first, and the word at the cursor, which may be empty, last. The
-candidates for that word are printed, one on each line.
+It is called as ``python -m linkwright.cli.completion (--line LINE
+
+ WORD ...)``.
+
+The words are those of the command line: the program is the first word, and the word at the cursor, which may be empty,
+is the last. The candidates for that word are printed, one per line.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ def divided(line: str) -> list[str]:
     """Split a command line up to the cursor into words; the last word is incomplete and may be empty."""
     try:
         words = shlex.split(line)
-    except ValueError:  # a quote is open
+    except ValueError:  # a quotation is still open
         words = line.split()
     return [*words, ""] if not words or line[-1:].isspace() else words
 
@@ -33,7 +33,7 @@ def complete(words: Sequence[str]) -> list[str]:
     """Return the completions of the last word of a command line; `scripts.FILES` requests file names."""
     program, *given = words
     *before, current = given or [""]
-    current = current.lstrip("'\"")  # of a quote that is still open
+    current = current.lstrip("'\"")  # the quotation mark of an open quotation
     found = _candidates(Path(program).name, before, current, json.loads(TABLE.read_text(encoding="utf-8")))
     return [fromkey for fromkey in dict.fromkeys(found) if fromkey.startswith((current, ":"))]
 

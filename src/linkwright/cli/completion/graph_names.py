@@ -1,7 +1,7 @@
-"""Names of the running graph, from a cache.
+"""Names from the running graph, read from a cache.
 
-Discovering the nodes of other processes takes longer than a user waits for TAB. So TAB offers the names of the last
-discovery, and starts a new one in another process.
+Discovering the nodes of other processes takes longer than a user waits for TAB. TAB therefore offers the names of the
+last discovery, and starts a new discovery in another process.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _STALE_SECONDS = 600.0
 
 
 def names_of(kind: str) -> list[str]:
-    """Return the cached ``topics``, ``nodes``, ``services`` or ``actions``."""
+    """Return the cached names of a kind: ``topics``, ``nodes``, ``services`` or ``actions``."""
     path = _path()
     try:
         age = time.time() - path.stat().st_mtime
@@ -43,7 +43,7 @@ def _path() -> Path:
 
 
 def _look_soon(path: Path) -> None:
-    """Start discovery in another process, unless it was just started."""
+    """Start a discovery in another process, unless one was started a moment ago."""
     begun = path.with_suffix(".begun")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)

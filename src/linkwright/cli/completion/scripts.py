@@ -1,4 +1,7 @@
-"""Scripts for bash, zsh and fish, which pass the words to ``python -m linkwright.cli.completion``."""
+"""Completion scripts for bash, zsh and fish.
+
+They pass the words to ``python -m linkwright.cli.completion``.
+"""
 
 from __future__ import annotations
 
@@ -103,7 +106,7 @@ end
 
 
 def script(shell: str, python: str, commands: Sequence[str]) -> str:
-    """Return the completion script of a shell.
+    """Return the completion script for a shell.
 
     Args:
         shell: a key of `SHELLS`.
@@ -115,13 +118,15 @@ def script(shell: str, python: str, commands: Sequence[str]) -> str:
 
 
 def shell_script(shell: str, python: str, mark: str, missing: Sequence[str]) -> str:
-    """Return the start-up script of ``linkwright shell``: completion, and hints for programs that are not available.
+    """Return the start-up script of ``linkwright shell``.
+
+    It provides completion, and hints for unavailable programs.
 
     Args:
         shell: a key of `SHELLS`.
         python: the interpreter that has Linkwright.
         mark: the environment variable that names the folder of our programs.
-        missing: the programs that have a replacement.
+        missing: the programs for which a replacement exists.
     """
     names = (" " if shell == "fish" else "|").join(missing)
     not_found = _NOT_FOUND[shell].replace("PYTHON", shlex.quote(python)).replace("NAMES", names)

@@ -1,4 +1,7 @@
-"""The values of arguments: packages, executables, launch files and their arguments, names and types of the graph."""
+"""Candidates for the arguments of commands.
+
+These are packages, executables, launch files and their arguments, and names and types of the graph.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +32,7 @@ def candidates_of(kind: str, path: list[str], placed: list[str], table: Mapping[
 
     Args:
         kind: the argument's name in the help.
-        path: the command's names, such as ``topic`` and ``echo``.
+        path: the names of command and subcommand, such as ``topic`` and ``echo``.
         placed: the preceding positional arguments.
         table: the commands, with our executables and types.
     """
@@ -88,7 +91,10 @@ def _second_description(asked: Asked) -> Iterable[str]:
 
 
 def _arguments_in(path: Path, pattern: re.Pattern[str]) -> list[str]:
-    """Return the arguments that a file declares; it is searched as text, because running it takes too long."""
+    """Return the arguments that a launch file declares.
+
+    The file is searched as text, because running it takes too long.
+    """
     text = path.read_text(encoding="utf-8", errors="replace")
     names = (next(filter(None, found.groups())) for found in pattern.finditer(text))
     return [f"{name}:=" for name in dict.fromkeys(names)]
