@@ -1,4 +1,4 @@
-"""Odometry of drives, and the transform that goes with it."""
+"""Odometry of drives, and the corresponding transform."""
 
 from __future__ import annotations
 
@@ -28,18 +28,24 @@ _UNKNOWN = 1e12
 
 
 def planar_variances(x: float, y: float, yaw: float) -> Variances:
-    """Variances for motion in a plane: large ones for values that are not measured, unless all are 0."""
+    """Return variances for planar motion.
+
+    Values that are not measured have large variances, unless all variances are 0.
+    """
     return (x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw) if x or y or yaw else _NONE
 
 
 def yaw_of(pose: Transform) -> float:
-    """The yaw of a pose, in rad."""
+    """Return the yaw of a pose, in rad."""
     _, _, _, x, y, z, w = pose
     return atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
 def planar_velocity(pose: Transform, linear: Array, angular: Array) -> tuple[float, float, float]:
-    """Velocities forward and to the left in m/s and around z in rad/s, from those in the axes of the world."""
+    """Convert a velocity from world axes to the robot's axes.
+
+    The result is the velocities forward and to the left in m/s, and around z in rad/s.
+    """
     yaw = yaw_of(pose)
     forward = float(linear[0] * cos(yaw) + linear[1] * sin(yaw))
     sideways = float(linear[1] * cos(yaw) - linear[0] * sin(yaw))
@@ -47,7 +53,7 @@ def planar_velocity(pose: Transform, linear: Array, angular: Array) -> tuple[flo
 
 
 class _Classes(NamedTuple):
-    """The message classes that odometry and transforms are made of."""
+    """The message classes of odometry and transforms."""
 
     point: Any
     pose: Any
@@ -73,15 +79,15 @@ def _classes() -> _Classes:
 
 @dataclass(slots=True)
 class OdometryTopics:
-    """Odometry on its topics.
+    """The topics on which odometry is published.
 
     Attributes:
-        frame: the frame that the robot moves in.
+        frame: the frame in which the robot moves.
         child: the robot's frame.
-        odometry: the topic of odometry; None for none.
-        transforms: that of transforms; None for none.
-        variances: of the pose.
-        velocity_variances: of the velocities; None for the same.
+        odometry: the odometry topic; None for none.
+        transforms: the transform topic; None for none.
+        variances: the variances of the pose.
+        velocity_variances: the variances of the velocities; None for those of the pose.
     """
 
     frame: str
@@ -101,14 +107,14 @@ class OdometryTopics:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether a subscriber exists."""
+        """Whether a subscription exists."""
         for output, _ in self._outputs:  # noqa: SIM110 - see Output.is_wanted
             if output.is_wanted:
                 return True
         return False
 
     def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, angular: float) -> None:
-        """Publish the pose, and the velocities in the robot's own axes in m/s and rad/s."""
+        """Publish the pose, and the velocities along the robot's own axes in m/s and rad/s."""
         for output, send in self._outputs:
             if output.is_wanted:
                 send(stamp, pose, forward, sideways, angular)
@@ -131,16 +137,16 @@ def _diagonal(variances: Variances) -> Array:
 
 
 def transform_message(header: Header, child: str, pose: Transform) -> Any:
-    """A message with one transform, for topics of transforms."""
+    """Return a message with one transform, for transform topics."""
     return _classes().transforms([transform_stamped(header, child, pose)])
 
 
 def transform_stamped(header: Header, child: str, pose: Transform) -> TransformStamped:
-    """The transform of a frame in that of the header."""
+    """Return the transform of a child frame in the frame of the header."""
     x, y, z, qx, qy, qz, qw = pose
     return TransformStamped(header, child, TransformMessage(Vector3(x, y, z), Quaternion(qx, qy, qz, qw)))
 
 
 def transforms_topic(node: SteppedNode, name: str = "/tf") -> Output:
-    """A topic of transforms."""
+    """Create an output for transforms."""
     return node.publisher(TRANSFORMS, name, TRANSFORMS_DEPTH)

@@ -1,1 +1,1 @@
-"""Controllers, a file each, found through entry points."""
+"""Controllers, one per file, which are found through entry points."""

@@ -1,4 +1,4 @@
-"""``ackermann_steering_controller/AckermannSteeringController``: two driven wheels, two steered ones."""
+"""``ackermann_steering_controller/AckermannSteeringController``: two driven, two steered wheels."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(SteeringParameters):
-    """Parameters of the controller: those of all steered vehicles, and its sizes."""
+    """The parameters of the controller: those of all steered vehicles, and its dimensions."""
 
     traction_wheels_radius: float = parameter(0.0, description="of the wheels that drive, in m", only=JAZZY)
     traction_track_width: float = parameter(0.0, description="between the wheels that drive, in m", only=JAZZY)
@@ -23,14 +23,17 @@ class Parameters(SteeringParameters):
 
 
 class AckermannSteeringController(SteeringController[Parameters]):
-    """A car: two driven wheels behind, two steered ones in front."""
+    """A car with two driven rear wheels and two steered front wheels."""
 
     PARAMETERS = Parameters
     KIND = "Ackermann"
     JOINTS = (2, 2)
 
     def drive(self) -> CarDrive:
-        """The sizes from the parameters, by their names or the older ones."""
+        """Return the drive with the dimensions from the parameters.
+
+        The parameters have their current or their older names.
+        """
         parameters = self.parameters
         traction = parameters.traction_track_width or parameters.of_traction(
             parameters.front_wheel_track, parameters.rear_wheel_track

@@ -1,4 +1,7 @@
-"""Action servers of controllers: goals arrive on the event loop, and are executed in the thread of the updates."""
+"""Action servers of controllers.
+
+Goals arrive on the event loop, and are executed in the update thread.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,10 @@ from linkwright.graph.actions.server import ActionServer
 
 
 class _Server(ActionServer):
-    """An action server that reports cancel requests after its own bookkeeping: a goal may end at once."""
+    """An action server that reports cancel requests after it has handled them itself.
+
+    The order matters because a goal may end as soon as the request is reported.
+    """
 
     on_cancel_requested: Callable[[ServerGoalHandle], object]
 
@@ -23,13 +29,13 @@ class _Server(ActionServer):
 
 
 class Goal:
-    """An accepted goal, as the thread of the updates uses it.
+    """An accepted goal, for use in the update thread.
 
-    It ends once, by `succeed`, `abort` or `cancel`: later calls change nothing.
+    It ends with the first call of `succeed`, `abort` or `cancel`; later calls have no effect.
 
     Attributes:
         request: the goal message.
-        ended: whether one of these was called.
+        ended: whether the goal has ended.
     """
 
     def __init__(self, handle: ServerGoalHandle, node: ControllerNode) -> None:
@@ -39,7 +45,7 @@ class Goal:
         self._node = node
 
     def is_of(self, handle: ServerGoalHandle) -> bool:
-        """Return whether it is the goal of a handle."""
+        """Return whether this is the goal of a handle."""
         return self._handle is handle
 
     def feedback(self, message: Any) -> None:
@@ -47,15 +53,15 @@ class Goal:
         self._node.call_on_loop(partial(self._handle.publish_feedback, message))
 
     def succeed(self, result: Any) -> None:
-        """End with the status succeeded."""
+        """End the goal with the status succeeded."""
         self._end(self._handle.succeed, result)
 
     def abort(self, result: Any) -> None:
-        """End with the status aborted."""
+        """End the goal with the status aborted."""
         self._end(self._handle.abort, result)
 
     def cancel(self, result: Any) -> None:
-        """End with the status canceled, whether its client asked for that or not."""
+        """End the goal with the status canceled, whether or not its client requested that."""
         self._end(self._canceled, result)
 
     def _canceled(self, result: Any) -> None:
@@ -78,11 +84,12 @@ class ControllerAction:
 
     Args:
         node: the controller's node.
-        action_type: the name of the action's type.
+        action_type: the name of the action type.
         name: the action's name.
-        is_allowed: whether a goal message is accepted; called on the event loop.
-        begin: called with each accepted goal, in the thread of the updates.
-        cancel: called with the goal that is to be given up, likewise; only with the one that `begin` got last.
+        is_allowed: returns whether a goal message is accepted; called on the event loop.
+        begin: called with each accepted goal, in the update thread.
+        cancel: called with the goal to be cancelled, in the update thread; only with the goal that `begin` received
+            last.
     """
 
     def __init__(
@@ -112,7 +119,7 @@ class ControllerAction:
         self._server.on_cancel_requested = self._asked_to_cancel
 
     def close(self) -> None:
-        """Remove it from the graph."""
+        """Remove the action server from the graph."""
         self._server.destroy()
 
     def _asked(self, request: Any) -> GoalResponse:

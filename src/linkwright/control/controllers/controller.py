@@ -1,6 +1,6 @@
 """The base class of controllers, and their interface to a manager.
 
-How to write one: a class, declared as an entry point of the group ``linkwright.controllers`` under its type name:
+A controller is a class that is declared as an entry point of the group ``linkwright.controllers`` under its type name:
 
     class Copier(Controller[Parameters]):
         PARAMETERS = Parameters  # a dataclass, see `parameters`
@@ -19,7 +19,7 @@ How to write one: a class, declared as an entry point of the group ``linkwright.
             for command in self.commands:
                 command.value = self._wanted
 
-Everything is called in one thread, that of the updates. Names, order and meaning of the callbacks are those of
+All methods are called in one thread, the update thread. Names, order and meaning of the callbacks are those of
 ``controller_interface`` of ros2_control.
 """
 
@@ -59,12 +59,12 @@ class ControllerError(LinkwrightError):
 
 @dataclass(frozen=True, slots=True)
 class ControllerPlace:
-    """The node, parameters and description that a manager gives to a controller.
+    """The node, parameters and description that a manager passes to a controller.
 
     Attributes:
-        name: the controller's name, that of its node.
-        node: its node.
-        update_rate: how often it is updated, in Hz.
+        name: the controller's name, which is also that of its node.
+        node: the controller's node.
+        update_rate: how often the controller is updated, in Hz.
         robot_description: the URDF of the robot; empty if none is known.
     """
 
@@ -75,27 +75,27 @@ class ControllerPlace:
 
 
 class Controller(ABC, Generic[P]):
-    """A controller.
+    """A controller, which computes commands from states in each update.
 
     Args:
-        place: where it runs.
+        place: the node and settings that the manager provides.
 
     Raises:
-        LinkwrightError: one of its parameters has a value that it cannot have.
+        LinkwrightError: a parameter has a value that is not allowed.
 
     Attributes:
-        PARAMETERS: the dataclass with its parameters.
-        name: its name.
-        node: its part of the ROS graph; its parameters are this node's.
-        update_rate: how often it is updated, in Hz.
+        PARAMETERS: the dataclass with the controller's parameters.
+        name: the controller's name.
+        node: the controller's node, which has the parameters.
+        update_rate: how often the controller is updated, in Hz.
         robot_description: the URDF of the robot; empty if none is known.
-        commands: the command interfaces that it has while it is active, in the order that it asked for them.
-        states: the state interfaces; likewise.
+        commands: the command interfaces available while the controller is active, in the order of `command_interfaces`.
+        states: the state interfaces, in the order of `state_interfaces`.
         references: the inputs for another controller in chained mode, see `reference_interfaces`.
-        exported: the states that it gives to others, see `exported_states`.
-        chained: whether another controller commands its references.
+        exported: the states for other controllers, see `exported_states`.
+        chained: whether another controller commands the references.
         time_ns: the time of the latest update, in nanoseconds.
-        state: where in its life it is.
+        state: the lifecycle state.
     """
 
     PARAMETERS: ClassVar[type[Any]] = NoParameters
@@ -119,17 +119,20 @@ class Controller(ABC, Generic[P]):
 
     @classmethod
     def variant(cls, given: Collection[str]) -> type[Controller[Any]]:  # noqa: ARG003 - for those that share a name
-        """The class for the names of given parameters: another one where two packages share the name of a type."""
+        """Return the controller class that fits the names of the given parameters.
+
+        This is another class if two packages use the same type name.
+        """
         return cls
 
     @property
     def parameters(self) -> P:
-        """Its current parameters; read those that may change at run time again for each use."""
+        """The current parameters; read parameters that may change at run time again for each use."""
         return self._parameters.values
 
     @cached_property
     def robot(self) -> Robot | None:
-        """The robot; None where no description is known, or it cannot be read."""
+        """The robot; None if no description is known, or if it cannot be parsed."""
         from linkwright.descriptions import DescriptionLibrary
 
         return DescriptionLibrary().read(self.robot_description).robot if self.robot_description else None
@@ -137,71 +140,80 @@ class Controller(ABC, Generic[P]):
     # --- interfaces that it claims and exports, read after `on_configure` --------------------------------------------
 
     def command_interfaces(self) -> InterfaceNames:
-        """The names of the command interfaces that it claims while it is active."""
+        """Return the names of the command interfaces that the controller claims while it is active."""
         return ()
 
     def state_interfaces(self) -> InterfaceNames:
-        """The names of the state interfaces that it reads while it is active."""
+        """Return the names of the state interfaces that the controller reads while it is active."""
         return ()
 
     def reference_interfaces(self) -> Sequence[str]:
-        """The names, without its own, of the references that another controller may command in place of its topics."""
+        """Return the names of the references that another controller may command instead of topics.
+
+        The names do not include the controller's name.
+        """
         return ()
 
     def exported_states(self) -> Sequence[str]:
-        """The names, without its own, of the states that other controllers may read."""
+        """Return the names, without the controller's name, of the states that other controllers may read."""
         return ()
 
-    # --- its life -----------------------------------------------------------------------------------------------------
+    # --- lifecycle ----------------------------------------------------------------------------------------------------
 
     def on_configure(self) -> None:
-        """Read the parameters, make the topics.
+        """Read the parameters, and create the topics.
 
         Raises:
-            ControllerError: it cannot work so; it stays unconfigured.
+            ControllerError: the controller cannot be configured; it stays unconfigured.
         """
 
     def on_activate(self) -> None:
-        """Start; `commands` and `states` are available now.
+        """Start; `commands` and `states` are available from now on.
 
         Raises:
-            ControllerError: it cannot; it stays inactive.
+            ControllerError: the controller cannot be activated; it stays inactive.
         """
 
     def on_deactivate(self) -> None:
-        """Stop: set safe commands, such as zero velocity. `commands` and `states` become unavailable afterwards."""
+        """Set safe commands, such as zero velocity, and stop.
 
-    def on_cleanup(self) -> None:
-        """Release what `on_configure` made; topics and services are removed automatically."""
-
-    def on_error(self) -> None:
-        """Handle an error other than ControllerError in one of the others, or in an update."""
-
-    def on_set_chained_mode(self, chained: bool) -> None:
-        """Note whether another controller commands the references from now on.
-
-        Raises:
-            ControllerError: it refuses.
+        Afterwards `commands` and `states` are no longer available.
         """
 
-    # --- its work -----------------------------------------------------------------------------------------------------
+    def on_cleanup(self) -> None:
+        """Release the resources of `on_configure`; topics and services are removed automatically."""
+
+    def on_error(self) -> None:
+        """Handle an error other than ControllerError that occurred in another callback or in an update."""
+
+    def on_set_chained_mode(self, chained: bool) -> None:
+        """Handle a change of chained mode, in which another controller commands the references.
+
+        Raises:
+            ControllerError: the controller refuses the change.
+        """
+
+    # --- updates ------------------------------------------------------------------------------------------------------
 
     def update_references(self, time_ns: int, period_s: float) -> None:
-        """Copy commands from topics into `references`; called before `update` unless another controller sets them."""
+        """Copy commands from topics into `references`.
+
+        This is called before `update` unless another controller sets the references.
+        """
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Read `states`, write `commands`.
+        """Read `states`, and write `commands`.
 
         Args:
             time_ns: the time, in nanoseconds.
             period_s: the time since the last update, in seconds.
 
         Raises:
-            Exception: whatever it raises is logged, and the controller is deactivated.
+            Exception: any exception is logged, and the controller is deactivated.
         """
 
     def step(self, time_ns: int, period_s: float) -> None:
-        """Run an update for the manager: `update_references` where that is due, and `update`."""
+        """Run an update: `update_references` unless the controller is chained, then `update`."""
         self.time_ns = time_ns
         if not self.chained and self.references:
             self.update_references(time_ns, period_s)

@@ -1,8 +1,8 @@
-"""``diff_drive_controller/DiffDriveController``: differential drive by two sides of wheels.
+"""``diff_drive_controller/DiffDriveController``: differential drive with wheels on two sides.
 
-Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics, texts). Three things differ from it:
-open-loop odometry integrates the velocity within its limits, wheels may start at any angle, and a command that is not a
-number stops the robot.
+Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics, messages). Three things differ: open-loop
+odometry integrates the limited velocity, wheels may start at any angle, and a command that is not a number stops the
+robot.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from linkwright.nodes.parameter_tables import HUMBLE, above, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class LinearLimits:
-    """Limits of linear velocities."""
+    """The limits of linear velocities."""
 
     x: SpeedLimits = NO_LIMITS
 
@@ -43,17 +43,17 @@ class Parameters(LimitedDriveParameters):
 
 
 class DiffDriveController(LimitedDrive[Parameters]):
-    """A differential drive: wheel velocities from the commanded velocity, and odometry from the wheels."""
+    """A differential drive: computes wheel velocities from commands, and odometry from the wheels."""
 
     PARAMETERS = Parameters
 
     def command_interfaces(self) -> InterfaceNames:
-        """The velocities of the left wheels, then of the right ones."""
+        """Return the velocity interfaces of the left wheels, then of the right wheels."""
         parameters = self.parameters
         return [f"{wheel}/{VELOCITY}" for wheel in (*parameters.left_wheel_names, *parameters.right_wheel_names)]
 
     def state_interfaces(self) -> InterfaceNames:
-        """Positions or velocities of the wheels; none in open loop."""
+        """Return the position or velocity interfaces of the wheels; none in open loop."""
         parameters = self.parameters
         if parameters.open_loop:
             return ()
@@ -61,18 +61,18 @@ class DiffDriveController(LimitedDrive[Parameters]):
         return [f"{wheel}/{kind}" for wheel in (*parameters.left_wheel_names, *parameters.right_wheel_names)]
 
     def reference_interfaces(self) -> Sequence[str]:
-        """The velocity forward in m/s, and around z in rad/s."""
+        """Return the references: the forward velocity in m/s, and the angular velocity around z in rad/s."""
         return ("linear/velocity", "angular/velocity")
 
     def limits(self) -> Mapping[str, SpeedLimits]:
-        """Those forward and around z."""
+        """Return the limits of the forward velocity and the angular velocity around z."""
         return {"linear.x": self.parameters.linear.x, "angular.z": self.parameters.angular.z}
 
     def on_configure(self) -> None:
-        """Check the parameters, make the topics.
+        """Check the parameters, and create the topics.
 
         Raises:
-            ControllerError: wheels or their sizes are missing, or a limit is wrong.
+            ControllerError: wheels or their dimensions are missing, or a limit is wrong.
         """
         self._check_wheels()
         parameters = self.parameters
@@ -103,7 +103,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
                 raise ControllerError(wrong)
 
     def update_references(self, time_ns: int, period_s: float) -> None:
-        """Copy the command into the references; zero where it is missing or too old."""
+        """Copy the command into the references; zero if it is missing or too old."""
         velocity = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
         forward, angular = self.references
         forward.value, angular.value = velocity[0], velocity[2]
@@ -112,7 +112,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
         """Command the wheels, and publish the odometry.
 
         Raises:
-            ControllerError: it moves, and a wheel has no valid state.
+            ControllerError: the robot is moving, and a wheel has no valid state.
         """
         wanted = [reference.value for reference in self.references]
         if not all(map(isfinite, wanted)):
@@ -130,7 +130,10 @@ class DiffDriveController(LimitedDrive[Parameters]):
         self._publish(time_ns, forward, 0.0, angular)
 
     def _measure(self, period_s: float, *, moves: bool) -> None:
-        """Update the odometry by the mean of each side's wheels; unknown states are tolerated until it moves."""
+        """Update the odometry with the mean of each side's wheels.
+
+        Missing states are tolerated until the robot moves.
+        """
         values = [state.value for state in self.states]
         count = len(values) // 2
         left, right = sum(values[:count]) / count, sum(values[count:]) / count

@@ -19,7 +19,7 @@ def variances(name: str, values: tuple[float, ...]) -> Variances:
     """Expand a parameter to variances of x, y, z, roll, pitch and yaw.
 
     Raises:
-        ControllerError: there are not six.
+        ControllerError: the parameter does not have six values.
     """
     if len(values) != _AXES:
         raise ControllerError(
@@ -29,11 +29,11 @@ def variances(name: str, values: tuple[float, ...]) -> Variances:
 
 
 def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> str:
-    """Return the prefix of frame names: empty, or a name with a slash at its end and none at its beginning.
+    """Return the prefix of frame names: empty, or a name with a trailing slash and no leading slash.
 
     Args:
         node: the controller's node.
-        prefix: the requested prefix; ``~`` and an empty one represent the namespace of the node.
+        prefix: the requested prefix; ``~`` or an empty prefix stands for the namespace of the node.
         enabled: whether frames have a prefix.
 
     Source: diff_drive_controller (``tf_frame_prefix``, ``tf_frame_prefix_enable``).
@@ -50,15 +50,15 @@ class DriveOdometry:
 
     Args:
         node: the controller's node.
-        odometry: the topic of odometry.
-        transforms: the topic of transforms.
-        frame: the frame that the robot moves in.
+        odometry: the name of the odometry topic.
+        transforms: the name of the transform topic.
+        frame: the frame in which the robot moves.
         child: the robot's frame.
-        of_pose, of_velocity: variances.
+        of_pose, of_velocity: the variances of pose and velocity.
         publishes_transforms: whether transforms are published; their topic exists in any case.
-        publishes_pose: whether odometry has the pose; else it has velocities only.
-        window: that of the odometer.
-        rate: the rate of publishing in Hz; 0 publishes at each update.
+        publishes_pose: whether odometry messages contain the pose; otherwise they contain only velocities.
+        window: the window of the odometer.
+        rate: the publishing rate in Hz; 0 publishes at each update.
 
     Attributes:
         odometer: the source of the robot's pose.
@@ -89,7 +89,7 @@ class DriveOdometry:
         self._published_ns: int | None = None
 
     def publish(self, time_ns: int) -> None:
-        """Publish if that is due at a time in nanoseconds and a subscriber exists."""
+        """Publish if a message is due at the given time, in nanoseconds, and a subscription exists."""
         if not self._is_due(time_ns):
             return
         wanted = self._topics.is_wanted
@@ -111,7 +111,7 @@ class DriveOdometry:
         return True
 
     def serve(self, node: ControllerNode) -> None:
-        """Offer ``~/set_odometry`` of type ``control_msgs/srv/SetOdometry``, by which others set the pose."""
+        """Offer the service ``~/set_odometry`` (``control_msgs/srv/SetOdometry``), which sets the pose."""
 
         def asked(request: Any, response: Any) -> Any:
             self.odometer.reset(request.x, request.y, request.yaw)

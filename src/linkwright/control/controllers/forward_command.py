@@ -1,7 +1,9 @@
-"""Controllers that forward commands to interfaces: ``forward_command_controller``, and the groups derived from it.
+"""Controllers that forward commands to interfaces.
+
+These are ``forward_command_controller``, and the groups derived from it.
 
 Source: forward_command_controller, position_controllers, velocity_controllers and effort_controllers of
-ros2_controllers (parameters, topics, texts; velocities and efforts are 0 after the end).
+ros2_controllers (parameters, topics, messages; velocities and efforts are 0 after deactivation).
 """
 
 from __future__ import annotations
@@ -36,20 +38,20 @@ class MultiInterfaceParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class GroupParameters:
-    """Parameters of the groups ``JointGroup...Controller``."""
+    """Parameters of the ``JointGroup...Controller`` types."""
 
     joints: tuple[str, ...] = parameter((), description="joints whose interface is commanded")
 
 
 class _Forwarding(Controller[P], Generic[P]):
-    """Forwards the last message of ``~/commands`` to its interfaces."""
+    """Forwards the last message of ``~/commands`` to the commanded interfaces."""
 
     @abstractmethod
     def _names(self) -> Sequence[str]:
-        """The names of the commanded interfaces."""
+        """Return the names of the commanded interfaces."""
 
     def command_interfaces(self) -> InterfaceNames:
-        """The names of the commanded interfaces."""
+        """Return the names of the commanded interfaces."""
         return self._names()
 
     def on_configure(self) -> None:
@@ -60,11 +62,11 @@ class _Forwarding(Controller[P], Generic[P]):
         self.node.subscribe("std_msgs/msg/Float64MultiArray", "~/commands", self._on_command, commander=commander)
 
     def on_activate(self) -> None:
-        """Drop earlier commands."""
+        """Discard earlier commands."""
         self._wanted = None
 
     def on_deactivate(self) -> None:
-        """Drop the last command."""
+        """Discard the last command."""
         self._wanted = None
 
     def update(self, time_ns: int, period_s: float) -> None:
@@ -76,7 +78,10 @@ class _Forwarding(Controller[P], Generic[P]):
             command.value = value
 
     def _rest(self) -> bool:
-        """Command zero velocities; positions and efforts are held. Whether anything was to move."""
+        """Set commanded velocities to zero, and hold positions and efforts.
+
+        Returns whether any velocity was not zero.
+        """
         if self._wanted is None:
             return False
         is_velocity = [name.endswith(f"/{VELOCITY}") for name in self._names()]
@@ -87,7 +92,7 @@ class _Forwarding(Controller[P], Generic[P]):
     def _on_command(self, message: Any) -> None:
         wanted, count = list(message.data), len(self.commands)
         if not count:
-            return  # it is not active
+            return  # the controller is not active
         if len(wanted) != count:
             self.node.logger.error(
                 f"command size ({len(wanted)}) does not match number of interfaces ({count})",
@@ -139,7 +144,7 @@ class _Group(_Forwarding[GroupParameters]):
         return [f"{joint}/{self.INTERFACE}" for joint in self.parameters.joints]
 
     def on_deactivate(self) -> None:
-        """Stop moving joints."""
+        """Command zero to the joints, unless they are commanded by position."""
         super().on_deactivate()
         if self.STOPS:
             for command in self.commands:

@@ -1,8 +1,8 @@
-"""Gripper controllers, which are opened and closed by an action.
+"""Gripper controllers, which open and close a gripper by an action.
 
-``position_controllers/GripperActionController`` sends the position on, ``effort_controllers/GripperActionController``
-makes an effort of it by PID, and ``parallel_gripper_action_controller/GripperActionController`` sends the greatest
-effort and velocity on as well.
+``position_controllers/GripperActionController`` forwards the position, ``effort_controllers/GripperActionController``
+computes an effort from it by PID, and ``parallel_gripper_action_controller/GripperActionController`` also forwards the
+maximum effort and velocity.
 
 Source: ros2_controllers (parameters, actions, when a goal is reached and when the gripper is stalled).
 """
@@ -47,7 +47,7 @@ class EffortGripperParameters(GripperParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class ParallelGripperParameters(GripperParameters):
-    """Parameters of the gripper with interfaces for the greatest effort and velocity."""
+    """Parameters of the gripper with interfaces for the maximum effort and velocity."""
 
     max_effort: float = parameter(10.0, description="N, for goals without an effort", check=at_least(0.0))
     max_velocity: float = parameter(0.1, description="m/s, for goals without a velocity", check=at_least(0.0))
@@ -60,20 +60,20 @@ P = TypeVar("P", bound=GripperParameters)
 
 
 class Gripper(Controller[P]):
-    """The base of grippers: goals, and when they end."""
+    """The base of gripper controllers, which handles goals and decides when they end."""
 
     ACTION: ClassVar[str] = "control_msgs/action/GripperCommand"
 
     def command_interfaces(self) -> InterfaceNames:
-        """The position of the joint."""
+        """Return the position interface of the joint."""
         return [f"{self.parameters.joint}/{POSITION}"]
 
     def state_interfaces(self) -> InterfaceNames:
-        """Position and velocity of the joint."""
+        """Return the position and velocity interfaces of the joint."""
         return [f"{self.parameters.joint}/{kind}" for kind in (POSITION, VELOCITY)]
 
     def on_configure(self) -> None:
-        """Make the action server."""
+        """Create the action server."""
         self._active = False
         self._goal: Goal | None = None
         kind = get_action(self.ACTION)
@@ -83,7 +83,7 @@ class Gripper(Controller[P]):
         )
 
     def on_activate(self) -> None:
-        """Hold the gripper where it is."""
+        """Hold the gripper at its current position."""
         self._position_state, self._velocity_state = self.states[0], self.states[1]
         if not isfinite(self._position_state.value):
             raise ControllerError(phrase("the positions of the joints are not known yet"))
@@ -102,7 +102,7 @@ class Gripper(Controller[P]):
         self._action.close()
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command the gripper, and find out whether the goal is reached."""
+        """Command the gripper, and check whether the goal is reached."""
         position, velocity = self._position_state.value, self._velocity_state.value
         effort = self._command(self._wanted - position, velocity, period_s)
         goal = self._goal
@@ -161,26 +161,26 @@ class Gripper(Controller[P]):
         self._wanted = self._position_state.value
         self._max_effort = self.parameters.max_effort
 
-    # --- what differs -------------------------------------------------------------------------------------------------
+    # --- differences between the grippers -----------------------------------------------------------------------------
 
     def _objection(self, request: Any) -> str | None:
-        """The reason for refusing a goal; None for a valid one."""
+        """Return the reason for refusing a goal; None if it is valid."""
         if isfinite(request.command.position):
             return None
         return "Received action goal with a position that is not a number"
 
     def _accept(self, request: Any) -> None:
-        """Take over the values of a goal."""
+        """Store the values of a goal."""
         self._wanted = request.command.position
         self._max_effort = request.command.max_effort
 
     def _command(self, error: float, velocity: float, period_s: float) -> float:
-        """Command the gripper; return the effort to be reported, here the greatest."""
+        """Command the gripper, and return the effort to be reported, which is the maximum effort here."""
         self.commands[0].value = self._wanted
         return self._max_effort
 
     def _report(self, message: Any, position: float, velocity: float, effort: float) -> Any:
-        """Fill in a result or a feedback."""
+        """Fill in a result or feedback message."""
         message.position, message.effort = position, effort
         return message
 
@@ -197,11 +197,11 @@ class EffortGripper(Gripper[EffortGripperParameters]):
     PARAMETERS = EffortGripperParameters
 
     def command_interfaces(self) -> InterfaceNames:
-        """The effort of the joint."""
+        """Return the effort interface of the joint."""
         return [f"{self.parameters.joint}/{EFFORT}"]
 
     def on_activate(self) -> None:
-        """Hold the gripper where it is."""
+        """Hold the gripper at its current position."""
         self._pid = Pid(self.parameters.gains[self.parameters.joint].pid)
         super().on_activate()
 
@@ -227,7 +227,7 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
     ACTION = "control_msgs/action/ParallelGripperCommand"
 
     def command_interfaces(self) -> InterfaceNames:
-        """The position of the joint, and the interfaces of the greatest effort and velocity that are named."""
+        """Return the joint's position interface, and those of maximum effort and velocity if configured."""
         parameters = self.parameters
         more = [name for name in (parameters.max_effort_interface, parameters.max_velocity_interface) if name]
         return [f"{parameters.joint}/{POSITION}", *more]

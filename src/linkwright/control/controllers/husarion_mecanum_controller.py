@@ -1,10 +1,12 @@
-"""``mecanum_drive_controller/MecanumDriveController`` of Husarion, which has that type name as well.
+"""Husarion's ``mecanum_drive_controller/MecanumDriveController``.
 
-Robots of Husarion (ROSbot XL, Panther) come with it. It has the parameters and topics of diff_drive_controller, with
-four wheels by name.
+The controller of ros2_controllers has the same type name.
+
+Robots of Husarion (ROSbot XL, Panther) use it. It has the parameters and topics of diff_drive_controller, with four
+named wheels.
 
 Source: husarion_controllers (parameters, defaults, topics). Two things differ: odometry multiplies the wheelbase by its
-own multiplier, as the wheel commands do, and a wheel state that is not a number leaves the odometry as it is.
+own multiplier, as the wheel commands do, and a wheel state that is not a number leaves the odometry unchanged.
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ from linkwright.nodes.parameter_tables import above, not_empty, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class LinearLimits:
-    """Limits of linear velocities."""
+    """The limits of linear velocities."""
 
     x: SpeedLimits = NO_LIMITS
     y: SpeedLimits = NO_LIMITS
@@ -51,7 +53,10 @@ class Parameters(LimitedDriveParameters):
 
 
 class HusarionMecanumController(LimitedDrive[Parameters]):
-    """A mecanum drive: wheel velocities from the commanded velocity, sideways too, and odometry from the wheels."""
+    """A mecanum drive: computes wheel velocities from commands, and odometry from the wheels.
+
+    Commands may include a sideways velocity.
+    """
 
     PARAMETERS = Parameters
 
@@ -61,25 +66,25 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         return [f"{name}/{kind}" for name in (*names, parameters.rear_right_wheel_name)]
 
     def command_interfaces(self) -> InterfaceNames:
-        """The velocities of the wheels: front left, front right, rear left, rear right."""
+        """Return the velocity interfaces of the wheels: front left, front right, rear left, rear right."""
         return self._wheels(VELOCITY)
 
     def state_interfaces(self) -> InterfaceNames:
-        """Positions or velocities of the wheels; none in open loop."""
+        """Return the position or velocity interfaces of the wheels; none in open loop."""
         if self.parameters.open_loop:
             return ()
         return self._wheels(POSITION if self.parameters.position_feedback else VELOCITY)
 
     def limits(self) -> Mapping[str, SpeedLimits]:
-        """Those forward, to the left, and around z."""
+        """Return the limits of the velocities forward, to the left, and around z."""
         parameters = self.parameters
         return {"linear.x": parameters.linear.x, "linear.y": parameters.linear.y, "angular.z": parameters.angular.z}
 
     def on_configure(self) -> None:
-        """Check the parameters, make the topics.
+        """Check the parameters, and create the topics.
 
         Raises:
-            ControllerError: wheels or their sizes are missing, or a limit is wrong.
+            ControllerError: wheels or their dimensions are missing, or a limit is wrong.
         """
         self._check()
         parameters = self.parameters

@@ -1,7 +1,7 @@
-"""``joint_state_broadcaster/JointStateBroadcaster``: states of joints on topics.
+"""``joint_state_broadcaster/JointStateBroadcaster``: publishes the states of joints.
 
-Source: ros2_controllers (parameters, defaults, topics, NaN for missing states of a joint). Joints come in the order in
-which the hardware has them.
+Source: ros2_controllers (parameters, defaults, topics, NaN for missing states of a joint). Joints are in the order of
+the hardware.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 @dataclass(frozen=True, kw_only=True)
 class InterfaceMap:
-    """Names of the interfaces that fill the fields of joint states."""
+    """The names of the interfaces that fill the fields of joint states."""
 
     position: str = POSITION
     velocity: str = VELOCITY
@@ -45,14 +45,14 @@ class JointStateBroadcaster(Controller[Parameters]):
     PARAMETERS = Parameters
 
     def state_interfaces(self) -> InterfaceNames:
-        """All, or those that the parameters name."""
+        """Return all interfaces, or those that the parameters name."""
         joints, interfaces = self.parameters.joints, self.parameters.interfaces
         if not joints or not interfaces:
             return Interfaces.ALL
         return [f"{joint}/{interface}" for joint in joints for interface in interfaces]
 
     def on_configure(self) -> None:
-        """Make the topics."""
+        """Create the topics."""
         begin = "~/" if self.parameters.use_local_topics else ""
         self._output = self.node.publisher("sensor_msgs/msg/JointState", f"{begin}joint_states")
         self._dynamic = self.node.publisher("control_msgs/msg/DynamicJointState", f"{begin}dynamic_joint_states")
@@ -75,13 +75,13 @@ class JointStateBroadcaster(Controller[Parameters]):
             [*(of_joint[place] or unknown for of_joint in joints.values()), *(none for _ in self._extra)]
             for place in range(3)
         ]
-        # A field that no joint has, such as often the efforts, is the same in each message.
+        # A field that no joint provides, often the efforts, is the same in each message.
         self._columns = [
             (column, _values(column) if {unknown, none}.issuperset(column) else None) for column in columns
         ]
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Publish to topics that have subscriptions."""
+        """Publish to the topics that have subscriptions."""
         if self._output.is_wanted:
             self._output.publish(self._joint_states(self._header(time_ns)))
         if self._dynamic.is_wanted:
@@ -109,5 +109,8 @@ class JointStateBroadcaster(Controller[Parameters]):
 
 
 def _values(states: Sequence[StateInterface]) -> array[float]:
-    """Return values for a message as an array, because the elements of a list would be checked one by one."""
+    """Return values as an array for a message field.
+
+    The elements of a list would be checked one by one.
+    """
     return array("d", [state.value for state in states])

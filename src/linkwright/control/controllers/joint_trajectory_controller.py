@@ -1,6 +1,6 @@
-"""``joint_trajectory_controller/JointTrajectoryController``: joints follow trajectories.
+"""``joint_trajectory_controller/JointTrajectoryController``: lets joints follow trajectories.
 
-Source: ros2_controllers (parameters, topics, action, service, times of commands, tolerances, texts). The controller
+Source: ros2_controllers (parameters, topics, action, service, times of commands, tolerances, messages). The controller
 commands the point that is due at the next update, and checks the tolerances at the point that is due now.
 """
 
@@ -40,12 +40,15 @@ _ACTION = "control_msgs/action/FollowJointTrajectory"
 
 
 class JointTrajectoryController(Controller[Parameters]):
-    """Follows trajectories of ``~/joint_trajectory`` and of the action ``~/follow_joint_trajectory``."""
+    """Follows trajectories from ``~/joint_trajectory`` and ``~/follow_joint_trajectory``.
+
+    The former is a topic, the latter an action.
+    """
 
     PARAMETERS = Parameters
 
     def command_interfaces(self) -> InterfaceNames:
-        """The command interfaces of the first joint, then of the next."""
+        """Return the command interfaces, joint by joint."""
         parameters = self.parameters
         return [
             f"{joint}/{kind}"
@@ -54,13 +57,13 @@ class JointTrajectoryController(Controller[Parameters]):
         ]
 
     def state_interfaces(self) -> InterfaceNames:
-        """The state interfaces of the first joint, then of the next."""
+        """Return the state interfaces, joint by joint."""
         return [f"{joint}/{kind}" for joint in self.parameters.joints for kind in self.parameters.state_interfaces]
 
-    # --- its life -----------------------------------------------------------------------------------------------------
+    # --- lifecycle ----------------------------------------------------------------------------------------------------
 
     def on_configure(self) -> None:
-        """Make topics, service and action."""
+        """Create the topics, the service and the action server."""
         parameters = self.parameters
         self._check(parameters)
         self._active = False
@@ -87,7 +90,7 @@ class JointTrajectoryController(Controller[Parameters]):
         )
 
     def on_activate(self) -> None:
-        """Hold the joints where they are."""
+        """Hold the joints at their current positions."""
         parameters = self.parameters
         count = len(parameters.command_interfaces)
         self._command: dict[str, list[CommandInterface]] = {
@@ -204,7 +207,10 @@ class JointTrajectoryController(Controller[Parameters]):
             self._goal = None
 
     def _held(self) -> list[float]:
-        """The state to hold for joints that a trajectory leaves out: the last commands, as far as there are any."""
+        """Return the positions to hold for joints that a trajectory leaves out.
+
+        These are the last commands, or the current positions of joints without a command.
+        """
         return self._finite_or(self._command.get(POSITION), self._current.positions)
 
     def _follow(self, trajectory: Trajectory) -> None:
@@ -212,7 +218,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._following_ns = -1
 
     def _hold(self, state: MotionState | None = None) -> None:
-        """Hold the joints where they are, or at another state."""
+        """Hold the joints at their current state, or at the given state."""
         held = MotionState(self._read().positions) if state is None else state
         self._follow(Trajectory([TrajectoryPoint(0, held)]))
         self._is_held = True
@@ -229,7 +235,10 @@ class JointTrajectoryController(Controller[Parameters]):
         )
 
     def _as_commanded(self, state: MotionState) -> MotionState:
-        """A state with the last commands in place of measurements, so that sagging hardware is not let down."""
+        """Return a state with the last commands in place of measurements.
+
+        Otherwise hardware that sags under load would be commanded to the sagged position.
+        """
         return MotionState(
             self._finite_or(self._command.get(POSITION), state.positions),
             self._finite_or(self._command.get(VELOCITY) if state.velocities else None, state.velocities),
@@ -243,13 +252,19 @@ class JointTrajectoryController(Controller[Parameters]):
 
     @property
     def _error(self) -> MotionState:
-        """The error at the last update; computed on demand: a controller that holds still needs it for its topics."""
+        """The error at the last update, computed on demand.
+
+        A controller that holds its position needs the error only for its topics.
+        """
         if self._computed_error is None:
             self._computed_error = self._compare(self._desired)
         return self._computed_error
 
     def _compare(self, desired: MotionState) -> MotionState:
-        """The error of a state; zeros for velocities or accelerations that are not compared."""
+        """Return the error against a desired state.
+
+        Errors of velocities or accelerations that are not compared are zero.
+        """
         current = self._current
         positions = [
             shortest_turn(is_at, wanted) if turns else wanted - is_at
@@ -266,10 +281,10 @@ class JointTrajectoryController(Controller[Parameters]):
             else none,
         )
 
-    # --- its work -----------------------------------------------------------------------------------------------------
+    # --- updates ------------------------------------------------------------------------------------------------------
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command the point that is due at the next update, and check the current errors against the tolerances."""
+        """Command the point that is due at the next update, and check errors against tolerances."""
         if time_ns < self._following_ns - self._period_ns:
             self._give_up("Time jumped backwards.")
             self._hold()
@@ -369,7 +384,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._last_command = wanted
 
     def _retune(self) -> None:
-        """Take over changed gains; the integral stays."""
+        """Apply changed PID gains; the integrals are kept."""
         parameters = self.parameters
         if parameters is not self._tuned_by:
             integrals = [pid.integral for pid in self._pids]
@@ -377,7 +392,7 @@ class JointTrajectoryController(Controller[Parameters]):
             for pid, integral in zip(self._pids, integrals, strict=True):
                 pid.integral = integral
 
-    # --- its messages -------------------------------------------------------------------------------------------------
+    # --- messages -----------------------------------------------------------------------------------------------------
 
     def _message(self, state: MotionState) -> Any:
         return self._point(positions=state.positions, velocities=state.velocities, accelerations=state.accelerations)
@@ -448,6 +463,6 @@ class JointTrajectoryController(Controller[Parameters]):
 
 
 def _as_far_as_known(state: MotionState) -> MotionState:
-    """A state without the velocities or accelerations that hardware does not measure."""
+    """Return a state without the velocities or accelerations that the hardware does not measure."""
     known = [values if all(map(isfinite, values)) else [] for values in (state.velocities, state.accelerations)]
     return MotionState(state.positions, *known)

@@ -1,6 +1,6 @@
-"""Checking trajectory messages, and converting them for the joints of a controller.
+"""Validation of trajectory messages, and their conversion for the joints of a controller.
 
-Source: joint_trajectory_controller of ros2_controllers (refusals and their texts; effects of missing joints;
+Source: joint_trajectory_controller of ros2_controllers (refusals and their messages; effects of missing joints;
 tolerances of goals).
 """
 
@@ -21,17 +21,19 @@ _STANDING = 1.1920929e-07
 
 
 def nanoseconds(time: Any) -> int:
-    """A time or duration message in nanoseconds."""
+    """Return a time or duration message in nanoseconds."""
     return int(time.sec) * NANOSECONDS_PER_SECOND + int(time.nanosec)
 
 
 def objection(message: Any, parameters: Parameters, now_ns: int) -> str | None:
-    """The reason for refusing a trajectory, in the words of ros2_controllers; None for a valid one.
+    """Return the reason for refusing a trajectory, in the words of ros2_controllers.
+
+    The result is None if it is valid.
 
     Args:
         message: trajectory_msgs/msg/JointTrajectory.
-        parameters: those of the controller.
-        now_ns: the time in nanoseconds.
+        parameters: the parameters of the controller.
+        now_ns: the current time in nanoseconds.
     """
     names, points = message.joint_names, message.points
     if not parameters.allow_partial_joints_goal and len(names) != len(parameters.joints):
@@ -87,9 +89,9 @@ def trajectory_of(message: Any, parameters: Parameters, held: Sequence[float]) -
     """Convert a message to a trajectory of all joints of a controller.
 
     Args:
-        message: trajectory_msgs/msg/JointTrajectory, to which there is no objection.
-        parameters: those of the controller.
-        held: where joints stay that it does not name, in rad or m.
+        message: trajectory_msgs/msg/JointTrajectory, which must be valid (see `objection`).
+        parameters: the parameters of the controller.
+        held: the positions of joints that the message does not name, in rad or m.
     """
     places = [message.joint_names.index(name) if name in message.joint_names else -1 for name in parameters.joints]
 
@@ -115,13 +117,13 @@ def trajectory_of(message: Any, parameters: Parameters, held: Sequence[float]) -
 
 
 def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, log: Callable[[str], object]) -> Tolerances:
-    """The tolerances of a goal: those of the controller, replaced where the goal names joints.
+    """Return the tolerances of a goal: the controller's, replaced for the joints that the goal names.
 
     Args:
         goal: control_msgs/action/FollowJointTrajectory_Goal.
-        joints: those of the controller.
-        default: its tolerances; they count where the goal has a mistake.
-        log: receives the messages about errors.
+        joints: the joints of the controller.
+        default: the controller's tolerances, which apply if the goal's contain a mistake.
+        log: receives error messages.
     """
     tolerances = default
     for field, given in (("path_tolerance", goal.path_tolerance), ("goal_tolerance", goal.goal_tolerance)):

@@ -1,6 +1,6 @@
 """The parameters of ``joint_trajectory_controller/JointTrajectoryController``.
 
-Source: ros2_controllers, those of Humble and Jazzy together; those that one has only are marked.
+Source: ros2_controllers for Humble and Jazzy; parameters that only one of them has are marked.
 """
 
 from __future__ import annotations
@@ -19,7 +19,10 @@ _ONE_STATE = one_of(POSITION, VELOCITY, ACCELERATION)
 
 
 def _command_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
-    """Validate the combination of command interfaces: effort, velocity, or position [velocity [acceleration]]."""
+    """Validate the combination of command interfaces.
+
+    It is effort, velocity, or position [velocity [acceleration]].
+    """
     wrong = not_empty(name, value) or _ONE_COMMAND(name, value)
     if wrong is not None:
         return wrong
@@ -50,7 +53,7 @@ def _state_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
 
 @dataclass(frozen=True, kw_only=True)
 class Gains(PidParameters):
-    """Gains of a joint's PID controller."""
+    """The gains of a joint's PID controller."""
 
     ff_velocity_scale: float = parameter(0.0, description="the fraction of the desired velocity to add")
     angle_wraparound: bool = parameter(False, description="whether the joint turns without an end", only=HUMBLE)
@@ -59,7 +62,7 @@ class Gains(PidParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class JointConstraints:
-    """Tolerances of a joint, in rad or m; 0 for none."""
+    """The tolerances of a joint, in rad or m; 0 for none."""
 
     trajectory: float = parameter(0.0, description="on the way, in rad or m; 0 for any")
     goal: float = parameter(0.0, description="at the end, in rad or m; 0 for any")
@@ -67,7 +70,7 @@ class JointConstraints:
 
 @dataclass(frozen=True, kw_only=True)
 class Constraints:
-    """Tolerances of all joints."""
+    """The tolerances of all joints."""
 
     stopped_velocity_tolerance: float = parameter(0.01, description="the velocity at the end, in rad/s or m/s")
     goal_time: float = parameter(0.0, description="seconds after the end; 0 for any time", check=at_least(0.0))
@@ -107,17 +110,17 @@ class Parameters:
 
     @property
     def open_loop(self) -> bool:
-        """Whether trajectories begin at the last command, not at the state."""
+        """Whether trajectories start at the last command instead of the current state."""
         return self.open_loop_control or self.interpolate_from_desired_state
 
     @property
     def has_pid(self) -> bool:
-        """Whether commands are computed from errors by PID controllers."""
+        """Whether PID controllers compute the commands from errors."""
         return self.command_interfaces == (EFFORT,) or (self.command_interfaces == (VELOCITY,) and not self.open_loop)
 
     @property
     def tolerances(self) -> Tolerances:
-        """The tolerances for trajectories that bring none."""
+        """The tolerances for trajectories that specify none."""
         of_joints = [self.joint_constraints[joint] for joint in self.joints]
         stopped = self.constraints.stopped_velocity_tolerance
         return Tolerances(

@@ -1,6 +1,8 @@
-"""The base of drives that take ``~/cmd_vel`` within limits: topics, odometry, and the parameters that they share.
+"""The base of drives that follow ``~/cmd_vel`` within limits.
 
-Source: diff_drive_controller of ros2_controllers, after which Husarion's mecanum controller was made.
+It provides their common topics, odometry and parameters.
+
+Source: diff_drive_controller of ros2_controllers, on which Husarion's mecanum controller is modelled.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ _NONE = (0.0,) * 6
 
 @dataclass(frozen=True, kw_only=True)
 class AngularLimits:
-    """Limits of angular velocities."""
+    """The limits of angular velocities."""
 
     z: SpeedLimits = NO_LIMITS
 
@@ -57,14 +59,14 @@ P = TypeVar("P", bound=LimitedDriveParameters)
 
 
 class LimitedDrive(Controller[P], Generic[P]):
-    """A drive that follows ``~/cmd_vel`` within limits and publishes its odometry."""
+    """A drive that follows ``~/cmd_vel`` within limits, and publishes its odometry."""
 
     @abstractmethod
     def limits(self) -> Mapping[str, SpeedLimits]:
-        """The limits of each axis that it moves along or around, by name, such as ``linear.x``."""
+        """Return the limits for each axis of motion, by name, such as ``linear.x``."""
 
     def on_configure(self) -> None:
-        """Make the limiters and the topics.
+        """Create the limiters and the topics.
 
         Raises:
             ControllerError: a limit or a list of variances is wrong.
@@ -116,7 +118,7 @@ class LimitedDrive(Controller[P], Generic[P]):
         return [(now - then) / period_s for now, then in zip(values, before, strict=True)]
 
     def _publish(self, time_ns: int, forward: float, sideways: float, angular: float) -> None:
-        """Publish the odometry, and the velocity within the limits, in m/s and rad/s, where that is asked for."""
+        """Publish the odometry and, if enabled, the limited velocity, in m/s and rad/s."""
         self._odometry.publish(time_ns)
         if self._limited is not None and self._limited.is_wanted:
             twist = get_message("geometry_msgs/msg/Twist")(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, angular))

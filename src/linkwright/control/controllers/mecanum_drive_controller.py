@@ -1,7 +1,7 @@
 """``mecanum_drive_controller/MecanumDriveController``: four wheels with rollers at 45 degrees.
 
-Source: ros2_controllers for Jazzy (parameters, defaults, topics, the order of wheels). Two things differ from it:
-odometry follows arcs, and a command that is not a number stops the robot.
+Source: ros2_controllers for Jazzy (parameters, defaults, topics, the order of wheels). Two things differ: odometry
+follows arcs, and a command that is not a number stops the robot.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _DIAGONAL = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
 
 @dataclass(frozen=True, kw_only=True)
 class BaseFrameOffset:
-    """The pose of the robot's frame in the middle of its wheels, in m and rad."""
+    """The pose of the robot's frame relative to the centre of its wheels, in m and rad."""
 
     x: float = 0.0
     y: float = 0.0
@@ -38,7 +38,7 @@ _NO_OFFSET = BaseFrameOffset()
 
 @dataclass(frozen=True, kw_only=True)
 class Kinematics:
-    """Sizes of the drive."""
+    """The dimensions of the drive."""
 
     base_frame_offset: BaseFrameOffset = _NO_OFFSET
     wheels_radius: float = parameter(0.0, description="in m")
@@ -77,7 +77,10 @@ _CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
 
 
 class MecanumDriveController(Controller[Parameters]):
-    """A mecanum drive: wheel velocities from the commanded velocity, sideways too, and odometry from the wheels."""
+    """A mecanum drive: computes wheel velocities from commands, and odometry from the wheels.
+
+    Commands may include a sideways velocity.
+    """
 
     PARAMETERS = Parameters
 
@@ -87,11 +90,11 @@ class MecanumDriveController(Controller[Parameters]):
         return HusarionMecanumController if "front_left_wheel_name" in given else cls
 
     def command_interfaces(self) -> InterfaceNames:
-        """The velocities of the wheels: front left, front right, rear right, rear left."""
+        """Return the velocity interfaces of the wheels: front left, front right, rear right, rear left."""
         return [f"{name}/{VELOCITY}" for name in self._joints("command")]
 
     def state_interfaces(self) -> InterfaceNames:
-        """The velocities of the wheels: front left, front right, rear right, rear left."""
+        """Return the velocity interfaces of the wheels: front left, front right, rear right, rear left."""
         pairs = zip(self._joints("state"), self._joints("command"), strict=True)
         return [f"{measured or commanded}/{VELOCITY}" for measured, commanded in pairs]
 
@@ -99,14 +102,14 @@ class MecanumDriveController(Controller[Parameters]):
         return [getattr(self.parameters, f"{corner}_wheel_{kind}_joint_name") for corner in _CORNERS]
 
     def reference_interfaces(self) -> Sequence[str]:
-        """The velocities forward and to the left in m/s, and around z in rad/s."""
+        """Return the references: the velocities forward and to the left in m/s, and around z in rad/s."""
         return ("linear/x/velocity", "linear/y/velocity", "angular/z/velocity")
 
     def on_configure(self) -> None:
-        """Check the parameters, make the topics.
+        """Check the parameters, and create the topics.
 
         Raises:
-            ControllerError: wheels or their sizes are missing.
+            ControllerError: wheels or their dimensions are missing.
         """
         parameters, node = self.parameters, self.node
         self._settings, sizes = parameters, parameters.kinematics
@@ -182,7 +185,7 @@ class MecanumDriveController(Controller[Parameters]):
             command.value = value
 
     def _of_base(self, forward: float, sideways: float, angular: float) -> tuple[float, float, float]:
-        """The velocity of the robot's frame, from that of the middle of its wheels."""
+        """Return the velocity of the robot's frame, given the velocity of the centre of its wheels."""
         offset = self._settings.kinematics.base_frame_offset
         along, across = _turned(forward - offset.y * angular, sideways + offset.x * angular, -offset.theta)
         return along, across, angular
@@ -202,5 +205,5 @@ class MecanumDriveController(Controller[Parameters]):
 
 
 def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
-    """A vector rotated by an angle in rad."""
+    """Return a vector rotated by an angle in rad."""
     return x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle)

@@ -1,4 +1,4 @@
-"""The node of a controller, for use in the thread of its updates."""
+"""The node of a controller, for use in the update thread."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from linkwright.graph.stepped.node import SteppedNode
 
 
 class ControllerNode(SteppedNode):
-    """Publishers, subscriptions and services of a controller (`SteppedNode`), and calls between its two threads.
+    """A controller's publishers, subscriptions and services, and calls between its two threads.
 
-    Callbacks run in the thread of the updates, between two updates; messages are sent after the update.
+    Callbacks run in the update thread, between two updates; messages are sent after the update.
 
     Args:
-        node: the node; it ends with the controller.
-        exchange: the exchange between the thread of the updates and the graph.
+        node: the node, which is destroyed with the controller.
+        exchange: the exchange between the update thread and the graph.
     """
 
     def __init__(self, node: Node, exchange: Exchange) -> None:
@@ -27,14 +27,14 @@ class ControllerNode(SteppedNode):
         self._exchange.send(_Call(call), None)
 
     def clear(self) -> None:
-        """Remove its topics and services from the graph; the node stays."""
+        """Remove the node's topics and services from the graph; the node stays."""
         for endpoint in self._endpoints:
             endpoint.destroy()
         self._endpoints.clear()
 
 
 class _Call:
-    """A function in the place of a publisher."""
+    """A function that takes the place of a publisher."""
 
     __slots__ = ("_call",)
 

@@ -1,6 +1,6 @@
-"""``pid_controller/PidController``: commands computed by PID from the errors of degrees of freedom.
+"""``pid_controller/PidController``: commands degrees of freedom by PID from their errors.
 
-Source: ros2_controllers (parameters, topics, service, interfaces of chains, feed-forward).
+Source: ros2_controllers (parameters, topics, service, interfaces for chaining, feed-forward).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 def _one_or_two(name: str, value: tuple[str, ...]) -> Phrase | None:
-    """Validate: one interface, or one and its derivative."""
+    """Validate a list of interfaces: one interface, or one and its derivative."""
     if not 1 <= len(value) <= 2:
         return phrase("Parameter '{name}' is one interface, or an interface and its derivative", name=name)
     return None
@@ -33,7 +33,7 @@ def _one_or_two(name: str, value: tuple[str, ...]) -> Phrase | None:
 
 @dataclass(frozen=True, kw_only=True)
 class Gains(PidParameters):
-    """Gains of a degree of freedom."""
+    """The gains of a degree of freedom."""
 
     feedforward_gain: float = parameter(0.0, description="how much of the reference is added to the command")
     angle_wraparound: bool = parameter(False, description="whether it turns without an end")
@@ -59,24 +59,24 @@ class Parameters:
 
 
 class PidController(Controller[Parameters]):
-    """A PID controller; its references come from ``~/reference`` or from another controller."""
+    """A PID controller, whose references come from ``~/reference`` or from another controller."""
 
     PARAMETERS = Parameters
 
     def command_interfaces(self) -> InterfaceNames:
-        """One for each degree of freedom."""
+        """Return one interface for each degree of freedom."""
         return [f"{dof_name}/{self.parameters.command_interface}" for dof_name in self.parameters.dof_names]
 
     def state_interfaces(self) -> InterfaceNames:
-        """Those of the first kind, then those of the second one."""
+        """Return the interfaces of the first kind, then those of the second kind."""
         return () if self.parameters.use_external_measured_states else self._measured_names()
 
     def reference_interfaces(self) -> Sequence[str]:
-        """In the order of the states."""
+        """Return the references, in the order of the states."""
         return self._measured_names()
 
     def exported_states(self) -> Sequence[str]:
-        """In the order of the states."""
+        """Return the exported states, in the order of the states."""
         return self._measured_names()
 
     def _measured_names(self) -> list[str]:
@@ -84,7 +84,7 @@ class PidController(Controller[Parameters]):
         return [f"{name}/{kind}" for kind in parameters.reference_and_state_interfaces for name in parameters.measured]
 
     def on_configure(self) -> None:
-        """Make the topics and the service."""
+        """Create the topics and the service."""
         parameters = self.parameters
         if len(parameters.measured) != len(parameters.dof_names):
             raise ControllerError(
@@ -103,7 +103,7 @@ class PidController(Controller[Parameters]):
         self.node.service("std_srvs/srv/SetBool", "~/set_feedforward_control", self._set_feedforward)
 
     def on_activate(self) -> None:
-        """Wait for a reference."""
+        """Start without a reference."""
         self._measured = [state.value for state in self.states] or [nan] * len(self._measured_names())
         self._export()
         for reference in self.references:
@@ -113,13 +113,13 @@ class PidController(Controller[Parameters]):
                 pid.reset()
 
     def on_deactivate(self) -> None:
-        """Command 0 where that is not a position."""
+        """Command 0, except for positions."""
         if self.parameters.command_interface != POSITION:
             for command in self.commands:
                 command.value = 0.0
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command where references and states are known."""
+        """Command the degrees of freedom whose references and states are known."""
         if self.states:
             self._measured = [state.value for state in self.states]
         self._export()
@@ -174,7 +174,10 @@ class PidController(Controller[Parameters]):
             self._measured = values
 
     def _in_order(self, message: Any) -> list[float]:
-        """Values and rates in the order of the degrees of freedom; empty for a bad message."""
+        """Return the values and rates of a message in the order of the degrees of freedom.
+
+        The result is empty for an invalid message.
+        """
         known = list(self.parameters.measured)
         names, values, rates = list(message.dof_names) or known, list(message.values), list(message.values_dot)
         wrong = len(names) != len(known) or len(values) != len(known) or (rates and len(rates) != len(known))

@@ -1,4 +1,4 @@
-"""The parameters of PID controllers, as control_toolbox has them."""
+"""The parameters of PID controllers, as in control_toolbox."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from linkwright.nodes.parameter_tables import one_of, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class PidParameters:
-    """Of a PID controller; without `i_clamp` the bounds `i_clamp_min` and `i_clamp_max` count."""
+    """The parameters of a PID controller.
+
+    Without `i_clamp`, the bounds `i_clamp_min` and `i_clamp_max` apply.
+    """
 
     p: float = 0.0
     i: float = 0.0
@@ -28,7 +31,7 @@ class PidParameters:
 
     @property
     def pid(self) -> PidGains:
-        """The gains in the form of `Pid`."""
+        """The gains as `PidGains`, for `Pid`."""
         low, high = self.i_clamp_min, self.i_clamp_max
         if self.i_clamp is not None:
             low, high = -abs(self.i_clamp), abs(self.i_clamp)

@@ -1,6 +1,6 @@
-"""Finding controllers by their type names: the entry points ``linkwright.controllers``.
+"""The registry of controllers by type name: the entry points ``linkwright.controllers``.
 
-``diff_drive_controller/DiffDriveController`` names a subclass of `Controller`.
+``diff_drive_controller/DiffDriveController``, for example, names a subclass of `Controller`.
 """
 
 from __future__ import annotations
@@ -25,15 +25,16 @@ _LEFT_OUT = {
 
 
 def controller_types() -> list[str]:
-    """The type names of all controllers."""
+    """Return the type names of all controllers."""
     return list(extensions(GROUP))
 
 
 def controller_class(type_name: str) -> type[Controller[Any]]:
-    """The class of a controller.
+    """Return the class of a controller.
 
     Raises:
-        LinkwrightError: CTL103 there is none of that type; CTL104 the package that brings it cannot be imported.
+        LinkwrightError: CTL103, no controller has this type name; CTL104, the package that provides it cannot be
+            imported.
     """
     entry = extensions(GROUP).get(type_name)
     if entry is None:

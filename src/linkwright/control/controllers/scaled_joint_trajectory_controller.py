@@ -1,6 +1,6 @@
-"""``ur_controllers/ScaledJointTrajectoryController``: a trajectory controller that follows the robot's speed slider.
+"""``ur_controllers/ScaledJointTrajectoryController``: follows the robot's speed slider.
 
-Source: ur_controllers of the driver for Universal Robots (the parameter; the factor scales the time on a trajectory).
+Source: ur_controllers of the driver for Universal Robots (the parameter; the factor scales the time of a trajectory).
 """
 
 from __future__ import annotations
@@ -31,7 +31,10 @@ class ScaledParameters(Parameters):
 
 
 class ScaledJointTrajectoryController(JointTrajectoryController):
-    """Follows trajectories on a time that is scaled by a factor which the hardware states (its speed slider)."""
+    """Follows trajectories in a time that is scaled by a factor from the hardware.
+
+    On Universal Robots the factor is the robot's speed slider.
+    """
 
     PARAMETERS = ScaledParameters
 
@@ -42,13 +45,13 @@ class ScaledJointTrajectoryController(JointTrajectoryController):
         return parameters.speed_scaling_interface_name
 
     def state_interfaces(self) -> InterfaceNames:
-        """Those of the joints, then the factor."""
+        """Return the state interfaces of the joints, then the scaling factor."""
         names, factor = super().state_interfaces(), self._factor_name
         assert not isinstance(names, Interfaces), "the joints are named"
         return [*names, factor] if factor else names
 
     def on_activate(self) -> None:
-        """Hold the joints where they are."""
+        """Hold the joints at their current positions."""
         self._factor: StateInterface | None = None
         if self._factor_name:
             *self.states, self._factor = self.states

@@ -1,7 +1,7 @@
-"""Broadcasters of hardware's sensors: IMUs, force-torque sensors, range sensors and poses.
+"""Broadcasters of hardware sensors: IMUs, force-torque sensors, range sensors and poses.
 
-Source: ros2_controllers, its ``imu_sensor_broadcaster``, ``force_torque_sensor_broadcaster``,
-``range_sensor_broadcaster`` and ``pose_broadcaster`` (parameters, names of interfaces, topics).
+Source: ``imu_sensor_broadcaster``, ``force_torque_sensor_broadcaster``, ``range_sensor_broadcaster`` and
+``pose_broadcaster`` of ros2_controllers (parameters, names of interfaces, topics).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class ImuParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class Vector:
-    """Names of three interfaces."""
+    """The names of three interfaces."""
 
     x: str = ""
     y: str = ""
@@ -50,14 +50,14 @@ class Vector:
 
 @dataclass(frozen=True, kw_only=True)
 class Turn(Vector):
-    """Names of the four interfaces of a quaternion."""
+    """The names of the four interfaces of a quaternion."""
 
     w: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
 class WrenchNames:
-    """Names of the interfaces of a force-torque sensor."""
+    """The names of the interfaces of a force-torque sensor."""
 
     force: Vector = Vector()
     torque: Vector = Vector()
@@ -65,7 +65,7 @@ class WrenchNames:
 
 @dataclass(frozen=True, kw_only=True)
 class PoseNames:
-    """Names of the interfaces of a pose."""
+    """The names of the interfaces of a pose."""
 
     position: Vector = Vector()
     orientation: Turn = Turn()
@@ -73,7 +73,7 @@ class PoseNames:
 
 @dataclass(frozen=True, kw_only=True)
 class Zeros:
-    """Offsets of three numbers."""
+    """An offset for each of three axes, 0 by default."""
 
     x: float = 0.0
     y: float = 0.0
@@ -82,7 +82,7 @@ class Zeros:
 
 @dataclass(frozen=True, kw_only=True)
 class Ones:
-    """Factors of three numbers."""
+    """A factor for each of three axes, 1 by default."""
 
     x: float = 1.0
     y: float = 1.0
@@ -91,7 +91,7 @@ class Ones:
 
 @dataclass(frozen=True, kw_only=True)
 class Offset:
-    """Offset of a wrench, in N and N m."""
+    """The offset of a wrench, in N and N m."""
 
     force: Zeros = Zeros()
     torque: Zeros = Zeros()
@@ -99,7 +99,7 @@ class Offset:
 
 @dataclass(frozen=True, kw_only=True)
 class Multiplier:
-    """Factor of a wrench."""
+    """The factors of a wrench."""
 
     force: Ones = Ones()
     torque: Ones = Ones()
@@ -107,7 +107,10 @@ class Multiplier:
 
 @dataclass(frozen=True, kw_only=True)
 class WrenchParameters:
-    """Parameters of the force-torque broadcaster; `offset` is added, then `multiplier` applied."""
+    """Parameters of the force-torque broadcaster.
+
+    `offset` is added before `multiplier` is applied.
+    """
 
     frame_id: str = parameter("", check=not_empty)
     sensor_name: str = ""
@@ -152,37 +155,37 @@ P = TypeVar("P")
 
 
 class SensorBroadcaster(Controller[P]):
-    """Publishes a message of its states at each update, while a subscriber exists."""
+    """Publishes a message with its states at each update, while a subscription exists."""
 
     TYPE: ClassVar[str]
     TOPIC: ClassVar[str]
 
     @abstractmethod
     def state_interfaces(self) -> InterfaceNames:
-        """Those of the sensor."""
+        """Return the state interfaces of the sensor."""
 
     @abstractmethod
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
-        """A message of the interfaces' values, in the order of `state_interfaces`."""
+        """Return a message with the interfaces' values, which are in the order of `state_interfaces`."""
 
     def on_configure(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self._kind = get_message(self.TYPE)
         self._output = self.node.publisher(self.TYPE, self.TOPIC)
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Publish."""
+        """Publish a message if a subscription exists."""
         if self._output.is_wanted:
             self._output.publish(self.message(self._kind, self.header(time_ns), [state.value for state in self.states]))
 
     def header(self, time_ns: int) -> Header:
-        """The time, and the frame of the parameters."""
+        """Return a header with the time, and with the frame from the parameters."""
         frame: str = self.parameters.frame_id  # type: ignore[attr-defined]  # all of them have one
         return Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), frame_id=frame)
 
 
 def _six(wrench: WrenchNames | Offset | Multiplier) -> list[Any]:
-    """The values of forces and torques, axis by axis."""
+    """Return the values for forces and torques, axis by axis."""
     return [getattr(vector, axis) for vector in (wrench.force, wrench.torque) for axis in "xyz"]
 
 
@@ -197,13 +200,13 @@ class ImuBroadcaster(SensorBroadcaster[ImuParameters]):
     TYPE, TOPIC = "sensor_msgs/msg/Imu", "~/imu"
 
     def state_interfaces(self) -> InterfaceNames:
-        """Orientation, angular velocity and linear acceleration."""
+        """Return the interfaces of orientation, angular velocity and linear acceleration."""
         turn = [f"orientation.{axis}" for axis in "xyzw"]
         rest = [f"{kind}.{axis}" for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
         return [f"{self.parameters.sensor_name}/{item}" for item in (*turn, *rest)]
 
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
-        """An IMU message with the covariances of the parameters."""
+        """Return an IMU message with the covariances from the parameters."""
         parameters = self.parameters
         return kind(
             header=header,
@@ -223,7 +226,7 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
     TYPE, TOPIC = "geometry_msgs/msg/WrenchStamped", "~/wrench"
 
     def on_configure(self) -> None:
-        """Work out which interfaces exist; axes without one are 0."""
+        """Determine which interfaces exist; axes without an interface are 0."""
         parameters = self.parameters
         named = _six(parameters.interface_names)
         if not parameters.sensor_name and not any(named):
@@ -240,11 +243,11 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
         super().on_configure()
 
     def state_interfaces(self) -> InterfaceNames:
-        """Forces, then torques."""
+        """Return the interfaces of the forces, then of the torques."""
         return [name for name in self._names if name]
 
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
-        """A wrench."""
+        """Return a wrench message."""
         there = iter(values)
         parameters = self.parameters
         six = [
@@ -264,11 +267,11 @@ class RangeBroadcaster(SensorBroadcaster[RangeParameters]):
     TYPE, TOPIC = "sensor_msgs/msg/Range", "~/range"
 
     def state_interfaces(self) -> InterfaceNames:
-        """The range."""
+        """Return the range interface."""
         return [f"{self.parameters.sensor_name}/range"]
 
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
-        """A range with the limits of the parameters."""
+        """Return a range message with the limits from the parameters."""
         parameters = self.parameters
         return kind(
             header=header,
@@ -281,13 +284,13 @@ class RangeBroadcaster(SensorBroadcaster[RangeParameters]):
 
 
 class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
-    """``pose_broadcaster/PoseBroadcaster``: a pose, and its transform."""
+    """``pose_broadcaster/PoseBroadcaster``: publishes a pose, and its transform."""
 
     PARAMETERS = PoseParameters
     TYPE, TOPIC = "geometry_msgs/msg/PoseStamped", "~/pose"
 
     def on_configure(self) -> None:
-        """Work out which interfaces exist."""
+        """Determine which interfaces exist."""
         parameters = self.parameters
         place, turn = parameters.interface_names.position, parameters.interface_names.orientation
         named = [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w]
@@ -309,17 +312,17 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
         super().on_configure()
 
     def state_interfaces(self) -> InterfaceNames:
-        """Position, then orientation."""
+        """Return the interfaces of the position, then of the orientation."""
         return self._names
 
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
-        """A pose."""
+        """Return a pose message."""
         pose = get_message("geometry_msgs/msg/Pose")
         point = get_message("geometry_msgs/msg/Point")
         return kind(header=header, pose=pose(position=point(*values[:3]), orientation=Quaternion(*values[3:])))
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Publish the pose, and the transform when that is due and known."""
+        """Publish the pose, and the transform if it is due and known."""
         super().update(time_ns, period_s)
         if self._transforms is None or not self._child or time_ns < self._next_transform_ns:
             return

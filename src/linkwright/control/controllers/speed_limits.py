@@ -1,6 +1,6 @@
-"""Limits of velocity, acceleration, deceleration and jerk, as parameters of drive controllers.
+"""Parameters of drive controllers that limit velocity, acceleration, deceleration and jerk.
 
-Source: diff_drive_controller of Humble (``has_..._limits``, ``min_acceleration``) and of Jazzy (NaN for none,
+Source: diff_drive_controller of Humble (``has_..._limits``, ``min_acceleration``) and of Jazzy (NaN for no limit,
 ``max_deceleration``, ``..._reverse``), and control_toolbox's RateLimiter. A positive limit applies if
 ``has_..._limits`` is not set.
 """
@@ -18,7 +18,7 @@ from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedLimits:
-    """Parameters of the limits of one axis, in m/s or rad/s, and of the first and second derivative."""
+    """The limits of one axis, in m/s or rad/s, and of its first and second derivatives."""
 
     has_velocity_limits: bool | None = parameter(None, only=HUMBLE)
     has_acceleration_limits: bool | None = parameter(None, only=HUMBLE)
@@ -34,13 +34,13 @@ class SpeedLimits:
     min_jerk: float = nan
 
     def limiter(self, axis: str) -> SpeedLimiter:
-        """The limiter with these limits.
+        """Return a limiter with these limits.
 
         Args:
-            axis: the name of the axis, for errors: ``linear.x``.
+            axis: the name of the axis for error messages, such as ``linear.x``.
 
         Raises:
-            ControllerError: a limit that holds has no number, or a least one is above the greatest one.
+            ControllerError: an enabled limit has no value, or a minimum is above its maximum.
         """
         velocity = acceleration = reverse = jerk = UNBOUNDED
         if self._holds(axis, "velocity", self.has_velocity_limits, self.max_velocity):
@@ -74,7 +74,7 @@ NO_LIMITS = SpeedLimits()
 
 
 def _given(*values: float) -> float:
-    """The first value that was given."""
+    """Return the first value that was given."""
     return next(value for value in values if not isnan(value))
 
 

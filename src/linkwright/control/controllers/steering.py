@@ -1,8 +1,8 @@
-"""The base of controllers of steered vehicles: one driven axle, and another one that steers.
+"""The base of controllers of steered vehicles, which have a driven axle and a steered axle.
 
 Source: steering_controllers_library of ros2_controllers, for Humble and Jazzy (parameters with their older names,
-defaults, topics, the order of joints: right, left). Three things differ from it: odometry and wheels use the tangent of
-the steering angle throughout, open-loop odometry stands still while there is no command, and a command that is not a
+defaults, topics, the order of joints: right, left). Three things differ: odometry and wheels use the tangent of the
+steering angle throughout, open-loop odometry does not move while there is no command, and a command that is not a
 number stops the vehicle.
 """
 
@@ -64,7 +64,7 @@ class SteeringParameters:
     wheelbase: float = parameter(0.0, description="between the axles, in m")
 
     def of_traction(self, front: float, rear: float) -> float:
-        """Return the parameter of the driven axle, from those for front and rear in older files."""
+        """Return the driven axle's value, given the values for front and rear in older files."""
         return rear if self.front_steering else front
 
     @property
@@ -98,11 +98,13 @@ P = TypeVar("P", bound=SteeringParameters)
 
 
 class SteeringController(Controller[P], Generic[P]):
-    """A steered vehicle: wheel velocities and angles from the commanded velocity, and odometry from the wheels.
+    """A steered vehicle, whose wheel velocities and steering angles follow velocity commands.
+
+    The controller also publishes odometry.
 
     Attributes:
-        KIND: its name in errors.
-        JOINTS: how many joints drive, and how many steer.
+        KIND: the vehicle's name in error messages.
+        JOINTS: the number of driven joints, and of steered joints.
     """
 
     KIND: ClassVar[str]
@@ -110,17 +112,20 @@ class SteeringController(Controller[P], Generic[P]):
 
     @abstractmethod
     def drive(self) -> CarDrive:
-        """The sizes of the vehicle, checked to be positive."""
+        """Return the drive with the dimensions of the vehicle, which are checked to be positive."""
 
     def command_interfaces(self) -> InterfaceNames:
-        """Velocities of the driven joints, then positions of the steered ones."""
+        """Return the velocity interfaces of the driven joints, then positions of the steered joints."""
         parameters = self.parameters
         return [f"{name}/{VELOCITY}" for name in parameters.traction] + [
             f"{name}/{POSITION}" for name in parameters.steering
         ]
 
     def state_interfaces(self) -> InterfaceNames:
-        """The measured interfaces; positions of the driven joints if the parameters request them."""
+        """Return the measured interfaces of the driven joints, then positions of the steered joints.
+
+        The driven joints have velocities, or positions if the parameters request them.
+        """
         parameters = self.parameters
         kind = POSITION if parameters.position_feedback else VELOCITY
         return [f"{traction_state}/{kind}" for traction_state in parameters.traction_states] + [
@@ -128,14 +133,14 @@ class SteeringController(Controller[P], Generic[P]):
         ]
 
     def reference_interfaces(self) -> Sequence[str]:
-        """The velocity forward in m/s, and around z in rad/s."""
+        """Return the references: the forward velocity in m/s, and the angular velocity around z in rad/s."""
         return ("linear/velocity", "angular/velocity")
 
     def on_configure(self) -> None:
-        """Check the parameters, make the topics.
+        """Check the parameters, and create the topics.
 
         Raises:
-            ControllerError: joints or sizes are missing.
+            ControllerError: joints or dimensions are missing.
         """
         parameters, node = self.parameters, self.node
         self._settings = parameters
@@ -191,7 +196,7 @@ class SteeringController(Controller[P], Generic[P]):
         self._input.open()
 
     def on_deactivate(self) -> None:
-        """Stop the wheels; the steering stays."""
+        """Stop the wheels; the steering angle is kept."""
         self._input.close()
         for command in self.commands[: self.JOINTS[0]]:
             command.value = 0.0
@@ -222,7 +227,7 @@ class SteeringController(Controller[P], Generic[P]):
             reference.value = nan
 
     def _measure(self, period_s: float) -> None:
-        """Update the odometry by wheels and steering; values that are not finite are ignored."""
+        """Update the odometry from wheels and steering; values that are not finite are ignored."""
         driving, steering = self.JOINTS
         values = [state.value for state in self.states]
         if not all(map(isfinite, values)) or period_s <= 0.0:

@@ -1,7 +1,7 @@
-"""``tricycle_controller/TricycleController``: one wheel in front that is driven and steered.
+"""``tricycle_controller/TricycleController``: one front wheel that is driven and steered.
 
 Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics; the wheel is slow while it is far from its
-angle). Other than there odometry in open loop is that of the wheel within its limits.
+angle). One thing differs: open-loop odometry is computed from the limited commands of the wheel.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _CREEPING = 0.01
 
 @dataclass(frozen=True, kw_only=True)
 class TractionLimits:
-    """Parameters of the limits of the wheel's velocity, in rad/s, and its derivatives; the same in both directions."""
+    """The limits of the wheel's velocity, in rad/s, and its derivatives, in both directions."""
 
     max_velocity: float = nan
     min_velocity: float = nan
@@ -43,7 +43,10 @@ class TractionLimits:
 
 @dataclass(frozen=True, kw_only=True)
 class SteeringLimits:
-    """Parameters of the limits of the wheel's angle, in rad, and its derivatives; the latter are the same both ways."""
+    """The limits of the wheel's angle, in rad, and of its derivatives.
+
+    The latter apply in both directions.
+    """
 
     max_position: float = nan
     min_position: float = nan
@@ -80,24 +83,27 @@ class Parameters:
 
 
 class TricycleController(Controller[Parameters]):
-    """A tricycle drive: velocity and angle of its wheel from the commanded velocity, and odometry from the wheel."""
+    """A tricycle drive, whose wheel velocity and angle follow velocity commands.
+
+    The controller also publishes odometry.
+    """
 
     PARAMETERS = Parameters
 
     def command_interfaces(self) -> InterfaceNames:
-        """The velocity of the wheel, and its angle."""
+        """Return the interfaces of the wheel's velocity and angle."""
         parameters = self.parameters
         return [f"{parameters.traction_joint_name}/{VELOCITY}", f"{parameters.steering_joint_name}/{POSITION}"]
 
     def state_interfaces(self) -> InterfaceNames:
-        """The velocity of the wheel, and its angle."""
+        """Return the interfaces of the wheel's velocity and angle."""
         return self.command_interfaces()
 
     def on_configure(self) -> None:
-        """Check the parameters, make the topics.
+        """Check the parameters, and create the topics.
 
         Raises:
-            ControllerError: joints or sizes are missing, or limits are none.
+            ControllerError: joints or dimensions are missing, or limits are invalid.
         """
         parameters, node = self.parameters, self.node
         self._settings = parameters
@@ -176,7 +182,7 @@ class TricycleController(Controller[Parameters]):
 
 
 def _share(error: float) -> float:
-    """The part of its speed with which the wheel is driven at a steering error in rad."""
+    """Return the fraction of its speed at which the wheel is driven, for a steering error in rad."""
     if error < _NEAR:
         return 1.0
     return _CREEPING if error > _FAR else cos(error)
@@ -207,7 +213,7 @@ def _steering_limiter(limits: SteeringLimits) -> SteeringLimiter:
 
 
 def _magnitudes(part: str, kind: str, least: float, greatest: float) -> Bounds:
-    """Bounds of a magnitude, either of which may be missing."""
+    """Return the bounds of a magnitude, either of which may be missing."""
     if least < 0.0 or greatest < 0.0:
         raise ControllerError(
             phrase(

@@ -11,7 +11,7 @@ from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(SteeringParameters):
-    """Parameters of the controller: those of all steered vehicles, and its sizes."""
+    """The parameters of the controller: those of all steered vehicles, and its dimensions."""
 
     traction_wheels_radius: float = parameter(0.0, description="of the wheels that drive, in m", only=JAZZY)
     traction_track_width: float = parameter(0.0, description="between the wheels that drive, in m", only=JAZZY)
@@ -28,7 +28,10 @@ class TricycleSteeringController(SteeringController[Parameters]):
     JOINTS = (2, 1)
 
     def drive(self) -> CarDrive:
-        """The sizes from the parameters, by their names or the older ones."""
+        """Return the drive with the dimensions from the parameters.
+
+        The parameters have their current or their older names.
+        """
         parameters = self.parameters
         radius = parameters.traction_wheels_radius or parameters.of_traction(
             parameters.front_wheels_radius, parameters.rear_wheels_radius

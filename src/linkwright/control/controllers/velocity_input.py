@@ -1,4 +1,4 @@
-"""Velocity commands of drive controllers, from a topic."""
+"""Velocity commands of drive controllers, received on topics."""
 
 from __future__ import annotations
 
@@ -16,21 +16,25 @@ REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class VelocityInput:
-    """Commands of a topic, ``geometry_msgs/msg/TwistStamped``, which expire after a time.
+    """The velocity commands of a ``geometry_msgs/msg/TwistStamped`` topic, which expire.
 
-    A command counts from the time in its header; from the update that takes it where it has none, or one that is still
-    to come, so that it grows old in any case. One that is not finite stops the drive.
+    The age of a command counts from the time in its header. If the header has no time, or one in the future, it counts
+    from
+    the update that first uses the command, so every command expires. A command that is not finite stops the drive.
 
     Args:
-        node: the controller's.
-        topic: its name.
+        node: the controller's node.
+        topic: the topic's name.
         timeout_s: how long a command holds, in seconds; with 0 each holds for one update.
-        unstamped: a topic of ``geometry_msgs/msg/Twist`` besides; empty for none. The same name has commands without
-            headers only.
-        qos: the quality of service of the subscriptions.
+        unstamped: an additional topic of type ``geometry_msgs/msg/Twist``; empty for none. If it has the same name as
+            `topic`, only commands without headers are received.
+        qos: the QoS of the subscriptions.
 
-    Source: diff_drive_controller of ros2_controllers; other than there a header of the future does not hold for ever,
-    and commands with headers are taken even where those without are asked for, as Jazzy takes no others.
+    Source: diff_drive_controller of ros2_controllers, with two differences: a header with a time in the future does not
+    hold
+    forever, and commands with headers are accepted even if commands without headers are requested, since Jazzy accepts
+    no
+    others.
     """
 
     def __init__(
@@ -47,28 +51,31 @@ class VelocityInput:
             node.subscribe("geometry_msgs/msg/Twist", unstamped, self._receive_twist, qos, commander=commander)
 
     def open(self) -> None:
-        """Accept commands from now on."""
+        """Start accepting commands."""
         self.forget()
         self._is_open = True
 
     def close(self) -> None:
-        """Drop the last command, and accept no more."""
+        """Discard the last command, and stop accepting commands."""
         self.forget()
         self._is_open = False
 
     def forget(self) -> None:
-        """Drop the last command."""
+        """Discard the last command."""
         self._come: tuple[Velocity, int] | None = None
         self._command: tuple[Velocity, int] | None = None
 
     def _lose(self) -> bool:
-        """Drop the command of a publisher that is lost; return whether it was still valid, and not zero."""
+        """Discard the command of a lost publisher; return whether it was still valid, and not zero."""
         velocity, _ = self._come or self._command or ((0.0,), 0)
         self.forget()
         return any(velocity)
 
     def velocity(self, time_ns: int) -> Velocity | None:
-        """The command that is valid at a time in nanoseconds; None if there is none, or the last one is too old."""
+        """Return the command that is valid at a time, in nanoseconds.
+
+        The result is None if there is none, or it has expired.
+        """
         if self._come is not None:
             self._receive(*self._come, time_ns)
             self._come = None

@@ -1,1 +1,1 @@
-"""Hardware as controllers see it: interfaces, and the ``<ros2_control>`` of a description."""
+"""Hardware as controllers see it: interfaces, and ``<ros2_control>`` elements."""

@@ -1,6 +1,7 @@
-"""The base class of hardware, and finding hardware by its type name.
+"""The base class of hardware, and the lookup of hardware classes by type name.
 
-Hardware is found through the entry points ``linkwright.hardware`` by its type name, ``mock_components/GenericSystem``.
+Hardware is found through the entry points ``linkwright.hardware`` by its type name, such as
+``mock_components/GenericSystem``.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ GROUP = "linkwright.hardware"
 
 
 class HardwareError(LinkwrightError):
-    """Raised by hardware that refuses something, or does not work any more; its text is logged.
+    """Raised when hardware refuses a request or fails; its text is logged.
 
     Args:
         message: what is wrong.
@@ -34,13 +35,13 @@ class Hardware:
     """A hardware component.
 
     Args:
-        description: its description in the URDF.
+        description: the component's description in the URDF.
         logger: the logger of its events.
 
     Attributes:
         description, logger: see above.
-        states, commands: its interfaces; a state begins with its initial value, or NaN.
-        state: its lifecycle state.
+        states, commands: the component's interfaces; a state starts with its initial value, or NaN.
+        state: the lifecycle state.
         timings: the timers of reading and writing; None while no statistics are requested.
     """
 
@@ -57,7 +58,7 @@ class Hardware:
 
     def _state_interface(self, component: ComponentDescription, interface: InterfaceDescription) -> StateInterface:
         value = interface.initial_value
-        if value != value:  # not a number; the older form of initial_value
+        if value != value:  # NaN; the older form of initial_value
             text = component.parameters.get(f"initial_{interface.name}", "")
             value = float(text) if text.replace(".", "", 1).lstrip("-").isdigit() else nan
         return StateInterface(component.name, interface.name, value)
@@ -66,18 +67,18 @@ class Hardware:
         """Connect to the hardware.
 
         Raises:
-            HardwareError: it cannot be reached.
+            HardwareError: the hardware cannot be reached.
         """
 
     def on_activate(self) -> None:
-        """Power the hardware.
+        """Power on the hardware.
 
         Raises:
-            HardwareError: it refuses.
+            HardwareError: the hardware refuses.
         """
 
     def on_deactivate(self) -> None:
-        """Remove power."""
+        """Power off the hardware."""
 
     def on_cleanup(self) -> None:
         """Disconnect from the hardware."""
@@ -86,14 +87,14 @@ class Hardware:
         """Handle an error in reading or writing."""
 
     def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Check a switch to other command interfaces.
+        """Check whether a switch to other command interfaces is possible.
 
         Args:
-            start: names of command interfaces that controllers are to have, also those of other hardware.
-            stop: names of those that they will not have any more.
+            start: names of the command interfaces that controllers will claim, including those of other hardware.
+            stop: names of the command interfaces that controllers will release.
 
         Raises:
-            HardwareError: that cannot be; nothing is switched.
+            HardwareError: the switch is not possible; nothing is switched.
         """
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
@@ -103,22 +104,22 @@ class Hardware:
         """Update `states` from the hardware.
 
         Raises:
-            HardwareError: it does not answer; its controllers are stopped.
+            HardwareError: the hardware does not answer; its controllers are stopped.
         """
 
     def write(self, time_ns: int, period_s: float) -> None:
-        """Send `commands`; NaN represents no command.
+        """Send `commands` to the hardware; NaN represents no command.
 
         Raises:
-            HardwareError: it does not take them; its controllers are stopped.
+            HardwareError: the hardware does not accept the commands; its controllers are stopped.
         """
 
 
 def hardware_class(plugin: str) -> type[Hardware] | None:
-    """The class of hardware of a type; None where there is none.
+    """Return the hardware class of a type; None if there is none.
 
     Raises:
-        LinkwrightError: CTL121 the package that brings it cannot be imported.
+        LinkwrightError: CTL121, the package that provides it cannot be imported.
     """
     entry = extensions(GROUP).get(plugin)
     if entry is None:

@@ -1,7 +1,8 @@
-"""``<ros2_control>`` of a description, as data.
+"""The ``<ros2_control>`` elements of a description, as data.
 
-Source: hardware_interface's component parser (elements, types, defaults). A joint mimics another by ``<mimic>`` of the
-joint (Jazzy), or by its parameters ``mimic``, ``multiplier`` and ``offset`` (Humble); ``mimic="false"`` forbids it.
+Source: hardware_interface's component parser (elements, types, defaults). A joint mimics another through the joint's
+``<mimic>`` (Jazzy), or through its parameters ``mimic``, ``multiplier`` and ``offset`` (Humble); ``mimic="false"``
+prevents that.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ class InterfaceDescription:
 
     Attributes:
         name: ``position``, ...
-        minimum, maximum: bounds of commands; NaN if not given.
-        initial_value: of states; NaN if not given.
-        limited: whether commands are kept within limits, where the manager does so.
+        minimum, maximum: the bounds of commands; NaN if not given.
+        initial_value: the initial value of a state; NaN if not given.
+        limited: whether its commands are kept within limits, if the manager enforces limits.
         parameters: all of its parameters as written.
     """
 
@@ -41,7 +42,7 @@ class InterfaceDescription:
 
 @dataclass(frozen=True, slots=True)
 class MimicDescription:
-    """Position = multiplier * position of `joint` + offset."""
+    """A mimic relation: position = multiplier * position of `joint` + offset."""
 
     joint: str
     multiplier: float = 1.0
@@ -53,10 +54,10 @@ class ComponentDescription:
     """A joint, sensor or GPIO of hardware.
 
     Attributes:
-        name: its name.
+        name: the component's name.
         kind: ``joint``, ``sensor`` or ``gpio``.
-        commands, states: its interfaces.
-        parameters: as written.
+        commands, states: the component's interfaces.
+        parameters: the parameters as written.
         mimic: the joint that it follows.
     """
 
@@ -70,15 +71,15 @@ class ComponentDescription:
 
 @dataclass(frozen=True, slots=True)
 class HardwareDescription:
-    """A ``<ros2_control>``.
+    """A ``<ros2_control>`` element.
 
     Attributes:
-        name: its name.
+        name: the hardware's name.
         type: ``system``, ``actuator`` or ``sensor``.
         plugin: the type name of its driver.
-        is_async: whether it requests a thread of its own.
+        is_async: whether it requests its own thread.
         parameters: the parameters of the hardware.
-        joints, sensors, gpios: its components, in file order.
+        joints, sensors, gpios: the components, in file order.
     """
 
     name: str
@@ -92,7 +93,7 @@ class HardwareDescription:
 
     @property
     def components(self) -> tuple[ComponentDescription, ...]:
-        """Joints, sensors and GPIOs."""
+        """The joints, sensors and GPIOs."""
         return (*self.joints, *self.sensors, *self.gpios)
 
     def is_set(self, name: str) -> bool:
@@ -101,10 +102,11 @@ class HardwareDescription:
 
 
 def hardware_of(robot: Robot) -> tuple[list[HardwareDescription], list[Diagnostic]]:
-    """Read the hardware of a robot, with findings on its elements.
+    """Return the hardware of a robot, and findings about its elements.
 
-    Invalid elements are left out: a hardware without a name or with an unknown type, a joint that the robot does not
-    have, a value that is not a number.
+    Invalid elements are left out: hardware without a name or with an unknown type, a joint that the robot does not
+    have, a
+    value that is not a number.
     """
     reader = _Reader(robot)
     found = [reader.hardware(extension) for extension in robot.extensions if extension.tag == "ros2_control"]

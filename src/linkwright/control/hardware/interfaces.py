@@ -1,6 +1,6 @@
 """Interfaces of ros2_control: named numbers that hardware and controllers exchange.
 
-Source: hardware_interface of ros2_control (names, units by REP 103, NaN for unknown values).
+Source: hardware_interface of ros2_control (names, units of REP 103, NaN for unknown values).
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ POSITION, VELOCITY, ACCELERATION, EFFORT = "position", "velocity", "acceleration
 
 
 class Interface:
-    """A number with a name.
+    """A named number.
 
     Args:
         component: the joint, sensor or GPIO; for interfaces of a chained controller, the controller.
         kind: ``position``, ``velocity``, ``orientation.x``, ...
-        value: NaN while unknown.
+        value: the initial number; NaN while it is unknown.
 
     Attributes:
         component, kind: see above.
-        name: both, ``joint1/position``.
+        name: component and kind, such as ``joint1/position``.
         value: the current number.
     """
 
@@ -45,13 +45,16 @@ class StateInterface(Interface):
 
 
 class CommandInterface(Interface):
-    """A command to hardware, or to a chained controller. One active controller at a time claims it."""
+    """A command to hardware, or to a chained controller.
+
+    Only one active controller at a time can claim it.
+    """
 
     __slots__ = ()
 
 
 class Interfaces(Enum):
-    """Constants that represent all, or no, interfaces."""
+    """Constants that represent all interfaces, or none."""
 
     ALL = "all"
     """Every interface that there is."""

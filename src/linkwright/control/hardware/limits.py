@@ -1,9 +1,10 @@
 """Limits of joints, applied to all commands.
 
-Source: joint_limits of ros2_control (``enforce_command_limits`` of the controller manager; which limits hold where).
-Limits are those of ``<limit>`` and ``<safety_controller>`` of the joint, narrowed by ``min`` and ``max`` of its command
-interfaces; ``<limits enable="false"/>`` lifts them. A limit of 0 for velocities or efforts is none. Other than there a
-position moves no faster than its velocity limit from the last command on in any case.
+Source: joint_limits of ros2_control (``enforce_command_limits`` of the controller manager; which limits apply where).
+The limits are those of the joint's ``<limit>`` and ``<safety_controller>``, narrowed by ``min`` and ``max`` of its
+command interfaces; ``<limits enable="false"/>`` disables them. A velocity or effort limit of 0 means no limit. One
+thing
+differs: starting from the last command, a position command never moves faster than the velocity limit.
 """
 
 from __future__ import annotations
@@ -31,13 +32,13 @@ _UNLIMITED = (-inf, inf)
 
 @dataclass(frozen=True, slots=True)
 class JointLimits:
-    """Limits of a joint: in rad and N m, or m and N, and seconds; infinite where there are none.
+    """The limits of a joint in rad and N m, or m and N, and seconds; infinite if there are none.
 
     Attributes:
-        position: the least and the greatest.
-        velocity, effort: the greatest, either way.
-        acceleration, deceleration: of commands of velocity and acceleration, the greatest.
-        safety: soft limits, within the others.
+        position: the minimum and the maximum.
+        velocity, effort: the maximum in either direction.
+        acceleration, deceleration: the maximum for velocity and acceleration commands.
+        safety: soft limits, within the other limits.
         kinds: the interfaces whose commands are limited.
     """
 
@@ -51,7 +52,7 @@ class JointLimits:
 
 
 def limits_of(joint: Joint, described: ComponentDescription) -> JointLimits:
-    """The limits of a joint that hardware has."""
+    """Return the limits of a joint of the hardware."""
     limit, interfaces = joint.limit, {command.name: command for command in described.commands}
     position, velocity, effort, acceleration, deceleration = _UNLIMITED, inf, inf, inf, inf
     if limit is not None:
@@ -77,10 +78,10 @@ class JointLimiter:
     """Limits the commands of a joint.
 
     Args:
-        name: of the joint.
-        limits: its limits.
-        commands: its command interfaces by kind.
-        states: its state interfaces by kind.
+        name: the joint's name.
+        limits: the joint's limits.
+        commands: the joint's command interfaces by kind.
+        states: the joint's state interfaces by kind.
     """
 
     def __init__(
@@ -109,10 +110,10 @@ class JointLimiter:
 
         Args:
             period_s: the time since the last call, in seconds.
-            claimed: names of interfaces that controllers claimed; the others are left alone.
+            claimed: names of the interfaces that controllers have claimed; other interfaces are ignored.
 
         Returns:
-            Of each command outside its limits: the kind, the commanded value, and the limited value.
+            For each command outside its limits: the kind, the commanded value, and the limited value.
         """
         exceeded = []
         for kind, command in self._commands.items():
@@ -131,7 +132,10 @@ class JointLimiter:
         return None if state is None or not isfinite(state.value) else state.value
 
     def _speeds(self, position: float | None) -> tuple[float, float]:
-        """The greatest velocities either way at a position: they fall towards soft limits."""
+        """Return the maximum velocities in both directions at a position.
+
+        They decrease towards soft limits.
+        """
         greatest, safety = self._limits.velocity, self._limits.safety
         if safety is None or position is None or not safety.k_position:
             return -greatest, greatest
@@ -186,11 +190,11 @@ class JointLimiter:
 
 
 class CommandLimits:
-    """Limits the commands of all joints, and reports each interface once that had to be limited.
+    """Limits the commands of all joints, and logs once for each interface that it had to limit.
 
     Args:
-        limiters: of the joints.
-        logger: the logger of its warnings.
+        limiters: the limiters of the joints.
+        logger: the logger of the warnings.
     """
 
     def __init__(self, limiters: Sequence[JointLimiter], logger: Logger) -> None:
@@ -217,7 +221,7 @@ class CommandLimits:
 
 
 def _range(interface: InterfaceDescription | None) -> tuple[float, float]:
-    """The limits of an interface from the description, least and greatest."""
+    """Return the minimum and maximum of an interface in the description."""
     if interface is None:
         return _UNLIMITED
     return (
@@ -227,7 +231,7 @@ def _range(interface: InterfaceDescription | None) -> tuple[float, float]:
 
 
 def _greatest(interface: InterfaceDescription | None) -> float:
-    """The limit of an interface's magnitude from the description."""
+    """Return the maximum magnitude of an interface in the description."""
     lower, upper = _range(interface)
     return min(abs(lower), abs(upper))
 

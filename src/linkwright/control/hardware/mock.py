@@ -1,7 +1,7 @@
-"""``mock_components/GenericSystem``: states follow commands.
+"""``mock_components/GenericSystem``: hardware whose states follow its commands.
 
-Source: mock_components of ros2_control (parameters, order of steps, texts). With ``calculate_dynamics`` a joint is
-integrated by its active command interface; otherwise each state copies the command of the same name.
+Source: mock_components of ros2_control (parameters, order of steps, messages). With ``calculate_dynamics`` a joint is
+integrated from its active command interface; otherwise each state copies the command of the same name.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ _MODES = (POSITION, VELOCITY, ACCELERATION)
 
 
 class _Joint:
-    """A joint with its own state of motion; interfaces show the part that the description declares."""
+    """A joint with its own state of motion.
+
+    Its interfaces show the part that the description declares.
+    """
 
     def __init__(self, described: ComponentDescription, states: dict[str, StateInterface]) -> None:
         self.described = described
@@ -42,7 +45,7 @@ class _Joint:
 
 
 class GenericSystem(Hardware):
-    """Hardware whose states follow its commands at once."""
+    """Hardware whose states follow its commands immediately."""
 
     def __init__(self, description: HardwareDescription, logger: Logger) -> None:
         super().__init__(description, logger)
@@ -75,7 +78,7 @@ class GenericSystem(Hardware):
             for state in self.states
             if self._offset_interface and state.kind == self._offset_interface and state.component in self._joints
         ]
-        # A thousand times a second each lookup counts: only dynamics and mimicry need the state of a joint.
+        # At 1 kHz each lookup counts: only dynamics and mimic joints need the state of a joint.
         tied = {other for joint, followed, _ in self._followers for other in (joint, followed)}
         joints = [joint for joint in self._joints.values() if self._dynamic or joint in tied]
         free = [joint for joint in self._joints.values() if not self._dynamic and joint not in tied]
@@ -103,7 +106,10 @@ class GenericSystem(Hardware):
                         self.commands.append(command)
 
     def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Refuse, with dynamics, all but exactly one of position, velocity and acceleration of a joint."""
+        """With dynamics, refuse to start a joint without a single mode.
+
+        Its mode must be position, velocity or acceleration.
+        """
         if not self._dynamic:
             return
         for name in self._joints:
@@ -120,7 +126,7 @@ class GenericSystem(Hardware):
                 )
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Integrate the joints, with dynamics, by these interfaces from now on."""
+        """With dynamics, integrate the joints from these interfaces from now on."""
         for name, joint in self._joints.items():
             for mode in _MODES:
                 if self._dynamic and f"{name}/{mode}" in start:
@@ -170,7 +176,7 @@ class GenericSystem(Hardware):
                 joint.values[EFFORT] = effort
 
     def _move(self, joint: _Joint, period_s: float) -> None:
-        """Integrate one step, with the values before it, as ros2_control does."""
+        """Integrate one step from the previous values, as ros2_control does."""
         values = joint.values
         wanted = _given(joint.commands.get(joint.mode))
         velocity = values[VELOCITY]
@@ -191,5 +197,5 @@ class GenericSystem(Hardware):
 
 
 def _given(command: Interface | None) -> float | None:
-    """A command, if one was given."""
+    """Return the value of a command; None if there is none."""
     return None if command is None or isnan(command.value) else command.value

@@ -1,6 +1,6 @@
-"""The hardware of a robot: its interfaces, which controller claims them, and its lifecycle.
+"""The hardware of a robot, with its interfaces, their claims by controllers, and its lifecycle.
 
-Source: the resource manager of ros2_control (rules and texts).
+Source: the resource manager of ros2_control (rules and messages).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _DOWN = ("cleanup", "deactivate")
 
 
 def hardware_by_entry_points(description: HardwareDescription, logger: Logger) -> Hardware | None:
-    """Make the hardware of a description by its type name, if one is installed."""
+    """Create the hardware of a description from its type name; None if no such type is installed."""
     found = hardware_class(description.plugin)
     return None if found is None else found(description, logger)
 
@@ -40,7 +40,7 @@ class Resources:
 
     Attributes:
         components: the hardware by name.
-        claims: which controller has a command interface, by the interface's name.
+        claims: the controllers that have claimed command interfaces, by the interface's name.
     """
 
     def __init__(self, logger: Logger) -> None:
@@ -109,20 +109,20 @@ class Resources:
         return name in self._available if owner is None else owner.state in (INACTIVE, ACTIVE)
 
     def states(self, names: Sequence[str] | Interfaces) -> list[StateInterface]:
-        """State interfaces.
+        """Return state interfaces.
 
         Raises:
-            KeyError: there is none of a name, or it is not available.
+            KeyError: an interface does not exist, or is not available.
         """
         if names is Interfaces.ALL:
             return [all_state for all_state in self._all_states() if self.is_available(all_state.name)]
         return [self._one(name, self._all_states(), "State") for name in names]
 
     def commands(self, names: Sequence[str] | Interfaces) -> list[CommandInterface]:
-        """Command interfaces.
+        """Return command interfaces.
 
         Raises:
-            KeyError: there is none of a name, or it is not available.
+            KeyError: an interface does not exist, or is not available.
         """
         if names is Interfaces.ALL:
             return [all_command for all_command in self._all_commands() if self.is_available(all_command.name)]
@@ -157,7 +157,7 @@ class Resources:
         self._exported.pop(controller, None)
 
     def references_of(self, controller: str) -> list[str]:
-        """The names of a controller's references."""
+        """Return the names of a controller's references."""
         return [reference.name for reference in self._references.get(controller, ())]
 
     def set_available(self, controller: str, *, available: bool) -> None:
@@ -167,10 +167,10 @@ class Resources:
         }
         self._available = self._available | names if available else self._available - names
 
-    # --- its life -----------------------------------------------------------------------------------------------------
+    # --- lifecycle ----------------------------------------------------------------------------------------------------
 
     def set_state(self, name: str, target: LifecycleState) -> bool:
-        """Bring hardware to a lifecycle state; return whether it got there."""
+        """Bring hardware to a lifecycle state; return whether it reached that state."""
         hardware = self.components[name]
         if hardware.state == FINALIZED:
             return target == FINALIZED
@@ -197,10 +197,13 @@ class Resources:
         self._logger.info(f"Successful '{transition}' of hardware '{name}'")
         return True
 
-    # --- its work -----------------------------------------------------------------------------------------------------
+    # --- updates ------------------------------------------------------------------------------------------------------
 
     def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> str:
-        """Ask the hardware whether command interfaces may be switched; the reason against it, or nothing."""
+        """Check whether the hardware allows a switch of command interfaces.
+
+        Returns the reason if not, else an empty string.
+        """
         for hardware in self.components.values():
             refusal = _failure_of(hardware.prepare_switch, start, stop)
             if refusal:
@@ -216,7 +219,10 @@ class Resources:
                 self._logger.error(f"Component '{hardware.description.name}' could not perform switch: {failure}")
 
     def read(self, time_ns: int, period_s: float) -> list[Hardware]:
-        """Read all configured hardware; return the components that failed, which are logged and unconfigured."""
+        """Read all configured hardware.
+
+        Returns the components that failed, which are logged and unconfigured.
+        """
         failed = []
         for hardware in self.components.values():
             if hardware.state is INACTIVE or hardware.state is ACTIVE:
@@ -252,12 +258,15 @@ class Resources:
         return hardware
 
     def names_of(self, hardware: Hardware) -> set[str]:
-        """The names of a hardware's interfaces."""
+        """Return the names of a hardware component's interfaces."""
         return {state.name for state in (*hardware.states, *hardware.commands)}
 
 
 def _failure_of(callback: Callable[..., object], *arguments: object) -> str:
-    """Call a function of hardware; the error that it raises, in words, or nothing."""
+    """Call a function of hardware.
+
+    Returns the message of the error that it raises, or an empty string.
+    """
     try:
         callback(*arguments)
     except Exception as error:  # noqa: BLE001 - a fault of hardware must not end the others

@@ -1,6 +1,6 @@
 """Statistics of cycles: durations in microseconds, and rates in Hz.
 
-Source: the statistics of ros2_control's controller manager (which, and their names).
+Source: the statistics of ros2_control's controller manager (their selection and names).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from time import perf_counter_ns
 
 
 class _Measured:
-    """Statistics of a number since they were reset."""
+    """The statistics of a number since the last reset."""
 
     def __init__(self) -> None:
         self._count = 0
@@ -27,7 +27,7 @@ class _Measured:
         self._least, self._most, self._last = min(self._least, value), max(self._most, value), value
 
     def items(self) -> Iterator[tuple[str, float]]:
-        """The statistics with their names; NaN as long as there are none."""
+        """Iterate over the statistics with their names; NaN while there are no values."""
         known = self._count > 0
         yield "average", self._mean if known else nan
         yield "min", self._least if known else nan
@@ -38,17 +38,17 @@ class _Measured:
 
 
 class Timing:
-    """Durations and rate of something that is done in each cycle."""
+    """The durations and the rate of an activity that is performed in each cycle."""
 
     def __init__(self) -> None:
         self._execution, self._periodicity = _Measured(), _Measured()
         self._before_ns = 0
 
     def measure(self, work: Callable[[int, float], object], time_ns: int, period_s: float) -> None:
-        """Call a function, and measure it.
+        """Call a function, and measure its duration.
 
         Args:
-            work: takes the two others.
+            work: the function, called with the other two arguments.
             time_ns: the time, in nanoseconds.
             period_s: the time since the last cycle, in seconds.
         """
@@ -62,7 +62,7 @@ class Timing:
             self._execution.add((perf_counter_ns() - began) / 1e3)
 
     def items(self) -> Iterator[tuple[str, float]]:
-        """The statistics with their names."""
+        """Iterate over the statistics with their names."""
         for kind, measured in (("execution_time", self._execution), ("periodicity", self._periodicity)):
             for name, value in measured.items():
                 yield f"{kind}/{name}", value

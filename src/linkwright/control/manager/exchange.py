@@ -1,4 +1,4 @@
-"""The exchange of controllers that are updated on the event loop, where nothing has to wait."""
+"""The exchange for controllers that are updated on the event loop, which never have to wait."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from linkwright.graph.stepped.exchange import Command, Exchange, Outlet
 
 
 class DirectExchange(Exchange):
-    """Publishes and calls at once."""
+    """An exchange that publishes messages and calls functions immediately."""
 
     def send(self, publisher: Outlet, message: Any) -> None:
-        """Publish a message."""
+        """Publish a message immediately."""
         publisher.publish(message)
 
     def post(self, command: Command) -> None:
-        """Call a function."""
+        """Call a function immediately."""
         command()

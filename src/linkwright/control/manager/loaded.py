@@ -17,10 +17,10 @@ class Loaded:
     """A controller that a manager has loaded.
 
     Attributes:
-        name, type: its names.
+        name, type: the controller's name and type name.
         controller: the controller.
-        fallbacks: the controllers to activate when it fails.
-        period_ns: the time between two updates; 0 for each update of the manager.
+        fallbacks: the controllers to activate if it fails.
+        period_ns: the time between two updates; 0 to update in each cycle of the manager.
         next_ns: the time of the next update.
         before: the last finite values of its commands.
         timing: the timer of its updates; None while no statistics are requested.
@@ -37,31 +37,37 @@ class Loaded:
 
     @property
     def is_active(self) -> bool:
-        """Whether it is active."""
+        """Whether the controller is active."""
         return self.controller.state is ACTIVE
 
     @property
     def is_inactive(self) -> bool:
-        """Whether it is configured and not active."""
+        """Whether the controller is configured and not active."""
         return self.controller.state is INACTIVE
 
     @property
     def is_configured(self) -> bool:
-        """Whether it is configured, active or not."""
+        """Whether the controller is configured, active or not."""
         return self.is_active or self.is_inactive
 
     @property
     def is_chainable(self) -> bool:
-        """Whether other controllers can command it, or read its exported states."""
+        """Whether other controllers can command this controller, or read its exported states."""
         return bool(self.controller.references or self.controller.exported)
 
     def wanted_commands(self, known: list[str]) -> list[str]:
-        """The names of the command interfaces that it claims; all available ones where it asks for all."""
+        """Return the names of the command interfaces that the controller claims.
+
+        If it requests all interfaces, the result contains all available ones.
+        """
         wanted = self.controller.command_interfaces()
         return [*known] if isinstance(wanted, Interfaces) else [*wanted]
 
     def wanted_states(self, known: list[str]) -> list[str]:
-        """The names of the state interfaces that it reads; all available ones where it asks for all."""
+        """Return the names of the state interfaces that the controller reads.
+
+        If it requests all interfaces, the result contains all available ones.
+        """
         wanted = self.controller.state_interfaces()
         return [*known] if isinstance(wanted, Interfaces) else [*wanted]
 
@@ -69,13 +75,13 @@ class Loaded:
         """Replace commands that are not finite by the last position, or by a velocity or effort of 0.
 
         Returns:
-            The name of one of them, or nothing.
+            The name of one of these commands, or an empty string.
         """
         commands = self.controller.commands
         if not commands:
             return ""
         values = [command.value for command in commands]
-        if isfinite(sum(values)) or all(map(isfinite, values)):  # as nearly always; a sum may overflow
+        if isfinite(sum(values)) or all(map(isfinite, values)):  # the usual case; a sum may overflow
             self.before = values
             return ""
         wrong = ""
@@ -87,13 +93,13 @@ class Loaded:
             elif isfinite(before[place]):
                 wrong = wrong or command.name
                 command.value = before[place] if command.kind == POSITION else 0.0
-            elif value == value:  # infinite, and nothing was before it
+            elif value == value:  # infinite, without a previous value
                 wrong = wrong or command.name
                 command.value = before[place]
         return wrong
 
     def halt(self) -> None:
-        """Command 0 on the velocities, accelerations and efforts that it claimed."""
+        """Command 0 to the velocity, acceleration and effort interfaces that the controller claimed."""
         for command in self.controller.commands:
             if command.kind != POSITION and isfinite(command.value):
                 command.value = 0.0

@@ -1,6 +1,6 @@
 """The controller manager: loads, configures, switches and updates controllers.
 
-Source: the controller manager of ros2_control (order of steps, rules, texts).
+Source: the controller manager of ros2_control (order of steps, rules, messages).
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 @dataclass(frozen=True, slots=True)
 class SavedState:
-    """The state of a manager, for another one that takes its place.
+    """The state of a manager, for another manager that replaces it.
 
     Attributes:
-        parameters: of its node, by name.
-        controllers: the names of those that were loaded, with the labels of their states, in the order of updates.
+        parameters: the parameters of the manager's node, by name.
+        controllers: the names of the loaded controllers, with the labels of their states, in the order of updates.
     """
 
     parameters: dict[str, Any] = field(default_factory=dict)
@@ -43,21 +43,21 @@ class SavedState:
 
 
 class ControllerManager:
-    """The controllers of a robot. Everything is called in one thread, that of the updates.
+    """Manages the controllers of a robot. All methods are called in one thread, the update thread.
 
     Args:
-        node: the manager's node, which takes parameters that are not declared.
-        exchange: between the thread of the updates and the graph.
+        node: the manager's node, which accepts undeclared parameters.
+        exchange: the exchange between the update thread and the graph.
         resources: the hardware.
         process: the arguments for the nodes of the controllers.
-        update_rate: in Hz.
+        update_rate: the update rate, in Hz.
 
     Attributes:
         node, resources, update_rate: see above.
         robot_description: the URDF of the robot.
-        controllers: those that are loaded, by name, in the order in which they are updated.
+        controllers: the loaded controllers by name, in the order in which they are updated.
         limits: keeps commands within the limits of joints; None if limits are not enforced.
-        on_change: called when a controller or hardware has another state.
+        on_change: called when the state of a controller or of hardware has changed.
     """
 
     def __init__(
@@ -84,7 +84,10 @@ class ControllerManager:
     # --- loading ------------------------------------------------------------------------------------------------------
 
     def load(self, name: str) -> bool:
-        """Load a controller, whose type is the parameter ``NAME.type``; return whether that succeeded."""
+        """Load a controller whose type is given by the parameter ``NAME.type``.
+
+        Returns whether that succeeded.
+        """
         logger = self._logger
         if name in self.controllers:
             logger.error(f"A controller named '{name}' was already loaded inside the controller manager")
@@ -130,7 +133,7 @@ class ControllerManager:
         return None
 
     def unload(self, name: str) -> bool:
-        """Unload a controller that is not active; return whether that succeeded."""
+        """Unload a controller, which must not be active; return whether that succeeded."""
         loaded = self.controllers.get(name)
         if loaded is None or loaded.is_active:
             why = "it is still active" if loaded is not None else "no controller with this name exists"
@@ -144,7 +147,10 @@ class ControllerManager:
         return True
 
     def reload(self, *, force: bool) -> bool:
-        """Unload all controllers; return whether that succeeded: active ones prevent it unless it is forced."""
+        """Unload all controllers; return whether that succeeded.
+
+        Active controllers prevent it unless `force` is true.
+        """
         active = [controller.name for controller in self._active]
         if active and not force:
             self._logger.error(
@@ -161,7 +167,7 @@ class ControllerManager:
         return True
 
     def saved_state(self) -> SavedState:
-        """The state that `resume` takes."""
+        """Return the state of this manager, for `resume`."""
         parameters = {name: each.value for name, each in self.node.get_parameters_by_prefix("").items()}
         states = tuple((controller.name, controller.controller.state.label) for controller in self.controllers.values())
         return SavedState(parameters, states)
@@ -183,7 +189,7 @@ class ControllerManager:
             self.switch(active, (), BEST_EFFORT)
 
     def close(self) -> None:
-        """Deactivate all controllers, and end."""
+        """Deactivate all controllers, and shut down."""
         for loaded in reversed(tuple(self._active)):
             self._deactivate(loaded)
         for name in tuple(self.controllers):
@@ -192,7 +198,7 @@ class ControllerManager:
     # --- configuring --------------------------------------------------------------------------------------------------
 
     def configure(self, name: str) -> bool:
-        """Configure a controller; return whether it is inactive then."""
+        """Configure a controller; return whether it is inactive afterwards."""
         self._logger.info(f"Configuring controller '{name}'")
         loaded = self.controllers.get(name)
         if loaded is None:
@@ -252,9 +258,10 @@ class ControllerManager:
         return done
 
     def _sort(self) -> None:
-        """Sort the controllers: a user of another's references or exported states comes before that one.
+        """Sort the controllers by their dependencies.
 
-        A controller that uses both comes before it, such as a drive over PID controllers that export wheel speeds.
+        A controller precedes those whose references it commands, and follows those whose exported states it only reads.
+        A controller that does both precedes them, such as a drive above PID controllers that export wheel speeds.
         """
         order: dict[str, Loaded] = {}
         names = self.resources.command_names
@@ -286,7 +293,7 @@ class ControllerManager:
         """Deactivate controllers and activate others.
 
         Returns:
-            Whether that succeeded as far as the strictness requires, and the message about it.
+            Whether that succeeded as far as the strictness requires, and a message about it.
         """
         if strictness == 0:
             self._logger.warning(
@@ -337,7 +344,7 @@ class ControllerManager:
             loaded.controller.chained = chained
 
     def _activate(self, loaded: Loaded) -> str:
-        """Activate a controller; the reason if that failed, or nothing."""
+        """Activate a controller; return the reason if that failed, else an empty string."""
         controller, resources, name = loaded.controller, self.resources, loaded.name
         wanted = loaded.wanted_commands(
             [command_name for command_name in resources.command_names if resources.is_available(command_name)]
@@ -412,7 +419,10 @@ class ControllerManager:
             logger.error(_traced("Caught exception in callback for on_error", error))  # noqa: TRY400 - as above
 
     def set_hardware_state(self, name: str, target: LifecycleState) -> bool:
-        """Bring hardware to a lifecycle state; return whether it got there. Its controllers are deactivated first."""
+        """Bring hardware to a lifecycle state; return whether it reached that state.
+
+        If active hardware leaves that state, its controllers are deactivated first.
+        """
         hardware = self.resources.components[name]
         if hardware.state is ACTIVE and target is not ACTIVE:
             self._stop(self._users_of([hardware]))
@@ -423,7 +433,7 @@ class ControllerManager:
     # --- updating -----------------------------------------------------------------------------------------------------
 
     def cycle(self, time_ns: int, period_s: float) -> None:
-        """Read the hardware, update the controllers, write to the hardware.
+        """Read the hardware, update the controllers, and write to the hardware.
 
         Args:
             time_ns: the time, in nanoseconds.
@@ -434,7 +444,7 @@ class ControllerManager:
             self._stop_those_of(failed)
         for loaded in self._active:
             if loaded.controller.state is not ACTIVE:
-                continue  # the failure of an earlier one deactivated it
+                continue  # deactivated because an earlier controller failed
             if loaded.period_ns:
                 if time_ns < loaded.next_ns:
                     continue
@@ -448,7 +458,7 @@ class ControllerManager:
                 else:
                     loaded.timing.measure(loaded.controller.step, time_ns, step_s)
             except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
-                self._fail(loaded, error)  # `_active` was replaced
+                self._fail(loaded, error)  # replaces `_active`
                 continue
             wrong = loaded.replace_invalid_commands()
             if wrong:
@@ -466,7 +476,10 @@ class ControllerManager:
         )
 
     def _fail(self, loaded: Loaded, error: Exception) -> None:
-        """Deactivate a controller whose update failed, and those that command it; its joints are stopped."""
+        """Deactivate a controller whose update failed, and the controllers that command it.
+
+        Their joints are stopped.
+        """
         message = _traced("Caught exception while updating", error)
         if isinstance(error, ControllerError):
             message = error.diagnostics[0].message
@@ -481,7 +494,7 @@ class ControllerManager:
             self.switch(loaded.fallbacks, (), BEST_EFFORT)
 
     def _commanding(self, loaded: Loaded) -> list[Loaded]:
-        """The active controllers that command the references of one, directly or through others."""
+        """Return the active controllers that command a controller's references, directly or indirectly."""
         references = self.resources.references_of(loaded.name)
         owners = dict.fromkeys(
             self.resources.claims[reference] for reference in references if reference in self.resources.claims
@@ -500,7 +513,7 @@ class ControllerManager:
         self.on_change()
 
     def _users_of(self, hardware: Sequence[Hardware]) -> list[Loaded]:
-        """The active controllers that use hardware, and those that command them."""
+        """Return the active controllers that use hardware, and the controllers that command them."""
         names = {name for component in hardware for name in self.resources.names_of(component)}
         found = [
             loaded
@@ -528,11 +541,11 @@ class ControllerManager:
 
 
 def _owners(interfaces: Iterable[str]) -> set[str]:
-    """The prefixes of interfaces' names: joints, or controllers."""
+    """Return the prefixes of interface names, which are joints or controllers."""
     return {interface.partition("/")[0] for interface in interfaces}
 
 
 def _traced(what: str, error: Exception) -> str:
-    """An error with its place in the code, as authors of controllers need it."""
+    """Return the text of an error with its place in the code, for authors of controllers."""
     frames = traceback.format_exception(type(error), error, error.__traceback__)
     return f"{what}: {type(error).__name__}: {error}\n{''.join(frames).rstrip()}"

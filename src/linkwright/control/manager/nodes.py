@@ -1,7 +1,7 @@
 """The nodes of controllers: their names, parameters and remappings.
 
 Source: the controller manager of ros2_control. A controller's node gets its parameters from the files that the
-manager's process was started with, then from those in ``NAME.params_file``, then from ``NAME.node_options_args``.
+manager's process was started with, then from the files in ``NAME.params_file``, then from ``NAME.node_options_args``.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ _OF_THE_PROCESS = ("__node", "__name", "__ns")
 
 @dataclass(slots=True)
 class ProcessArguments:
-    """The arguments of the process, or plugin, that apply to all nodes of its manager.
+    """The arguments of the process or plugin that apply to all nodes of its manager.
 
     Attributes:
-        parameters: by the names of nodes.
+        parameters: the parameters by node name.
         remappings: rules ``(from, to)``.
     """
 
@@ -33,10 +33,10 @@ class ProcessArguments:
 
 
 def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node:
-    """A new node for a controller.
+    """Create a node for a controller.
 
     Raises:
-        LinkwrightError: its name, or one of its files or arguments, is not valid.
+        LinkwrightError: the node's name, or one of its files or arguments, is not valid.
     """
     namespace = manager.get_namespace()
     full_name = join(namespace, name)
@@ -68,7 +68,10 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
 
 
 def words_of(node: Node, name: str) -> list[str]:
-    """The strings in a parameter, one or a list of them; none where it is not set."""
+    """Return the strings in a parameter that is a string or a list of strings.
+
+    The result is empty if the parameter is not set.
+    """
     value = node.get_parameter_or(name).value
     if not value:
         return []

@@ -28,7 +28,7 @@ class ManagerServices:
 
     Args:
         manager: the manager.
-        node: its node as plugins have them: callbacks come in the thread of the updates.
+        node: the manager's node in the form that plugins use; its callbacks run in the update thread.
     """
 
     def __init__(self, manager: ControllerManager, node: SteppedNode) -> None:
@@ -70,7 +70,7 @@ class ManagerServices:
         self._activity.publish(message)
 
     def publish_diagnostics(self) -> None:
-        """Publish diagnostics each second: whether all is active, and how long it takes."""
+        """Publish diagnostics once a second: whether everything is active, and how long it takes."""
         if self._statistics is not None:
             self._statistics.publish()
         if not self._diagnostics.is_wanted:
@@ -170,7 +170,7 @@ class ManagerServices:
 
 
 def _service_name(name: str) -> str:
-    """``list_controllers`` of ``ListControllers``."""
+    """Return the name of a service from its type name: ``list_controllers`` for ``ListControllers``."""
     return "".join(f"_{each.lower()}" if each.isupper() else each for each in name).lstrip("_")
 
 

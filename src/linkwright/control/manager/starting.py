@@ -1,6 +1,6 @@
-"""Loading hardware by a manager's parameters and the robot's description.
+"""Loading of hardware according to a manager's parameters and the robot's description.
 
-Source: the controller manager of ros2_control, Humble's names and Jazzy's.
+Source: the controller manager of ros2_control, with the names of Humble and of Jazzy.
 """
 
 from __future__ import annotations
@@ -21,13 +21,15 @@ _INITIAL = "hardware_components_initial_state"
 
 
 def load_hardware(manager: ControllerManager, text: str, library: DescriptionLibrary, make: Maker) -> bool:
-    """Load the hardware of a description and bring it to the lifecycle states of the manager's parameters.
+    """Load the hardware of a description, and bring it to its configured lifecycle states.
+
+    The manager's parameters specify these states.
 
     Args:
         manager: the manager.
         text: the URDF.
         library: the robot descriptions that the process has read.
-        make: makes hardware.
+        make: creates hardware.
 
     Returns:
         Whether the description is readable; its errors are logged.
@@ -64,7 +66,7 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
 
 
 def _limits_of(robot: Robot, resources: Resources, logger: Logger) -> CommandLimits:
-    """A limiter of the hardware's commands, by the limits of the robot's joints."""
+    """Return an object that limits the hardware's commands by the limits of the robot's joints."""
     limiters = []
     for hardware in resources.components.values():
         for joint in hardware.description.joints:

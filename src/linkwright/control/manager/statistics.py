@@ -1,8 +1,9 @@
-"""Durations and rates of controllers and hardware: ``~/statistics/...`` of the controller manager.
+"""Durations and rates of controllers and hardware, published on ``~/statistics/...``.
 
 Source: controller_manager of ros2_control from Jazzy on (topics, names, units: execution times in microseconds,
-periodicity in Hz). Unlike there, nothing is measured without a subscriber; counting begins within a second after the
-first subscription.
+periodicity in Hz). One thing differs: nothing is measured without a subscription; measuring starts within a second
+after
+the first subscription.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ class StatisticsTopics:
 
     Args:
         manager: the manager.
-        node: its node.
+        node: the manager's node.
     """
 
     def __init__(self, manager: ControllerManager, node: SteppedNode) -> None:
@@ -36,7 +37,7 @@ class StatisticsTopics:
         self._version = 0
 
     def publish(self) -> None:
-        """Publish the statistics, once a second; without subscriptions measuring is switched off."""
+        """Publish the statistics once a second; without subscriptions, switch measuring off."""
         wanted = self._full.is_wanted or self._values.is_wanted
         timings = dict(self._timings(wanted=wanted))
         if not wanted:
@@ -60,7 +61,7 @@ class StatisticsTopics:
             self._full.publish(full)
 
     def _timings(self, *, wanted: bool) -> Iterator[tuple[str, Timing]]:
-        """Switch measuring on or off; the statistics that are on, by the prefixes of their names."""
+        """Switch measuring on or off, and iterate over the active timings with their name prefixes."""
         for name, loaded in self._manager.controllers.items():
             loaded.timing = (loaded.timing or Timing()) if wanted else None
             if loaded.timing is not None:

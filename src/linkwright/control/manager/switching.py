@@ -1,6 +1,6 @@
-"""Planning a switch of controllers: which are activated and deactivated, or why none is.
+"""Planning of a controller switch: which controllers to activate and deactivate, or why not.
 
-Source: the controller manager of ros2_control (rules of chains, strictness, texts).
+Source: the controller manager of ros2_control (rules of chains, strictness, messages).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _MORE = (
 
 
 class SwitchRefusedError(Exception):
-    """A request is refused; the text gives the reason."""
+    """Raised when a switch is refused; the text gives the reason."""
 
 
 @dataclass(slots=True)
@@ -31,7 +31,7 @@ class Switch:
 
     Attributes:
         activate, deactivate: names of controllers, in order.
-        to_chained, from_chained: names of controllers whose references others command from now on, or no more.
+        to_chained, from_chained: names of the controllers whose references other controllers start or stop commanding.
     """
 
     activate: list[str] = field(default_factory=list)
@@ -41,12 +41,12 @@ class Switch:
 
 
 class SwitchPlanner:
-    """Plans a switch.
+    """Plans a controller switch.
 
     Args:
-        controllers: those that are loaded, by name.
+        controllers: the loaded controllers, by name.
         resources: the hardware.
-        logger: of the manager.
+        logger: the manager's logger.
         strictness: `BEST_EFFORT`, `STRICT`, `AUTO` or `FORCE_AUTO`.
     """
 
@@ -65,7 +65,7 @@ class SwitchPlanner:
         """Plan a switch.
 
         Raises:
-            SwitchRefusedError: something cannot be, and that is to be refused.
+            SwitchRefusedError: a part of the request is impossible, and the strictness requires a refusal.
         """
         switch = self._switch
         switch.deactivate = self._known(deactivate, "deactivate")
@@ -114,14 +114,14 @@ class SwitchPlanner:
         return False
 
     def _following(self, loaded: Loaded) -> Iterator[str]:
-        """The controllers whose references one commands."""
+        """Iterate over the names of the controllers whose references a controller commands."""
         for interface in loaded.wanted_commands([]):
             name = interface.partition("/")[0]
             if name in self._controllers and name != loaded.name:
                 yield name
 
     def _preceding(self, loaded: Loaded) -> Iterator[Loaded]:
-        """The controllers that command the references of one."""
+        """Iterate over the controllers that command the references of a controller."""
         references = set(self._resources.references_of(loaded.name))
         for other in self._controllers.values():
             if references.intersection(other.wanted_commands([])):

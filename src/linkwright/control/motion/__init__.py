@@ -1,1 +1,1 @@
-"""The arithmetic of controllers, without ROS: each module can be tested alone."""
+"""The arithmetic of controllers, without ROS, so that each module can be tested in isolation."""

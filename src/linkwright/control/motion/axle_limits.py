@@ -1,7 +1,9 @@
-"""Limits of steered wheels, the same in both directions: velocity and steering angle, with their derivatives.
+"""Limits of steered wheels for velocity, steering angle and their derivatives.
 
-Source: the limiters of tricycle_controller. Other than there nothing is brought to move by a least value, and the bound
-of a second difference is not doubled.
+They apply in both directions.
+
+Source: the limiters of tricycle_controller. Two things differ: a minimum never makes a wheel move that is at rest, and
+the bound of a second difference is not doubled.
 """
 
 from __future__ import annotations
@@ -18,13 +20,13 @@ class TractionLimiter:
     """Limits a speed and its derivatives.
 
     Args:
-        velocity: its magnitude, in rad/s.
-        acceleration: how fast it grows, in rad/s2.
-        deceleration: how fast it shrinks.
-        jerk: how fast that changes, in rad/s3.
+        velocity: the bounds of the speed's magnitude, in rad/s.
+        acceleration: the bounds of the rate at which it increases, in rad/s2.
+        deceleration: the bounds of the rate at which it decreases, in rad/s2.
+        jerk: the bounds of the rate at which the acceleration changes, in rad/s3.
 
     Attributes:
-        speed: the speed now.
+        speed: the current speed.
     """
 
     def __init__(
@@ -41,7 +43,7 @@ class TractionLimiter:
         self.speed = self._before = 0.0
 
     def follow(self, wanted: float, seconds: float) -> float:
-        """Return the limited speed, for the given seconds after the last one."""
+        """Return the limited speed, `seconds` after the last one."""
         speed = self.speed
         wanted = _bent(speed, self._before, wanted, self._jerk, seconds)
         bounds = self._acceleration if abs(wanted) >= abs(speed) else self._deceleration
@@ -54,12 +56,12 @@ class SteeringLimiter:
     """Limits an angle and its derivatives.
 
     Args:
-        position: the least and the greatest angle, in rad.
-        velocity: how fast it changes, in rad/s.
-        acceleration: how fast that changes, in rad/s2.
+        position: the minimum and maximum angle, in rad.
+        velocity: the bounds of the rate at which it changes, in rad/s.
+        acceleration: the bounds of the rate at which the velocity changes, in rad/s2.
 
     Attributes:
-        angle: the angle now.
+        angle: the current angle.
     """
 
     def __init__(self, position: Bounds = UNBOUNDED, velocity: Bounds = ANY, acceleration: Bounds = ANY) -> None:
@@ -73,7 +75,7 @@ class SteeringLimiter:
         self.angle = self._before = angle
 
     def follow(self, wanted: float, seconds: float) -> float:
-        """Return the limited angle, for the given seconds after the last one."""
+        """Return the limited angle, `seconds` after the last one."""
         angle = self.angle
         wanted = _bent(angle, self._before, wanted, self._acceleration, seconds)
         reached = angle + _within(self._velocity, wanted - angle, seconds)
@@ -82,13 +84,13 @@ class SteeringLimiter:
 
 
 def _bent(now: float, before: float, wanted: float, bounds: Bounds, seconds: float) -> float:
-    """A value whose second difference is within bounds."""
+    """Return a value, limited so that its second difference is within bounds."""
     straight = now + now - before
     return straight + _within(bounds, wanted - straight, seconds * seconds)
 
 
 def _within(bounds: Bounds, value: float, factor: float = 1.0) -> float:
-    """A value whose magnitude is within bounds; 0 stays 0."""
+    """Return a value, limited so that its magnitude is within bounds; 0 stays 0."""
     if value == 0.0:
         return value
     return copysign(min(max(abs(value), bounds[0] * factor), bounds[1] * factor), value)

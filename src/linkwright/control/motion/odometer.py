@@ -16,11 +16,11 @@ class Odometer:
     """Integrates velocities to a pose, and smooths them.
 
     Args:
-        window: the number of last velocities in the rolling mean; at least 1.
+        window: the number of velocities in the rolling mean; at least 1.
 
     Attributes:
         place: the robot's pose relative to its start.
-        velocity: its smoothed velocity.
+        velocity: the robot's smoothed velocity.
 
     Source: the odometry of ros2_controllers (exact arcs, rolling means).
     """

@@ -1,6 +1,6 @@
-"""PID control, as control_toolbox of ros2_control does it.
+"""PID control as in control_toolbox of ros2_control.
 
-Source: control_toolbox's ``Pid`` of Humble and Jazzy. gz's own, which bounds terms at other times, is
+Source: control_toolbox's ``Pid`` of Humble and Jazzy. The PID controller of gz, which bounds terms at other times, is
 `linkwright.simulation.plugins.pid`.
 """
 
@@ -16,17 +16,17 @@ STRATEGIES = (NONE, CLAMPED, BACK_CALCULATION, CONDITIONAL)
 
 @dataclass(frozen=True, kw_only=True)
 class PidGains:
-    """Gains and bounds.
+    """The gains and bounds of a PID controller.
 
     Attributes:
-        p, i, d: by the error, its integral and its derivative.
-        i_min, i_max: bounds of the integral term.
-        u_min, u_max: bounds of the command.
+        p, i, d: the gains of the error, its integral and its derivative.
+        i_min, i_max: the bounds of the integral term.
+        u_min, u_max: the bounds of the command.
         antiwindup: ``none`` bounds the integral term while the integral continues to grow; ``legacy`` bounds the
             integral itself; ``conditional_integration`` stops integrating if that drives a bounded command farther;
             ``back_calculation`` subtracts the excess of a bounded command from the integral.
         tracking_time_constant: the time constant of ``back_calculation`` in s; 0 derives it from the gains.
-        error_deadband: the last two strategies do not integrate an error up to this value.
+        error_deadband: the last two strategies do not integrate errors up to this value.
     """
 
     p: float = 0.0
@@ -42,7 +42,7 @@ class PidGains:
 
     @property
     def tracking_time(self) -> float:
-        """The time constant of ``back_calculation`` in s; 0 where the gains give none."""
+        """The time constant of ``back_calculation`` in s; 0 if the gains do not define one."""
         if self.tracking_time_constant > 0.0 or not self.i:
             return self.tracking_time_constant
         return sqrt(self.d / self.i) if self.d and self.d / self.i > 0.0 else abs(self.p / self.i)
@@ -52,8 +52,8 @@ class Pid:
     """A PID controller.
 
     Attributes:
-        gains: may be replaced at any time.
-        integral: the integral term before it is bounded; in units of the command.
+        gains: the gains, which may be replaced at any time.
+        integral: the integral term before it is bounded, in units of the command.
     """
 
     def __init__(self, gains: PidGains) -> None:
@@ -66,15 +66,16 @@ class Pid:
         self._before = 0.0
 
     def command(self, error: float, period_s: float, rate: float | None = None) -> float:
-        """The command for an error.
+        """Return the command for an error.
 
         Args:
-            error: in any unit.
-            period_s: the time since the last one, in seconds.
-            rate: how fast the error changes, in its unit a second; None to take the one before.
+            error: the error, in any unit.
+            period_s: the time since the last call, in seconds.
+            rate: how fast the error changes, in its unit per second; None to compute it from the previous error.
 
         Returns:
-            0 where an argument is not finite or no time has passed, which changes nothing else.
+            The command; 0 if an argument is not finite or no time has passed, in which case the controller's state is
+            unchanged.
         """
         if period_s <= 0.0 or not isfinite(error):
             return 0.0

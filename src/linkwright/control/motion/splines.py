@@ -1,7 +1,7 @@
-"""Segments of trajectories: splines from one point to the next.
+"""Segments of trajectories, which are splines from one point to the next.
 
-Source: joint_trajectory_controller of ros2_controllers. Between positions alone a joint goes straight, with
-velocities along a cubic, and with accelerations as well along a quintic polynomial.
+Source: joint_trajectory_controller of ros2_controllers. Between positions alone a joint moves along a straight line,
+with velocities along a cubic polynomial, and with accelerations as well along a quintic polynomial.
 """
 
 from __future__ import annotations
@@ -14,7 +14,9 @@ _Polynomial = tuple[float, float, float, float, float, float]
 
 @dataclass(slots=True)
 class MotionState:
-    """Positions, velocities and accelerations of joints; each list is empty or as long as there are joints.
+    """The positions, velocities and accelerations of joints.
+
+    Each list is empty or has one value per joint.
 
     Attributes:
         positions: rad or m.
@@ -27,7 +29,7 @@ class MotionState:
     accelerations: list[float] = field(default_factory=list)
 
     def copy(self) -> MotionState:
-        """A copy with lists of its own."""
+        """Return a copy with its own lists."""
         return MotionState(list(self.positions), list(self.velocities), list(self.accelerations))
 
 
@@ -35,9 +37,9 @@ class Segment:
     """A spline between two states.
 
     Args:
-        start: where it begins, with positions.
-        end: where it ends, with positions.
-        duration_s: how long it takes, in seconds; more than 0.
+        start: the initial state, with positions.
+        end: the final state, with positions.
+        duration_s: the duration, in seconds; more than 0.
     """
 
     __slots__ = ("_polynomials",)
@@ -59,7 +61,7 @@ class Segment:
         self._polynomials = polynomials
 
     def at(self, seconds: float) -> MotionState:
-        """The state at a time in s after the beginning; all three lists are full."""
+        """Return the state at a time in s after the start; all three lists are filled."""
         positions: list[float] = []
         velocities: list[float] = []
         accelerations: list[float] = []
@@ -72,7 +74,7 @@ class Segment:
 
 
 def _cubic(p0: float, p1: float, v0: float, v1: float, duration: float) -> _Polynomial:
-    """The cubic between two positions and velocities."""
+    """Return the cubic polynomial between two positions and velocities."""
     way, length = p1 - p0, duration
     return (
         p0,
@@ -85,7 +87,7 @@ def _cubic(p0: float, p1: float, v0: float, v1: float, duration: float) -> _Poly
 
 
 def _quintic(p0: float, p1: float, v0: float, v1: float, a0: float, a1: float, duration: float) -> _Polynomial:
-    """The quintic between two positions, velocities and accelerations."""
+    """Return the quintic polynomial between two positions, velocities and accelerations."""
     way, length = p1 - p0, duration
     return (
         p0,

@@ -1,4 +1,4 @@
-"""Tolerances of joints on and at the end of trajectories.
+"""Tolerances of joints along a trajectory, and at its end.
 
 Source: joint_trajectory_controller of ros2_controllers, and control_msgs' ``JointTolerance``.
 """
@@ -14,7 +14,7 @@ UNSPECIFIED, ERASED = 0.0, -1.0
 
 @dataclass(frozen=True, slots=True)
 class StateTolerance:
-    """The greatest errors of a joint; 0 allows any.
+    """The maximum errors of a joint; 0 allows any error.
 
     Attributes:
         position: rad or m.
@@ -35,7 +35,7 @@ class StateTolerance:
         )
 
     def violations(self, position: float, velocity: float, acceleration: float) -> Iterator[tuple[str, float, float]]:
-        """Each error that is too great: its name, the error and the tolerance."""
+        """Iterate over the errors that are too large: the name, the error and the tolerance of each."""
         errors = (
             ("Position", position, self.position),
             ("Velocity", velocity, self.velocity),
@@ -46,10 +46,10 @@ class StateTolerance:
                 yield name, error, limit
 
     def overridden(self, position: float, velocity: float, acceleration: float) -> StateTolerance:
-        """The tolerance with a goal's values: 0 leaves one as it is, -1 removes it.
+        """Return the tolerance with a goal's values: 0 leaves a value unchanged, -1 removes it.
 
         Raises:
-            ValueError: another negative number.
+            ValueError: a value is another negative number.
         """
         return StateTolerance(
             resolved(self.position, position),
@@ -63,9 +63,9 @@ class Tolerances:
     """The tolerances of a trajectory.
 
     Attributes:
-        path: on the way, of each joint.
-        goal: at the end, of each joint.
-        goal_time_s: how many seconds after the end the goal must be reached; 0 for whenever.
+        path: the tolerances along the trajectory, for each joint.
+        goal: the tolerances at its end, for each joint.
+        goal_time_s: how many seconds after the end the goal must be reached; 0 for no limit.
     """
 
     path: tuple[StateTolerance, ...]
@@ -73,19 +73,19 @@ class Tolerances:
     goal_time_s: float = 0.0
 
     def with_path(self, joint: int, tolerance: StateTolerance) -> Tolerances:
-        """With another tolerance for a joint on the way."""
+        """Return a copy with another tolerance for a joint along the trajectory."""
         return replace(self, path=(*self.path[:joint], tolerance, *self.path[joint + 1 :]))
 
     def with_goal(self, joint: int, tolerance: StateTolerance) -> Tolerances:
-        """With another tolerance for a joint at the end."""
+        """Return a copy with another tolerance for a joint at the end."""
         return replace(self, goal=(*self.goal[:joint], tolerance, *self.goal[joint + 1 :]))
 
 
 def resolved(default: float, given: float) -> float:
-    """Apply a goal's value to a tolerance.
+    """Return a default tolerance, overridden by a goal's value.
 
     Raises:
-        ValueError: it is negative and not -1.
+        ValueError: the goal's value is negative and not -1.
     """
     if given > 0.0:
         return given

@@ -1,6 +1,6 @@
-"""Trajectories sampled in time.
+"""Trajectories of joints, sampled in time.
 
-Source: joint_trajectory_controller of ros2_controllers, its ``Trajectory``.
+Source: the ``Trajectory`` of joint_trajectory_controller of ros2_controllers.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ class TrajectoryPoint:
     """A state at a time.
 
     Attributes:
-        time_ns: nanoseconds after the beginning of the trajectory.
-        state: of all joints; empty parts are computed, see `Trajectory.begin`.
+        time_ns: the time after the start of the trajectory, in nanoseconds.
+        state: the state of all joints; empty parts are computed, see `Trajectory.begin`.
     """
 
     time_ns: int
@@ -31,10 +31,10 @@ class Sample:
     """A sample of a trajectory.
 
     Attributes:
-        state: the state then.
-        index: the number of the point that was passed last; 0 before the first one, too.
+        state: the state at the sampled time.
+        index: the number of the point that was passed last; 0 also before the first point.
         point_ns: when that point is due, as a point in time in nanoseconds.
-        ended: whether it is the last point, which has been reached.
+        ended: whether that is the last point, and it has been reached.
     """
 
     state: MotionState
@@ -44,12 +44,12 @@ class Sample:
 
 
 class Trajectory:
-    """Points, and the splines between them.
+    """A sequence of points, and the splines between them.
 
     Args:
-        points: at least one, in the order of time.
-        start_ns: the point in time at which it begins; 0 for when `begin` is called.
-        interpolated: whether joints go from point to point; else they are sent to the next one at once.
+        points: at least one point, in order of time.
+        start_ns: the point in time at which the trajectory starts; 0 to start when `begin` is called.
+        interpolated: whether joints move from point to point; otherwise they are sent directly to the next point.
     """
 
     def __init__(self, points: Sequence[TrajectoryPoint], start_ns: int = 0, *, interpolated: bool = True) -> None:
@@ -61,12 +61,13 @@ class Trajectory:
     def begin(self, time_ns: int, before: MotionState, wrapped: Sequence[bool] = ()) -> None:
         """Start from a state.
 
-        A point without positions gets them by even motion from the point before, and missing velocities too.
+        The positions that a point lacks are computed by uniform motion from the previous point, and so are missing
+        velocities.
 
         Args:
             time_ns: the time of the state `before`.
-            before: the state of the joints; velocities and accelerations count if the first point has them.
-            wrapped: the joints that rotate without limits: these take the shorter way to the first point.
+            before: the state of the joints; its velocities and accelerations are used if the first point has them.
+            wrapped: whether each joint rotates without limits; such joints take the shorter way to the first point.
         """
         self.begun = True
         self._start_ns = self._given_start_ns or time_ns
@@ -92,9 +93,9 @@ class Trajectory:
         self._end = Sample(end, len(self.points) - 1, self._starts[-1], ended=True)
 
     def sample(self, time_ns: int) -> Sample | None:
-        """The state at a time, in nanoseconds; None before it has begun.
+        """Return the sample at a time, in nanoseconds; None before the trajectory has started.
 
-        Segment number n leads from ``_starts[n]`` to ``_starts[n + 1]``, and the first one from the state before.
+        Segment number n leads from ``_starts[n]`` to ``_starts[n + 1]``, and the first segment from the state before.
         """
         starts = self._starts
         if time_ns < starts[0]:
@@ -121,13 +122,13 @@ class Trajectory:
 
 
 def shortest_turn(start: float, end: float) -> float:
-    """The shortest angle in rad from one to another, more than -pi and not more than pi."""
+    """Return the shortest angle in rad from one angle to another, more than -pi and not more than pi."""
     turn = (end - start) % tau
     return turn - tau if turn > pi else turn
 
 
 def _deduced(before: MotionState, state: MotionState, seconds: float) -> MotionState:
-    """A state with positions, integrated from its derivatives where there are none."""
+    """Return a state with positions, which are integrated from its derivatives if they are missing."""
     if state.positions:
         return state
     none = [0.0] * len(before.positions)

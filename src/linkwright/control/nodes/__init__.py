@@ -1,1 +1,1 @@
-"""The nodes of the packages of ros2_control."""
+"""The nodes that the packages of ros2_control provide."""

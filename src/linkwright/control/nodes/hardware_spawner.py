@@ -1,6 +1,6 @@
-"""hardware_spawner of controller_manager: configure or activate hardware.
+"""hardware_spawner of controller_manager, which configures or activates hardware.
 
-Source: controller_manager of ros2_control (options, texts).
+Source: controller_manager of ros2_control (options, messages).
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from linkwright.nodes.options import NodeOptions, create_node
 
 
 class HardwareSpawner(ManagerProgram):
-    """The running node: it ends after the hardware was asked.
+    """The running node, which ends after its requests to the hardware have been answered.
 
     Raises:
-        LinkwrightError: NODE831, the command line cannot be understood.
+        LinkwrightError: NODE831, the command line cannot be parsed.
     """
 
     DEFAULT_NAME = "hardware_spawner"

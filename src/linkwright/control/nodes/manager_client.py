@@ -1,6 +1,6 @@
-"""Calling the services of a controller manager, for spawner, unspawner and hardware_spawner.
+"""Calls to the services of a controller manager, for spawner, unspawner and hardware_spawner.
 
-Source: controller_manager of ros2_control (options, times, texts).
+Source: controller_manager of ros2_control (options, times, messages).
 """
 
 from __future__ import annotations
@@ -23,16 +23,19 @@ _ATTEMPTS = 3
 
 
 class NoManagerError(Exception):
-    """The services of the manager are missing, or do not answer; the text is that of ros2_control."""
+    """Raised when the manager's services are missing or do not answer.
+
+    The text is that of ros2_control.
+    """
 
 
 class ManagerClient:
-    """Calls services of a controller manager.
+    """Calls the services of a controller manager.
 
     Args:
         node: the node that calls.
-        manager: the name of the manager's node; relative to the namespace of `node`.
-        timeout: seconds to wait for a service; 0 for any time.
+        manager: the name of the manager's node, relative to the namespace of `node`.
+        timeout: seconds to wait for a service; 0 for no limit.
         call_timeout: seconds to wait for an answer.
     """
 
@@ -52,13 +55,13 @@ class ManagerClient:
         return await self._call(f"controller_manager_msgs/srv/{kind}", service, fields)
 
     async def set_parameter(self, name: str, value: Any) -> bool:
-        """Set a parameter of the manager; whether it accepted it."""
+        """Set a parameter of the manager; return whether it accepted the value."""
         parameter = Parameter(name, value=value).to_parameter_msg()
         answer = await self._call("rcl_interfaces/srv/SetParameters", "set_parameters", {"parameters": [parameter]})
         return all(result.successful for result in answer.results)
 
     async def switch(self, activate: Sequence[str], deactivate: Sequence[str], timeout: float, *, asap: bool) -> Any:
-        """Switch controllers, strictly."""
+        """Switch controllers with strictness STRICT."""
         duration = get_message("builtin_interfaces/msg/Duration")(*divmod(round(timeout * 1e9), NANOSECONDS_PER_SECOND))
         return await self.ask(
             "switch_controller",
@@ -101,9 +104,9 @@ class ManagerClient:
 
 
 class ManagerProgram(SingleNode):
-    """A node that calls the services of a controller manager and ends.
+    """A node that calls the services of a controller manager and then ends.
 
-    Derived classes make `_node` and call `_begin`.
+    Subclasses create `_node` and call `_begin`.
     """
 
     finished: asyncio.Future[int]
@@ -114,7 +117,7 @@ class ManagerProgram(SingleNode):
         self._task = asyncio.get_running_loop().create_task(self._run(work))
 
     def close(self) -> None:
-        """End it."""
+        """Close the node."""
         self._task.cancel()
         super().close()
 
@@ -131,7 +134,10 @@ class ManagerProgram(SingleNode):
 
 
 def _without_empty(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
-    """The words of a command line without empty ones, which launch files leave, unless they are values of options."""
+    """Return the words of a command line without the empty ones that launch files leave.
+
+    Empty values of options are kept.
+    """
     flags = [action for action in parser._actions if action.nargs == 0]
     valueless = {"", *(option for action in flags for option in action.option_strings)}
     before = ["", *words]
@@ -144,14 +150,14 @@ def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Na
     """Parse the options of a command line.
 
     Raises:
-        LinkwrightError: NODE831, it cannot be understood.
+        LinkwrightError: NODE831, the command line cannot be parsed.
     """
 
     def refuse(message: str) -> NoReturn:
         text = phrase("{program}: {message}", program=parser.prog, message=foreign(message))
         raise LinkwrightError(Diagnostic("NODE831", text, hint=foreign(parser.format_usage().strip())))
 
-    # argparse ends the program where a required option is missing, in Python up to 3.12 also with exit_on_error=False.
+    # If a required option is missing, argparse in Python up to 3.12 ends the program even with exit_on_error=False.
     parser.error = refuse  # type: ignore[method-assign]  # on purpose, see above
     try:
         return parser.parse_args(_without_empty(parser, words))

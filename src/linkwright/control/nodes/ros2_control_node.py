@@ -1,8 +1,8 @@
-"""ros2_control_node of controller_manager: runs controllers in real time.
+"""ros2_control_node of controller_manager, which runs controllers in real time.
 
-It reads, updates and writes at ``update_rate`` on the event loop, so that topics and services need not be handed over.
-Late updates are skipped or made up for, according to ``overruns.manage``. The description comes by the topic
-``robot_description`` (Jazzy), by ``~/robot_description``, or as a parameter (Humble).
+It reads, updates and writes at ``update_rate`` on the event loop, so topics and services need no transfer between
+threads. Late updates are skipped or made up for, according to ``overruns.manage``. The description is received on the
+topic ``robot_description`` (Jazzy), on ``~/robot_description``, or as a parameter (Humble).
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ _SIMULATED = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem")
 
 
 def _hardware(description: HardwareDescription, logger: Logger) -> Hardware | None:
-    """Make the hardware of a description, or None where nothing here drives it.
+    """Create the hardware of a description; return None if there is no driver for it here.
 
     Raises:
-        LinkwrightError: NODE833, it runs only in a simulator.
+        LinkwrightError: NODE833, the hardware exists only in a simulator.
     """
     if description.plugin.rpartition("/")[2] in _SIMULATED:
         message = phrase(
@@ -53,7 +53,7 @@ class Ros2ControlNode(SingleNode):
     """The running node.
 
     Raises:
-        LinkwrightError: NODE830, its update rate is invalid; a name, a remapping or a ROS argument is not valid.
+        LinkwrightError: NODE830, the update rate is invalid; or a name, a remapping or a ROS argument is not valid.
     """
 
     DEFAULT_NAME = "controller_manager"
@@ -128,7 +128,7 @@ class Ros2ControlNode(SingleNode):
     def _load(self, text: str) -> None:
         manager = self._manager
         self._loaded = load_hardware(manager, text, self._library, _hardware) and bool(manager.resources.components)
-        if not self._loaded:  # no services either, as upstream: they would hide those of another manager
+        if not self._loaded:  # as upstream, no services either: they would hide those of another manager
             return
         node = SteppedNode(self._node, DirectExchange(), owned=False)
         services = ManagerServices(manager, node)
@@ -152,14 +152,17 @@ class Ros2ControlNode(SingleNode):
         clock = self._clock
         timer_ns, simulated = clock.timer_ns(), clock.ros_time_is_active
         period_ns = timer_ns - self._last_ns
-        if simulated is not self._was_simulated or period_ns < 0:  # the time is another one
+        if simulated is not self._was_simulated or period_ns < 0:  # the time source has changed or the time jumped back
             self._was_simulated, period_ns = simulated, self._period_ns
         self._last_ns = timer_ns
         self._manager.cycle(clock.now_ns(), period_ns / NANOSECONDS_PER_SECOND)
         self._took_ns = clock.timer_ns() - timer_ns
 
     def _missed(self, count: int) -> None:
-        """Handle missed updates: skip them, or make them up. Updates that took too long are logged."""
+        """Handle missed updates by skipping them or making up for them.
+
+        Log updates that took too long.
+        """
         rate, took_ns = self._manager.update_rate, self._took_ns
         if self._warns_of_overruns and took_ns > self._period_ns:
             self._node.get_logger().warning(
@@ -168,5 +171,5 @@ class Ros2ControlNode(SingleNode):
                 throttle_duration_sec=1.0,
             )
         if not self._manages_overruns:
-            for _ in range(min(count, int(rate))):  # those of the last second
+            for _ in range(min(count, int(rate))):  # the missed updates of the last second
                 self._cycle()

@@ -1,8 +1,8 @@
-"""spawner and unspawner of controller_manager: load, configure and activate controllers, and unload them.
+"""spawner and unspawner of controller_manager, which load and unload controllers.
 
-Parameter files of its own process are for the controllers too, as since Jazzy.
+As in Jazzy and later, the parameter files of the spawner's own process apply to the controllers, too.
 
-Source: controller_manager of ros2_control, options of Humble and Jazzy, and their texts.
+Source: controller_manager of ros2_control, with the options of Humble and Jazzy and their messages.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ _TAKEN = ("type", "fallback_controllers")
 
 
 class Spawner(ManagerProgram):
-    """The running node. It exits with status 0 when the controllers are active.
+    """The running node, which exits with status 0 when the controllers are active.
 
     Raises:
-        LinkwrightError: NODE831, the command line cannot be understood; NODE832, a parameter file does not exist.
+        LinkwrightError: NODE831, the command line cannot be parsed; NODE832, a parameter file does not exist.
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
@@ -51,7 +51,7 @@ class Spawner(ManagerProgram):
         self._begin(self._spawn)
 
     def close(self) -> None:
-        """Close it; with ``--unload-on-kill`` the controllers are unloaded."""
+        """Close the node; with ``--unload-on-kill``, unload the controllers."""
         if self._unloads:
             self._unloads = False
             self._unload_at_once()
@@ -106,7 +106,7 @@ class Spawner(ManagerProgram):
         return True
 
     def _parameters(self, name: str) -> dict[str, Any]:
-        """The parameters of a controller for the manager."""
+        """Return the parameters of a controller that are set on the manager."""
         wanted, found = self._arguments, {}
         if wanted.controller_type:
             found["type"] = wanted.controller_type
@@ -125,7 +125,7 @@ class Spawner(ManagerProgram):
         return found
 
     def _unload_at_once(self) -> None:
-        """Deactivate and unload the controllers, without waiting for responses: the program ends."""
+        """Deactivate and unload the controllers without waiting for responses, because the program ends."""
         names, manager = self._arguments.controller_names, self._client.manager
         kind = get_service("controller_manager_msgs/srv/SwitchController")
         switch = self._node.create_client(kind, f"{manager}/switch_controller")
@@ -137,10 +137,10 @@ class Spawner(ManagerProgram):
 
 
 class Unspawner(ManagerProgram):
-    """The running node: it ends with status 0 when the controllers are unloaded.
+    """The running node, which exits with status 0 when the controllers are unloaded.
 
     Raises:
-        LinkwrightError: NODE831, the command line cannot be understood.
+        LinkwrightError: NODE831, the command line cannot be parsed.
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:

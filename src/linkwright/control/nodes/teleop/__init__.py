@@ -1,1 +1,1 @@
-"""Teleoperation: keyboards, joysticks, multiplexing and smoothing of velocities."""
+"""Teleoperation with keyboards and joysticks, and multiplexing and smoothing of velocities."""

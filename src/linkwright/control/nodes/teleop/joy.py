@@ -1,8 +1,11 @@
-"""joy_node of joy and joy_linux_node of joy_linux: a joystick as sensor_msgs/msg/Joy on ``joy``.
+"""joy_node of joy and joy_linux_node of joy_linux, which publish the state of a joystick.
+
+The topic is ``joy``, of type sensor_msgs/msg/Joy.
 
 Parameters, the order of axes and buttons, and their signs (forwards and left are positive) are those of the ROS nodes;
-cross pads are two axes after the others. Deliberate differences: an unplugged joystick sends a last message in which
-nothing is pressed, so that subscribers stop the robot; and rumble is not supported.
+a directional pad is represented by two axes after the others. Two things differ on purpose: when a joystick is
+unplugged, a last message is sent in which nothing is pressed, so that subscribers stop the robot; and rumble is not
+supported.
 """
 
 from __future__ import annotations
@@ -29,13 +32,13 @@ class _Settings:
     """The settings of both nodes.
 
     Attributes:
-        number: of the device.
-        name: part of the device's name; empty to use the number or path.
+        number: the number of the device.
+        name: a part of the device's name; empty to use the number or path.
         path: the device; None to use the number or name.
-        deadzone: the part of an axis around its centre that is 0.
-        repeat_rate: messages a second while nothing changes, 0 for none.
-        coalesce: s for which changes of axes are collected.
-        sticky: whether pressing a button again releases it.
+        deadzone: the fraction of an axis around its centre that counts as 0.
+        repeat_rate: messages per second while nothing changes, 0 for none.
+        coalesce: the time in s for which changes of axes are collected.
+        sticky: whether a button stays pressed until it is pressed again.
     """
 
     number: int
@@ -47,13 +50,13 @@ class _Settings:
     sticky: bool
 
     def device(self) -> Path | None:
-        """The device, if it exists."""
+        """Return the device; None if it does not exist."""
         if self.path is not None and not self.name:
             return self.path if self.path.exists() else None
         return find_device(self.number, self.name)
 
     def wanted(self) -> str:
-        """The device that is looked for, in the user's words."""
+        """Return a description of the requested device, in the user's words."""
         return f"'{self.name}'" if self.name else str(self.path or f"/dev/input/js{self.number}")
 
 
@@ -64,7 +67,7 @@ class JoyNode(SingleNode):
     ``coalesce_interval_ms``, or ``coalesce_interval`` in s.
 
     Raises:
-        LinkwrightError: NODE903 a parameter is out of its range.
+        LinkwrightError: NODE903, a parameter is out of its range.
     """
 
     DEFAULT_NAME = "joy_node"
@@ -157,7 +160,7 @@ class JoyNode(SingleNode):
             if event.is_axis:
                 soon |= self._turned(event)
             elif self._pressed(event):
-                # At first the device reports all axes and buttons: they share one message.
+                # When it is opened, the device reports all axes and buttons; these events share one message.
                 now, soon = now or not event.initial, soon or event.initial
         if now or (soon and self._settings.coalesce == 0.0):
             self._publish()
@@ -197,7 +200,10 @@ class JoyNode(SingleNode):
 
 
 class JoyLinuxNode(JoyNode):
-    """The running joy_linux_node: as `JoyNode`, with the parameters ``dev``, ``dev_name`` and ``coalesce_interval``."""
+    """The running joy_linux_node.
+
+    It is a `JoyNode` with the parameters ``dev``, ``dev_name`` and ``coalesce_interval``.
+    """
 
     def _read_settings(self, node: Node) -> _Settings:
         path = Path(node.declare_parameter("dev", "/dev/input/js0").value)
@@ -229,10 +235,10 @@ def _settings(node: Node, number: int, name: str, path: Path | None, coalesce: f
 
 
 def _within(node: Node, name: str, default: float, least: float, most: float | None) -> float:
-    """Check that a parameter is within limits.
+    """Declare a parameter, and return its value after checking that it is within limits.
 
     Raises:
-        LinkwrightError: NODE903 it is out of its range.
+        LinkwrightError: NODE903, the parameter is out of its range.
     """
     value: Any = node.declare_parameter(name, default).value
     if isfinite(value) and value >= least and (most is None or value <= most):

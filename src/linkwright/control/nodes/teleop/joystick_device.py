@@ -1,4 +1,4 @@
-"""Joysticks of Linux by the kernel's joystick interface, /dev/input/js*, without a library.
+"""Joysticks on Linux, read from the kernel's joystick interface (/dev/input/js*).
 
 Source of the format: the kernel's documentation of the joystick API (``linux/joystick.h``).
 """
@@ -29,10 +29,10 @@ class JoystickEvent(NamedTuple):
     """A change of a joystick.
 
     Attributes:
-        is_axis: whether it is an axis, else a button.
-        number: which of them, from 0.
-        value: of an axis -32767 to 32767, right and backwards positive; of a button 1 while it is pressed.
-        initial: whether it is a state at the opening of the device.
+        is_axis: whether an axis has changed; otherwise a button.
+        number: the number of the axis or button, from 0.
+        value: for an axis -32767 to 32767, right and backwards positive; for a button 1 while it is pressed.
+        initial: whether the event reports a state at the opening of the device.
     """
 
     is_axis: bool
@@ -50,7 +50,7 @@ class JoystickDevice:
         on_end: called once when the device is gone.
 
     Raises:
-        OSError: it cannot be opened.
+        OSError: the device cannot be opened.
     """
 
     def __init__(
@@ -62,7 +62,7 @@ class JoystickDevice:
         self.name = _name_of(self._descriptor)
         try:
             asyncio.get_running_loop().add_reader(self._descriptor, self._read)
-        except OSError:  # a folder, or a file: nothing that could be waited for
+        except OSError:  # a folder or a file, which cannot be waited for
             os.close(self._descriptor)
             raise
 
@@ -79,7 +79,7 @@ class JoystickDevice:
             data = os.read(self._descriptor, _EVENT.size * _EVENTS_AT_ONCE)
         except BlockingIOError:
             return
-        except OSError:  # it was pulled out
+        except OSError:  # the joystick was unplugged
             data = b""
         if not data:
             self.close()
@@ -92,11 +92,13 @@ class JoystickDevice:
 
 
 def find_device(number: int, name: str = "") -> Path | None:
-    """Find the device of a number, or the first whose name contains a text; None if there is none.
+    """Find a device by its number, or the first one whose name contains a text.
+
+    Returns None if there is none.
 
     Args:
         number: the number in ``/dev/input/jsNUMBER``.
-        name: part of its name; empty to use the number.
+        name: a part of the name; empty to use the number.
     """
     if not name:
         path = FOLDER / f"js{number}"

@@ -1,9 +1,9 @@
-"""teleop_twist_keyboard: publishes velocities for keys pressed in a terminal.
+"""teleop_twist_keyboard, which publishes velocities for keys pressed in a terminal.
 
-Keys, parameters and the line about speeds are those of the ROS node; ``repeat_rate`` and ``key_timeout`` are those of
-its ROS 1 form. Deliberate differences: unless ``stamped`` is set it publishes what the topic's subscribers take;
-whatever ends it, it publishes a stop; and a key that sends several characters, such as an arrow, stops, where the ROS
-node takes its last character for a key.
+Keys, parameters and the line with the speeds are those of the ROS node; ``repeat_rate`` and ``key_timeout`` are those
+of its ROS 1 version. Three things differ on purpose: unless ``stamped`` is set, the node publishes the type that the
+topic's subscriptions expect; whatever ends the node, it publishes a stop; and a key that sends several characters, such
+as an arrow key, stops the robot, while the ROS node interprets the last character as a key.
 """
 
 from __future__ import annotations
@@ -36,12 +36,14 @@ _SPEEDS_BETWEEN_HELPS = 15
 class TeleopTwistKeyboard(SingleNode):
     """The running node.
 
-    Parameters: ``stamped`` (not set: what the subscribers take), ``frame_id``, ``speed`` (m/s), ``turn`` (rad/s),
-    ``repeat_rate`` (messages a second while nothing is pressed; 0 for none), ``key_timeout`` (s without a key after
-    which it stops; 0 for never).
+    Parameters: ``stamped`` (by default, the type that the subscriptions expect), ``frame_id``, ``speed`` (m/s),
+    ``turn``
+    (rad/s), ``repeat_rate`` (messages per second while nothing is pressed; 0 for none), ``key_timeout`` (s without a
+    key
+    after which the robot stops; 0 for never).
 
     Raises:
-        LinkwrightError: NODE901 it has no terminal; NODE902 a parameter is negative or no number.
+        LinkwrightError: NODE901, there is no terminal; NODE902, a parameter is negative or not a number.
     """
 
     DEFAULT_NAME = "teleop_twist_keyboard"
@@ -69,7 +71,7 @@ class TeleopTwistKeyboard(SingleNode):
             self._terminal = KeyTerminal(terminal, self._typed, self._ended)
         except OSError as error:
             raise _no_terminal() from error
-        # A stop must not wait for simulated time, which may be paused.
+        # Use the steady clock: simulated time may be paused, and a stop must not wait for it.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         node.create_timer(_REVIEW_SECONDS, self._review, clock=clock)
         if repeat_rate > 0.0:
@@ -93,7 +95,7 @@ class TeleopTwistKeyboard(SingleNode):
         return value
 
     def _print(self, text: str) -> None:
-        with contextlib.suppress(OSError):  # the terminal is closing; reading reports that
+        with contextlib.suppress(OSError):  # the terminal is being closed, which the reader reports
             self._output(text)
 
     def _typed(self, text: str) -> None:
@@ -119,7 +121,10 @@ class TeleopTwistKeyboard(SingleNode):
             self._direction = MOVES.get(key, STILL)
 
     def _lost(self) -> None:
-        """Stop after no key for too long: its user may have lost the connection, or let the key go."""
+        """Stop the robot when no key has arrived for too long.
+
+        The user may have lost the connection or released the key.
+        """
         self._silence.cancel()
         if self._direction != STILL:
             self._direction = STILL
@@ -132,11 +137,14 @@ class TeleopTwistKeyboard(SingleNode):
             self.finished.set_result(0)
 
     def _follow(self) -> bool:
-        """Publish the type that subscribers take; whether there are any."""
+        """Publish with the type that the subscriptions expect.
+
+        Returns whether there are any subscriptions.
+        """
         return self._topic.review(may_change=self._direction == STILL or self._unheard) > 0
 
     def _review(self) -> None:
-        """Follow the subscribers; warn once if there is none while something is to move."""
+        """Adapt to the subscriptions; warn once if there is none while the robot should move."""
         if self._follow():
             self._unheard = False
         elif self._direction != STILL and not self._unheard:

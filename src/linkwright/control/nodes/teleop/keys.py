@@ -15,7 +15,10 @@ _KEYS = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|O.)?|.", re.DOTALL)
 
 
 class Direction(NamedTuple):
-    """A direction, as parts of the greatest speeds: forwards, to the left, up, and turning to the left."""
+    """A direction, as fractions of the maximum speeds.
+
+    The fractions are those forwards, to the left, up, and rotating to the left.
+    """
 
     x: float = 0.0
     y: float = 0.0
@@ -63,7 +66,7 @@ def keys_in(text: str) -> Iterator[str]:
 
 
 def help_text() -> Phrase:
-    """The help on the keys."""
+    """Return the help text about the keys."""
     return phrase("""
 Keys are published as velocities, Twist or TwistStamped.
 ---------------------------
@@ -92,5 +95,5 @@ CTRL-C ends
 
 
 def speeds_text(speed: float, turn: float) -> str:
-    """The line with the speeds, in m/s and rad/s."""
+    """Return the line with the speeds, in m/s and rad/s."""
     return f"currently:\tspeed {speed}\tturn {turn} "

@@ -16,8 +16,9 @@ _POLL_SECONDS = 0.02
 class KeyTerminal:
     """Reads keys from a terminal while it is open.
 
-    Keys are not echoed. Ctrl-C stays a signal. Keys that would suspend or abort the program (Ctrl-Z and the like) are
-    ordinary keys: a suspended program cannot stop a robot.
+    Keys are not echoed. Ctrl-C still sends a signal. Keys that would suspend or abort the program (Ctrl-Z and the like)
+    are
+    treated as ordinary keys, because a suspended program cannot stop a robot.
 
     Args:
         descriptor: the terminal's file descriptor.
@@ -25,7 +26,7 @@ class KeyTerminal:
         on_end: called once when the terminal closes.
 
     Raises:
-        OSError: it is not a terminal.
+        OSError: the descriptor is not a terminal.
     """
 
     def __init__(self, descriptor: int, on_text: Callable[[str], None], on_end: Callable[[], None]) -> None:
@@ -77,7 +78,11 @@ class KeyTerminal:
 
 
 def _watch_windows(took: Callable[[bytes], None]) -> Callable[[], None]:
-    """Poll the console of Windows for keys, which cannot be waited for together with other events."""
+    """Poll the Windows console for keys, because it cannot be waited for along with other events.
+
+    Returns:
+        A function that stops polling.
+    """
     import msvcrt
 
     console: Any = msvcrt  # mypy knows its functions on Windows only

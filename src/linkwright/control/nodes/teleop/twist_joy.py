@@ -1,8 +1,9 @@
-"""teleop_node of teleop_twist_joy: publishes velocities for a joystick while a button is held.
+"""teleop_node of teleop_twist_joy, which drives a robot by joystick while a button is held.
 
-Parameters and defaults are those of the ROS node. Deliberate differences: unless ``publish_stamped_twist`` is set it
-publishes the type that the topic's subscribers expect; and when the last publisher of ``joy`` is gone, it stops the
-robot.
+Parameters and defaults are those of the ROS node. Two things differ on purpose: unless ``publish_stamped_twist`` is
+set,
+the node publishes the type that the topic's subscriptions expect; and when the last publisher of ``joy`` is gone, it
+stops the robot.
 """
 
 from __future__ import annotations
@@ -30,9 +31,9 @@ class _Axis:
     """The joystick axis for one axis of the robot.
 
     Attributes:
-        number: the joystick's axis, below 0 for none.
-        scale: m/s or rad/s at its end.
-        turbo_scale: the same while the turbo button is held.
+        number: the number of the joystick's axis, below 0 for none.
+        scale: the velocity at its end position, in m/s or rad/s.
+        turbo_scale: the velocity at its end position while the turbo button is held.
     """
 
     number: int
@@ -40,7 +41,7 @@ class _Axis:
     turbo_scale: float
 
     def velocity(self, axes: Sequence[float], *, turbo: bool) -> float:
-        """The velocity for a message; 0 if the joystick lacks the axis."""
+        """Return the velocity for the axes of a message; 0 if the joystick lacks the axis."""
         if not 0 <= self.number < len(axes):
             return 0.0
         return axes[self.number] * (self.turbo_scale if turbo else self.scale)
@@ -88,7 +89,7 @@ class TeleopTwistJoy(SingleNode):
             logger.info(f"Turbo on button {self._turbo_button}.")
 
     def close(self) -> None:
-        """Stop the robot, if it was driven, and close."""
+        """Stop the robot if this node was driving it, and close."""
         if self._drives:
             self._topic.stop()
         self._topic.close()
@@ -117,7 +118,7 @@ class TeleopTwistJoy(SingleNode):
             self._stop()
 
     def _stop(self) -> None:
-        """Publish zero once after other velocities."""
+        """Publish a zero velocity once, if this node was driving the robot."""
         if self._drives:
             self._drives = False
             self._topic.stop()

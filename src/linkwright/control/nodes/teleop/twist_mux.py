@@ -1,9 +1,10 @@
-"""twist_mux: forwards the topic of velocities with the highest priority to ``cmd_vel_out``.
+"""twist_mux, which forwards the velocity topic with the highest priority to ``cmd_vel_out``.
 
-Parameters, rules and diagnostics are those of the ROS node. A topic counts until its ``timeout`` has passed since its
-last message; a lock that is on, or not heard of for its ``timeout``, shuts out all topics of lower priority. Different
-on purpose: a topic without a time-out shuts out others only once it was heard, and a stop goes out when who sent the
-last velocity is lost.
+Parameters, rules and diagnostics are those of the ROS node. A topic is active until its ``timeout`` has passed since
+its
+last message. A lock that is on, or that has been silent for its ``timeout``, blocks all topics of lower priority. Two
+things differ on purpose: a topic without a timeout blocks others only after its first message, and a stop is sent when
+the publisher of the last velocity is lost.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ _MOST = 255
 
 
 class _Source:
-    """An input: a topic of velocities, or of a lock."""
+    """An input of the multiplexer: a velocity topic or a lock."""
 
     def __init__(self, name: str, topic: str, timeout: float, priority: int) -> None:
         self.name, self.topic, self.timeout = name, topic, timeout
@@ -38,11 +39,11 @@ class _Source:
         self._heard_ns: int | None = None
 
     def hear(self, now_ns: int) -> None:
-        """Take a message."""
+        """Note that a message has arrived."""
         self._heard_ns = now_ns
 
     def expired(self, now_ns: int) -> bool:
-        """Whether its last message is too old, or missing; never without a time-out."""
+        """Return whether the last message is too old or missing; always False without a timeout."""
         if self.timeout == 0.0:
             return False
         return self._heard_ns is None or (now_ns - self._heard_ns) / NANOSECONDS_PER_SECOND > self.timeout
@@ -53,7 +54,7 @@ class _Source:
         return self._heard_ns is None
 
     def described(self, state: str) -> str:
-        """Its line in the diagnostics."""
+        """Return the input's line in the diagnostics."""
         return f" {state} (listening to {self.topic} @ {self.timeout:f}s with priority #{self.priority})"
 
 
@@ -61,10 +62,10 @@ class TwistMux(SingleNode):
     """The running node.
 
     Parameters: ``topics.NAME`` and ``locks.NAME`` with ``topic``, ``timeout`` (s, 0 for never) and ``priority`` (0 to
-    255), and ``use_stamped`` for TwistStamped in and out.
+    255), and ``use_stamped`` to receive and publish TwistStamped.
 
     Raises:
-        LinkwrightError: NODE904 the parameters of a topic or a lock are incomplete or invalid.
+        LinkwrightError: NODE904, the parameters of a topic or a lock are incomplete or invalid.
     """
 
     DEFAULT_NAME = "twist_mux"
@@ -139,10 +140,10 @@ class TwistMux(SingleNode):
 
 
 def _sources(node: Node, group: str) -> list[_Source]:
-    """The inputs of the parameters ``GROUP.NAME.*``, by name.
+    """Return the inputs that the parameters ``GROUP.NAME.*`` describe, sorted by name.
 
     Raises:
-        LinkwrightError: NODE904.
+        LinkwrightError: NODE904, the parameters are incomplete or invalid.
     """
     values: dict[str, dict[str, Any]] = {}
     for key, parameter in node.get_parameters_by_prefix(group).items():
