@@ -1,4 +1,4 @@
-"""The computation graph: nodes, topics, parameters, quality of service, time, logging and transforms."""
+"""The computation graph: nodes, topics, parameters, QoS, time, logging and transforms."""
 
 from typing import TYPE_CHECKING
 

@@ -8,21 +8,21 @@ class RclError(RuntimeError):
 
 
 class InvalidHandleError(RuntimeError):
-    """A destroyed object is used (rclpy ``InvalidHandle``)."""
+    """Raised when a destroyed object is used (rclpy ``InvalidHandle``)."""
 
     def __init__(self, text: str = "cannot use Destroyable because destruction was requested") -> None:
         super().__init__(text)
 
 
 class InterruptedWaitError(Exception):
-    """A wait or sleep was ended because the graph is closed (rclpy ``ROSInterruptException``)."""
+    """Raised when a wait or sleep ends because the graph is closed (rclpy ``ROSInterruptException``)."""
 
     def __init__(self, text: str = "rclpy.shutdown() has been called") -> None:
         super().__init__(text)
 
 
 class NodeNotFoundError(RclError):
-    """There is no node of a name (rclpy ``NodeNameNonExistentError``)."""
+    """Raised when no node has the given name (rclpy ``NodeNameNonExistentError``)."""
 
     def __init__(self, name: str, namespace: str) -> None:
         super().__init__(f"Cannot get the names and types of node '{name}' in namespace '{namespace}': there is none")
@@ -31,7 +31,10 @@ class NodeNotFoundError(RclError):
 
 
 class NotInitializedError(Exception):
-    """A call needs a context, which is not initialised, or was shut down; name and text are rclpy's."""
+    """Raised when a call needs a context that is not initialized or was shut down.
+
+    Name and text are those of rclpy.
+    """
 
     def __init__(self, message: str | None = None) -> None:
         text = "rclpy.init() has not been called."
@@ -39,16 +42,16 @@ class NotInitializedError(Exception):
 
 
 class TimeoutException(Exception):  # noqa: N818  # rclpy's name
-    """The time given has passed."""
+    """Raised when a wait exceeds its timeout."""
 
 
 class ShutdownException(Exception):  # noqa: N818  # rclpy's name
-    """The executor was shut down."""
+    """Raised when the executor was shut down."""
 
 
 class ExternalShutdownException(Exception):  # noqa: N818  # rclpy's name
-    """The context was shut down, by a signal for one."""
+    """Raised when the context was shut down, for example by a signal."""
 
 
 class ConditionReachedException(Exception):  # noqa: N818  # rclpy's name
-    """The condition that was waited for holds."""
+    """Raised when the condition that ends a wait has become true."""

@@ -1,4 +1,4 @@
-"""The state that the nodes of a process share: the bus, the transport to other processes, time and logging."""
+"""The state that the nodes of a process share: the bus, the transport, time and logging."""
 
 from __future__ import annotations
 
@@ -24,19 +24,21 @@ from linkwright.graph.time.clock import SystemClock, Timebase
 
 
 class LocalGraph(GraphQueries):
-    """The graph as nodes know it; `Graph` makes the nodes.
+    """The graph as nodes see it; the subclass `Graph` creates the nodes.
 
-    All methods may be called from any thread except `settle` and `close`, which belong to the thread of the loop.
+    All methods may be called from any thread except `settle` and `close`, which must be called in the loop's thread.
 
     Args:
-        clock: stamps messages and wakes timers; the system's when left out.
-        on_log: receives log records; standard error in ROS 2's console format when left out.
-        threads: whether callbacks are not for the running event loop.
-        levels: the levels of the graph's loggers; new ones when left out.
-        on_namesakes: receives the nodes that have namesakes in other processes; a warning is logged when left out.
+        clock: stamps messages and wakes timers; the system's clock by default.
+        on_log: receives log records; by default they are written to standard error in ROS 2's console format.
+        threads: whether the running event loop is not to run the callbacks.
+        levels: the levels of the graph's loggers; new ones by default.
+        on_namesakes: receives the names that our nodes share with nodes of other processes; by default a warning is
+            logged.
 
     Attributes:
-        makers: the nodes that made other nodes, such as those of controllers: by the names of their loggers.
+        makers: the nodes that created other nodes, such as those of controllers, by the logger names of the created
+            nodes.
     """
 
     def __init__(
@@ -83,7 +85,7 @@ class LocalGraph(GraphQueries):
 
     @property
     def closed(self) -> bool:
-        """Whether the graph has ended."""
+        """Whether the graph is closed."""
         return self._closed
 
     def open_node(
@@ -94,11 +96,11 @@ class LocalGraph(GraphQueries):
         copies_messages: bool = False,
         stays_inside: bool = False,
     ) -> NodeHandle:
-        """Begin a node; a warning is logged when another one of this process has its name.
+        """Add a node to the graph, with a warning if another node of this process has its name.
 
         Args:
-            identity: its name.
-            remappings: its rules for names of topics and services.
+            identity: the node's name.
+            remappings: the node's rules for names of topics and services.
             copies_messages: whether its messages are copied, so that their sender may change them afterwards.
             stays_inside: whether it is hidden, with all its endpoints, from other processes.
 
@@ -132,20 +134,22 @@ class LocalGraph(GraphQueries):
         return node
 
     def get_logger(self, name: str) -> Logger:
-        """A new logger of any name, for code outside of a node."""
+        """Return a new logger with any name, for code outside a node."""
         return Logger(name, self._sink, self.timebase.now_ns, self.levels, self.timebase.steady_ns)
 
     def nodes(self) -> tuple[NodeHandle, ...]:
-        """The nodes of this process, in order of creation."""
+        """Return the nodes of this process, in order of creation."""
         return tuple(self._nodes)
 
     # --- the transport -----------------------------------------------------------------------------------------------
 
     def attach(self, transport: Transport) -> None:
-        """Attach a transport, which mirrors the present and future endpoints of the graph outside of the process.
+        """Attach a transport, which mirrors the graph's endpoints outside the process.
+
+        Both existing and later endpoints are mirrored.
 
         Raises:
-            RuntimeError: the graph has one already, or is closed.
+            RuntimeError: the graph already has a transport, or is closed.
         """
         with self._lock:
             if self._transport is not None or self._closed:
@@ -173,7 +177,7 @@ class LocalGraph(GraphQueries):
     # --- for nodes ---------------------------------------------------------------------------------------------------
 
     def add(self, endpoint: Endpoint) -> None:
-        """Bring a new endpoint together with those of its name, here and outside."""
+        """Connect a new endpoint with those of the same name, in this process and outside."""
         with self._lock:
             self.bus.add(endpoint)
             if self._transport is not None and not endpoint.node.stays_inside:
@@ -181,7 +185,7 @@ class LocalGraph(GraphQueries):
         self.notify_change()
 
     def remove(self, endpoint: Endpoint) -> None:
-        """Take an endpoint away."""
+        """Remove an endpoint."""
         with self._lock:
             self.bus.remove(endpoint)
             if self._transport is not None and not endpoint.node.stays_inside:
@@ -189,7 +193,7 @@ class LocalGraph(GraphQueries):
         self.notify_change()
 
     def watch_lost(self) -> None:
-        """Notify subscriptions from now on of publishers of their topics that are lost (`Subscription.watch_lost`)."""
+        """Start to notify subscriptions of lost publishers (see `Subscription.watch_lost`)."""
         with self._lock:
             if not self._watches_lost:
                 self._watches_lost = True
@@ -197,7 +201,7 @@ class LocalGraph(GraphQueries):
                     self._transport.watch_lost(self._lost_outside)
 
     def forget(self, node: NodeHandle) -> None:
-        """Take a node away that is destroyed."""
+        """Remove a node that was destroyed."""
         with self._lock:
             if node not in self._nodes:
                 return
@@ -209,10 +213,10 @@ class LocalGraph(GraphQueries):
             self._dispatcher.forget(node)
         self.notify_change()
 
-    # --- the end -----------------------------------------------------------------------------------------------------
+    # --- shutdown ----------------------------------------------------------------------------------------------------
 
     async def settle(self) -> None:
-        """Wait until every message published so far is delivered, and those that callbacks published, and so on."""
+        """Wait until all published messages are delivered, including those published by callbacks."""
         if self._dispatcher is not None:
             await self._dispatcher.settle()
 
@@ -229,7 +233,7 @@ class LocalGraph(GraphQueries):
             await self._dispatcher.join()
 
     def close_now(self) -> None:
-        """Destroy every node, from any thread but that of an event loop; see `close`."""
+        """Destroy every node, from any thread other than that of an event loop; see `close`."""
         transport = self._end()
         if transport is not None:
             transport.close()

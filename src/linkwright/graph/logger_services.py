@@ -1,4 +1,4 @@
-"""The services through which others read and set the levels of a node's loggers (``enable_logger_service``)."""
+"""The services that read and set a node's logger levels (``enable_logger_service``)."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 
 class LoggerServices:
-    """``~/get_logger_levels`` and ``~/set_logger_levels`` of rcl_interfaces (Jazzy and newer).
+    """The services ``~/get_logger_levels`` and ``~/set_logger_levels`` (Jazzy and newer).
 
     Args:
         node: the node.
-        levels: the levels of its graph.
+        levels: the logger levels of the node's graph.
     """
 
     def __init__(self, node: Node, levels: LogLevels) -> None:
@@ -47,7 +47,7 @@ class LoggerServices:
         return response
 
     def _set_one(self, name: str, level: int) -> str:
-        """Set one level; gives why it cannot be, or nothing."""
+        """Set the level of one logger; return the reason if that fails, otherwise an empty string."""
         try:
             self._levels.set(name, LogLevel(level))
         except ValueError:

@@ -1,4 +1,4 @@
-"""Nodes, and the graph that makes them. Their methods have rclpy's names."""
+"""Nodes, and the graph that creates them. Their methods have rclpy's names."""
 
 from __future__ import annotations
 
@@ -50,25 +50,26 @@ M = TypeVar("M")
 class Node(NodeParameters, NodeQueries):
     """A node of a graph.
 
-    Its callbacks are run by its dispatcher: in a graph on an event loop that is the loop, where one callback runs
-    after another. An exception of a callback is logged there; the others continue. Everything of a node may be made and
-    used from any thread.
+    Its dispatcher runs its callbacks. In a graph on an event loop this is the loop, which runs one callback after
+    another,
+    logs the exception of a callback, and continues. All parts of a node may be created and used from any thread.
 
-    rclpy's nodes derive from this class, and users' nodes from those. So names here are those of rclpy, or mangled
-    ones; for everything else there is the `handle`. Nothing here reads `graph`, which a user's node may define itself.
+    rclpy's nodes derive from this class, and users' nodes from those. Names here are therefore those of rclpy, or
+    mangled;
+    everything else is provided by the `handle`. No code here reads `graph`, which a user's node may define itself.
 
     Args:
-        graph: where it lives.
-        node_name: the name its code gives it.
-        namespace: where in the graph it lives; a missing leading slash is added.
-        parameters: values that take the place of declared defaults; nested mappings represent dotted names.
+        graph: the graph that the node belongs to.
+        node_name: the node name that the code gives.
+        namespace: the namespace; a missing leading slash is added.
+        parameters: values that override declared defaults; nested mappings represent dotted names.
         remappings: rules ``(from, to)`` for topics, services, ``__node`` and ``__ns``; see `Remappings`.
-        enclave: its security enclave.
-        start_parameter_services: whether others can ask for its parameters.
-        enable_rosout: whether its log goes to ``/rosout`` too.
-        rosout_qos_profile: the quality of service of that; a number is a depth.
-        allow_undeclared_parameters: whether parameters can be set that were not declared.
-        automatically_declare_parameters_from_overrides: whether `parameters` are declared at once.
+        enclave: the security enclave.
+        start_parameter_services: whether other nodes can access its parameters.
+        enable_rosout: whether its log is also published on ``/rosout``.
+        rosout_qos_profile: the QoS of that topic; a number is a depth.
+        allow_undeclared_parameters: whether parameters can be set without being declared.
+        automatically_declare_parameters_from_overrides: whether `parameters` are declared immediately.
         copies_messages: whether its messages are copied, so that their sender may change them afterwards.
         stays_inside: whether it is hidden, with all its endpoints, from other processes.
 
@@ -76,7 +77,7 @@ class Node(NodeParameters, NodeQueries):
         InvalidNodeNameError: the name is not valid.
         InvalidNamespaceError: the namespace is not valid.
         InvalidHandleError: the graph is closed.
-        LinkwrightError: a parameter's value cannot be had.
+        LinkwrightError: a parameter cannot have the given value.
     """
 
     def __init__(
@@ -134,13 +135,19 @@ class Node(NodeParameters, NodeQueries):
             raise
 
     def __describes_types(self, store: ParameterStore) -> bool:
-        """Whether others can ask for its types: as the distribution does, unless its parameter sets it."""
+        """Return whether the node offers the type description service.
+
+        The node's parameter decides; if it is not set, the distribution's default applies.
+        """
         if TYPE_DESCRIPTIONS not in store.overrides and not is_usual():
             return False
         return self.__own(TYPE_DESCRIPTIONS, True, "Start the ~/get_type_description service for this node.")
 
     def __own(self, name: str, usual: bool, description: str) -> bool:
-        """The value of a parameter that the node itself obeys, declared unless it is."""
+        """Return the value of a boolean parameter that controls the node itself.
+
+        The parameter is declared first if necessary.
+        """
         if not NodeParameters.has_parameter(self, name):
             NodeParameters.declare_parameter(
                 self, name, usual, ParameterDescriptor(description=description, read_only=True)
@@ -149,22 +156,28 @@ class Node(NodeParameters, NodeQueries):
 
     @cached_property
     def graph(self) -> LocalGraph:
-        """Where it lives. Unlike a property this lets a user's node have an attribute or a method of the name."""
+        """The graph that the node belongs to.
+
+        Unlike a property, this lets a user's node define an attribute of the same name.
+        """
         return self.__local_graph
 
     @property
     def handle(self) -> NodeHandle:
-        """The node's handle in the graph; entered while the node is used."""
+        """The node's handle in the graph, which is entered while the node is in use."""
         return self.__handle
 
     @property
     def default_callback_group(self) -> CallbackGroup:
-        """The group of everything that is given none: one callback runs at a time."""
+        """The group of entities that are created without one, in which one callback runs at a time."""
         return self.__handle.default_callback_group
 
     @property
     def executor(self) -> Executor | None:
-        """The executor that runs the node's callbacks; None when nothing does, or the event loop of its graph."""
+        """The executor that runs the node's callbacks.
+
+        It is None if there is none, or if the graph's event loop runs the callbacks.
+        """
         dispatcher = self.__handle.dispatcher
         return cast("Executor", dispatcher) if hasattr(dispatcher, "add_node") else None
 
@@ -179,29 +192,29 @@ class Node(NodeParameters, NodeQueries):
             new_executor.add_node(self)
 
     def get_name(self) -> str:
-        """The name without namespace."""
+        """Return the node's name without namespace."""
         self.__handle.check_alive()
         return self.__handle.identity.name
 
     def get_namespace(self) -> str:
-        """The namespace, absolute."""
+        """Return the node's absolute namespace."""
         self.__handle.check_alive()
         return self.__handle.identity.namespace
 
     def get_fully_qualified_name(self) -> str:
-        """Namespace and name."""
+        """Return the node's namespace and name."""
         self.__handle.check_alive()
         return self.__handle.identity.full_name
 
     def get_logger(self) -> Logger:
-        """The node's logger."""
+        """Return the node's logger."""
         return self.__handle.logger
 
     def get_clock(self) -> ROSClock:
-        """The node's clock: ROS time, which follows ``/clock`` while the parameter ``use_sim_time`` is true."""
+        """Return the node's clock, which follows ``/clock`` while the parameter ``use_sim_time`` is true."""
         return self.__clock
 
-    # --- making ------------------------------------------------------------------------------------------------------
+    # --- creation ----------------------------------------------------------------------------------------------------
 
     def create_publisher(
         self,
@@ -214,21 +227,21 @@ class Node(NodeParameters, NodeQueries):
         qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: type[Publisher[Any]] = Publisher,
     ) -> Publisher[M]:
-        """A publisher of a topic.
+        """Create a publisher for a topic.
 
         Args:
-            msg_type: the message class, or the name of the type, whose class is then made when it is needed.
+            msg_type: the message class, or the name of the type, whose class is then created on first use.
             topic: relative, absolute or private (``~/``) name.
             qos_profile: the QoS that it offers; a number is a depth.
-            callback_group: for the event callbacks.
-            event_callbacks: callbacks for events of the quality of service.
-            qos_overriding_options: which of its policies parameters may override.
+            callback_group: the group of the event callbacks.
+            event_callbacks: callbacks for QoS events.
+            qos_overriding_options: the policies that parameters may override.
             publisher_class: the class of the publisher.
 
         Raises:
             InvalidTopicNameError: the topic's name is not valid.
-            AttributeError: the type is not a class of an interface.
-            RuntimeError: it is the class of a service.
+            AttributeError: the type is not an interface class.
+            RuntimeError: the type is a service class.
             InvalidHandleError: the node was destroyed.
         """
         name = self.__handle.resolve_topic_name(topic)
@@ -253,25 +266,26 @@ class Node(NodeParameters, NodeQueries):
         raw: bool = False,
         content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription[M]:
-        """A subscription to a topic.
+        """Create a subscription to a topic.
 
         Args:
-            msg_type: the message class, or the name of the type, whose class is then made when it is needed.
+            msg_type: the message class, or the name of the type, whose class is then created on first use.
             topic: relative, absolute or private (``~/``) name.
-            callback: called with each message, which it must not change, and, when it takes two arguments, with a
-                `MessageInfo`. It may be a coroutine function.
+            callback: called with each message, which it must not change, and with a `MessageInfo` if it takes two
+                arguments.
+                It may be a coroutine function.
             qos_profile: the QoS that it requests; a number is a depth.
-            callback_group: which entities may run beside it.
-            event_callbacks: callbacks for events of the quality of service.
-            qos_overriding_options: which of its policies parameters may override.
-            raw: whether the callback gets CDR bytes with their header instead of messages.
+            callback_group: decides which entities may run at the same time.
+            event_callbacks: callbacks for QoS events.
+            qos_overriding_options: the policies that parameters may override.
+            raw: whether the callback receives CDR bytes with their header instead of messages.
             content_filter_options: a condition for the messages.
 
         Raises:
             InvalidTopicNameError: the topic's name is not valid.
-            ContentFilterError: the content filter cannot be understood.
-            AttributeError: the type is not a class of an interface.
-            RuntimeError: it is the class of a service.
+            ContentFilterError: the content filter cannot be parsed, or does not fit the message type.
+            AttributeError: the type is not an interface class.
+            RuntimeError: the type is a service class.
         """
         name = self.__handle.resolve_topic_name(topic)
         qos = override_qos(self, "subscription", name, QoSProfile.of(qos_profile), qos_overriding_options)
@@ -294,21 +308,21 @@ class Node(NodeParameters, NodeQueries):
         callback_group: CallbackGroup | None = None,
         replying: bool = False,
     ) -> Service[Any, Any]:
-        """A server of a service.
+        """Create a server for a service.
 
         Args:
-            srv_type: the class of the service, or its name.
+            srv_type: the service class, or the name of the type.
             srv_name: relative, absolute or private (``~/``) name.
-            callback: called with a request and an empty response, which it fills in and gives back. It may be a
-                coroutine function.
-            qos_profile: how many requests wait, and so on.
-            callback_group: which entities may run beside it.
-            replying: whether the callback gets, instead of the response, a callable that sends one at any time.
+            callback: called with a request and an empty response, which it fills in and returns. It may be a coroutine
+                function.
+            qos_profile: the QoS, which includes how many requests may be queued.
+            callback_group: decides which entities may run at the same time.
+            replying: whether the callback receives, instead of the response, a function that sends one at any time.
 
         Raises:
             InvalidServiceNameError: the name is not valid.
-            AttributeError: the type is not a class of an interface.
-            RuntimeError: it is the class of a message.
+            AttributeError: the type is not an interface class.
+            RuntimeError: the type is a message class.
         """
         name = self.__handle.resolve_service_name(srv_name)
         service: Service[Any, Any] = Service(
@@ -324,18 +338,18 @@ class Node(NodeParameters, NodeQueries):
         qos_profile: QoSProfile = SERVICES_QOS,
         callback_group: CallbackGroup | None = None,
     ) -> Client[Any, Any]:
-        """A client of a service.
+        """Create a client for a service.
 
         Args:
-            srv_type: the class of the service, or its name.
+            srv_type: the service class, or the name of the type.
             srv_name: relative, absolute or private (``~/``) name.
-            qos_profile: how many requests wait for a server, and so on.
-            callback_group: which entities may run beside it.
+            qos_profile: the QoS, which includes how many requests may wait for a server.
+            callback_group: decides which entities may run at the same time.
 
         Raises:
             InvalidServiceNameError: the name is not valid.
-            AttributeError: the type is not a class of an interface.
-            RuntimeError: it is the class of a message.
+            AttributeError: the type is not an interface class.
+            RuntimeError: the type is a message class.
         """
         name = self.__handle.resolve_service_name(srv_name)
         qos = QoSProfile.of(qos_profile)
@@ -350,14 +364,14 @@ class Node(NodeParameters, NodeQueries):
         clock: Clock | None = None,
         autostart: bool = True,
     ) -> Timer:
-        """A timer that calls back at a fixed period, first one period from now.
+        """Create a timer that calls back at a fixed period, for the first time one period from now.
 
         Args:
             timer_period_sec: the period in seconds.
-            callback: called without arguments, or with a `TimerInfo` when it takes one.
-            callback_group: which entities may run beside it.
-            clock: the clock that counts the period; the node's when left out, which follows simulated time.
-            autostart: whether it runs from the start.
+            callback: called without arguments, or with a `TimerInfo` if it takes one.
+            callback_group: decides which entities may run at the same time.
+            clock: the clock that measures the period; by default the node's clock, which may follow simulated time.
+            autostart: whether the timer runs from the start.
 
         Raises:
             ValueError: the period is negative.
@@ -367,11 +381,11 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.add(Timer(self.__handle, callback, period_ns, clock, callback_group, autostart=autostart))
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
-        """A rate to sleep by.
+        """Create a rate, with which a loop can sleep until its next iteration.
 
         Args:
-            frequency: turns a second.
-            clock: the clock that counts time; the node's when left out.
+            frequency: iterations per second.
+            clock: the clock that measures time; the node's clock by default.
 
         Raises:
             ValueError: the frequency is not positive.
@@ -383,14 +397,17 @@ class Node(NodeParameters, NodeQueries):
     def create_guard_condition(
         self, callback: Callable[[], object] | None, callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
-        """A callback for the node to set off itself: many triggers in a row call it once."""
+        """Create a guard condition that the node can trigger.
+
+        Several triggers in a row call the callback once.
+        """
         return self.__handle.add(GuardCondition(self.__handle, callback, callback_group))
 
-    # --- publishers, subscriptions and the rest -----------------------------------------------------------------------
+    # --- parts of the node -------------------------------------------------------------------------------------------
 
     @property
     def publishers(self) -> Iterator[Publisher[Any]]:
-        """The node's publishers, without those of ``/rosout`` and of the events of services, as in rclpy."""
+        """The node's publishers, except those of ``/rosout`` and of service events, as in rclpy."""
         return (
             publisher
             for publisher in self.__handle.parts(Publisher)
@@ -422,38 +439,50 @@ class Node(NodeParameters, NodeQueries):
         """The node's guard conditions."""
         return iter(self.__handle.parts(GuardCondition))
 
-    # --- destroying --------------------------------------------------------------------------------------------------
+    # --- destruction -------------------------------------------------------------------------------------------------
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
-        """Remove a publisher; its messages are still delivered. Whether it was this node's."""
+        """Destroy a publisher, whose messages are still delivered.
+
+        Returns whether it belonged to this node.
+        """
         return self.__handle.remove(publisher)
 
     def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
-        """Remove a subscription; its callback is not called again. Whether it was this node's."""
+        """Destroy a subscription, whose callback is not called again.
+
+        Returns whether it belonged to this node.
+        """
         return self.__handle.remove(subscription)
 
     def destroy_service(self, service: Service[Any, Any]) -> bool:
-        """Take a service away. Whether it was this node's."""
+        """Destroy a service; return whether it belonged to this node."""
         return self.__handle.remove(service)
 
     def destroy_client(self, client: Client[Any, Any]) -> bool:
-        """Remove a client; its pending futures stay as they are. Whether it was this node's."""
+        """Destroy a client, whose pending futures stay pending.
+
+        Returns whether it belonged to this node.
+        """
         return self.__handle.remove(client)
 
     def destroy_timer(self, timer: Timer) -> bool:
-        """Stop a timer for good. Whether it was this node's."""
+        """Destroy a timer; return whether it belonged to this node."""
         return self.__handle.remove(timer)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
-        """Never call back again. Whether it was this node's."""
+        """Destroy a guard condition; return whether it belonged to this node."""
         return self.__handle.remove(guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
-        """End a rate; threads that sleep by it wake. Whether it was this node's."""
+        """Destroy a rate, and wake the threads that sleep on it.
+
+        Returns whether it belonged to this node.
+        """
         return rate.destroy()
 
     def destroy_node(self) -> None:
-        """Take the node and all it made out of the graph. A second call does nothing."""
+        """Remove the node and all its parts from the graph. A second call does nothing."""
         self.__handle.destroy()
 
     def __enter__(self) -> Self:
@@ -470,7 +499,10 @@ def _by_name(parameters: Mapping[str, Any] | Sequence[Parameter]) -> Mapping[str
 
 
 def _profiles(ask: Callable[[str, bool], list[TopicEndpointInfo]], topic: str) -> Iterator[QoSProfile]:
-    """The profiles of the endpoints of a topic, in this process and outside; the graph is asked when one is needed."""
+    """Iterate over the QoS profiles of a topic's endpoints, in this process and outside.
+
+    The graph is queried only when the first profile is needed.
+    """
     yield from (endpoint.qos_profile for endpoint in ask(topic, True))
 
 
@@ -478,7 +510,10 @@ P = ParamSpec("P")
 
 
 def _made_by(node_class: Callable[Concatenate[LocalGraph, P], Node]) -> Callable[Concatenate[Graph, P], Node]:
-    """The method that makes a node of a class in a graph, with that class's further arguments."""
+    """Return a method that creates a node of the given class in a graph.
+
+    The method takes the further arguments of that class.
+    """
 
     @wraps(node_class, assigned=("__doc__",), updated=())
     def create_node(graph: Graph, /, *args: P.args, **kwargs: P.kwargs) -> Node:
@@ -490,9 +525,11 @@ def _made_by(node_class: Callable[Concatenate[LocalGraph, P], Node]) -> Callable
 class Graph(LocalGraph):
     """A ROS-like computation graph.
 
-    Made inside a running event loop, it has that loop run the callbacks of its nodes. Made elsewhere, or with
-    `threads`, its nodes have no dispatcher of their own; the executors of `linkwright.graph.executors` are ones. Its
-    arguments are those of `LocalGraph`.
+    A graph that is created inside a running event loop lets that loop run the callbacks of its nodes. Created
+    elsewhere, or
+    with `threads`, its nodes have no dispatcher at first; the executors of `linkwright.graph.executors` can serve as
+    one.
+    The arguments are those of `LocalGraph`.
     """
 
     create_node = _made_by(Node)

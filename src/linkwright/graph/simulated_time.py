@@ -18,15 +18,16 @@ CLOCK_TOPIC = "/clock"
 
 
 class SimulatedTime:
-    """Keeps a node's clock by ``/clock`` while its parameter ``use_sim_time`` is true (rclpy ``TimeSource``).
+    """Sets a node's clock from ``/clock`` while ``use_sim_time`` is true (rclpy ``TimeSource``).
 
-    The clock is moved in the thread in which a message of ``/clock`` arrives, not in a callback of the node: so time
-    passes while the node's own thread sleeps.
+    The clock is set in the thread in which a message of ``/clock`` arrives, not in a callback of the node, so time
+    passes
+    while the node's own thread sleeps.
 
     Args:
-        handle: subscribes.
-        parameters: those of the node.
-        clock: its clock.
+        handle: the handle of the node, which subscribes.
+        parameters: the parameters of the node.
+        clock: the clock of the node.
     """
 
     def __init__(self, handle: NodeHandle, parameters: NodeParameters, clock: ROSClock) -> None:
@@ -70,7 +71,7 @@ class SimulatedTime:
 
 
 class _ClockSubscription(Subscription[Any]):
-    """Moves a clock by the messages of ``/clock``, in whatever thread they come."""
+    """Sets a clock from the messages of ``/clock``, in the thread in which they arrive."""
 
     def __init__(self, node: NodeHandle, clock: ROSClock) -> None:
         super().__init__(node, "rosgraph_msgs/msg/Clock", node.resolve_topic_name(CLOCK_TOPIC), CLOCK_QOS, self._move)
@@ -86,7 +87,7 @@ class _ClockSubscription(Subscription[Any]):
             call()
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """It needs none."""
+        """Do nothing: this subscription needs no dispatcher."""
 
     def _move(self, message: Any) -> None:
         if isinstance(message, Detailed):

@@ -14,18 +14,18 @@ if TYPE_CHECKING:
 
 
 class ActionEndpoint(ABC):
-    """One side of an action; at the end of a ``with`` block it is destroyed.
+    """The server or client side of an action. Leaving its ``with`` block destroys it.
 
     Args:
-        node: whose it is.
-        action_type: the class of the action, or its name.
+        node: the node that owns it.
+        action_type: the action's class or type name.
         action_name: relative, absolute or private name.
 
     Raises:
         InvalidServiceNameError: the name is not valid.
     """
 
-    __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
+    __class_getitem__: Any = classmethod(GenericAlias)  # as in rclpy, annotations may name the action type
 
     def __init__(self, node: Node, action_type: Any, action_name: str) -> None:
         from linkwright.messages import get_action
@@ -48,7 +48,7 @@ class ActionEndpoint(ABC):
 
     @abstractmethod
     def destroy(self) -> None:
-        """Leave the graph. A second call does nothing."""
+        """Remove the endpoint from the graph. A second call does nothing."""
 
     def __enter__(self) -> Self:
         return self
@@ -57,5 +57,5 @@ class ActionEndpoint(ABC):
         self.destroy()
 
     def _below(self, name: str) -> str:
-        """The name of one of the services and topics that the action consists of."""
+        """Return the full name of one of the action's services or topics."""
         return f"{self._action_name}/_action/{name}"

@@ -20,16 +20,16 @@ from linkwright.graph.qos.profile import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICE
 
 
 class ClientGoalHandle:
-    """A goal that was sent, as its sender knows it (rclpy ``ClientGoalHandle``).
+    """The client's handle of a goal that it has sent (rclpy ``ClientGoalHandle``).
 
     Attributes:
-        goal_id: its id (unique_identifier_msgs/msg/UUID).
-        accepted: whether the server took it.
-        stamp: when (builtin_interfaces/msg/Time).
-        status: its latest known state.
+        goal_id: the goal's ID (unique_identifier_msgs/msg/UUID).
+        accepted: whether the server accepted the goal.
+        stamp: when the server accepted it (builtin_interfaces/msg/Time).
+        status: the goal's latest known state.
     """
 
-    __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
+    __class_getitem__: Any = classmethod(GenericAlias)  # as in rclpy, annotations may name the action type
 
     def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
         self._action_client = action_client
@@ -48,38 +48,41 @@ class ClientGoalHandle:
         return f"ClientGoalHandle <id={self.goal_id.uuid}, accepted={self.accepted}, status={self.status}>"
 
     def cancel_goal(self, timeout_sec: float | None = None) -> Any:
-        """Ask for the goal to be canceled, and block until the server has answered; see `Client.call`."""
+        """Request cancellation of the goal, and block until the server has answered.
+
+        See `Client.call`.
+        """
         return _waited_for(self.cancel_goal_async(), timeout_sec)
 
     def cancel_goal_async(self) -> Future[Any]:
-        """Ask for the goal to be canceled; the future gets an action_msgs/srv/CancelGoal response."""
+        """Request cancellation of the goal; the future gets an action_msgs/srv/CancelGoal response."""
         return self._action_client.cancel(self)
 
     def get_result(self, timeout_sec: float | None = None) -> Any:
-        """Ask for the result, and block until it arrives; see `Client.call`."""
+        """Request the result, and block until it arrives; see `Client.call`."""
         return _waited_for(self.get_result_async(), timeout_sec)
 
     def get_result_async(self) -> Future[Any]:
-        """Ask for the result; the future gets a response with ``status`` and ``result``."""
+        """Request the result; the future gets a response with ``status`` and ``result``."""
         return self._action_client.request_result(self)
 
 
 class ActionClient(ActionEndpoint):
-    """Sends goals to an action (rclpy ``ActionClient``).
+    """Sends goals to an action server (rclpy ``ActionClient``).
 
     Args:
-        node: whose it is.
-        action_type: the class of the action, or its name.
+        node: the node that owns the client.
+        action_type: the action's class or type name.
         action_name: relative, absolute or private name.
-        callback_group: for the feedback callbacks.
-        goal_service_qos_profile: for the service that takes goals.
-        result_service_qos_profile: for the service that gives results.
-        cancel_service_qos_profile: for the service that cancels.
-        feedback_sub_qos_profile: for the feedback topic.
-        status_sub_qos_profile: for the status topic.
+        callback_group: the group of the feedback callbacks.
+        goal_service_qos_profile: the QoS of the service that accepts goals.
+        result_service_qos_profile: the QoS of the service that returns results.
+        cancel_service_qos_profile: the QoS of the service that cancels goals.
+        feedback_sub_qos_profile: the QoS of the feedback subscription.
+        status_sub_qos_profile: the QoS of the status subscription.
 
     Raises:
-        TypeError: the type is none of an action.
+        TypeError: the type is not an action type.
         InvalidServiceNameError: the name is not valid.
     """
 
@@ -127,7 +130,7 @@ class ActionClient(ActionEndpoint):
         self._handle.add_cleanup(self.destroy)
 
     def server_is_ready(self) -> bool:
-        """Whether a server of the action is available, with all its services and topics."""
+        """Return whether an action server is available, with all its services and topics."""
         clients = (self._goal_client, self._cancel_client, self._result_client)
         return all(client.service_is_ready() for client in clients) and all(
             subscription.get_publisher_count() for subscription in (self._feedback, self._status)
@@ -138,19 +141,21 @@ class ActionClient(ActionEndpoint):
         return self._handle.graph.wait_until(self.server_is_ready, timeout_sec)
 
     def send_goal(self, goal: Any, timeout_sec: float | None = None, **options: Any) -> Any:
-        """Send a goal, and block the calling thread until its result arrives. Another thread must run callbacks.
+        """Send a goal, and block the calling thread until its result arrives.
+
+        Another thread must run callbacks in the meantime.
 
         Args:
             goal: the goal message.
-            timeout_sec: how many seconds to wait for the server to accept it, and then for the result.
+            timeout_sec: how many seconds to wait for the server to accept the goal, and again for the result.
             options: as for `send_goal_async`.
 
         Returns:
             The response with ``status`` and ``result``; None when the goal was rejected.
 
         Raises:
-            TypeError: it is not a goal of the action.
-            TimeoutError: it took too long.
+            TypeError: `goal` is not a goal message of the action.
+            TimeoutError: the server did not respond in time.
         """
         handle = _waited_for(self.send_goal_async(goal, **options), timeout_sec)
         return handle.get_result(timeout_sec) if handle.accepted else None
@@ -158,18 +163,20 @@ class ActionClient(ActionEndpoint):
     def send_goal_async(
         self, goal: Any, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: Any = None
     ) -> Future[ClientGoalHandle]:
-        """Send a goal.
+        """Send a goal without blocking.
 
         Args:
             goal: the goal message.
-            feedback_callback: called with each feedback message about this goal (``.feedback`` is the action's).
-            goal_uuid: the goal's id; a random one when left out.
+            feedback_callback: called with each feedback message for this goal; its ``feedback`` field holds the
+                action's
+                own feedback.
+            goal_uuid: the goal's ID; a random one by default.
 
         Returns:
             A future that gets the goal's handle when the server has accepted or rejected it.
 
         Raises:
-            TypeError: it is not a goal of the action.
+            TypeError: `goal` is not a goal message of the action.
         """
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
@@ -186,10 +193,10 @@ class ActionClient(ActionEndpoint):
         return handed
 
     def cancel(self, goal: ClientGoalHandle) -> Future[Any]:
-        """Ask for a goal to be canceled; see `ClientGoalHandle.cancel_goal_async`.
+        """Request cancellation of a goal; see `ClientGoalHandle.cancel_goal_async`.
 
         Raises:
-            TypeError: it is not the handle of a goal.
+            TypeError: `goal` is not a goal handle.
         """
         _check_handle(goal)
         request = self._action_type.Impl.CancelGoalService.Request()
@@ -197,10 +204,10 @@ class ActionClient(ActionEndpoint):
         return self._cancel_client.call_async(request)
 
     def request_result(self, goal: ClientGoalHandle) -> Future[Any]:
-        """Ask for the result of a goal; see `ClientGoalHandle.get_result_async`.
+        """Request the result of a goal; see `ClientGoalHandle.get_result_async`.
 
         Raises:
-            TypeError: it is not the handle of a goal.
+            TypeError: `goal` is not a goal handle.
         """
         _check_handle(goal)
         request = self._action_type.Impl.GetResultService.Request()
@@ -212,7 +219,7 @@ class ActionClient(ActionEndpoint):
         return handed
 
     def destroy(self) -> None:
-        """Leave the graph; pending futures stay as they are. A second call does nothing."""
+        """Remove the client from the graph; pending futures stay pending. A second call does nothing."""
         if self._destroyed:
             return
         self._destroyed = True
@@ -239,7 +246,7 @@ class ActionClient(ActionEndpoint):
             return
         callback = self._feedback_callbacks.get(key)
         if callback is not None and not iscoroutinefunction(callback):
-            # Feedback published before the goal ended is delivered before its result.
+            # Deliver the feedback that was published before the goal ended ahead of its result.
             while (call := self._feedback.take()) is not None:
                 call()
         self._feedback_callbacks.pop(key, None)

@@ -1,4 +1,4 @@
-"""The states of a goal, and the handle through which a server works on it (``rclpy.action.server``)."""
+"""The states of a goal, and the server's handle of it (``rclpy.action.server``)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.graph.loop.future import Future
 
 
 class GoalStatus(IntEnum):
-    """The states of a goal; numbers as in action_msgs/msg/GoalStatus."""
+    """The states of a goal, with the numbers of action_msgs/msg/GoalStatus."""
 
     UNKNOWN = 0
     ACCEPTED = 1
@@ -24,7 +24,7 @@ class GoalStatus(IntEnum):
 
 
 class GoalEvent(Enum):
-    """The events that change the state of a goal; numbers as in rcl_action."""
+    """The events that change the state of a goal, with the numbers of rcl_action."""
 
     EXECUTE = 1
     CANCEL_GOAL = 2
@@ -34,14 +34,14 @@ class GoalEvent(Enum):
 
 
 class GoalResponse(Enum):
-    """Whether a server takes a goal."""
+    """A server's answer to a goal request: accept or reject."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class CancelResponse(Enum):
-    """Whether a server lets a goal be canceled."""
+    """A server's answer to a cancel request: accept or reject."""
 
     REJECT = 1
     ACCEPT = 2
@@ -66,7 +66,7 @@ _NEXT = {
 
 
 class GoalKeeper(Protocol):
-    """The server of an action, as its goals know it."""
+    """The interface through which a goal calls its action server."""
 
     @property
     def action_type(self) -> Any:
@@ -79,22 +79,22 @@ class GoalKeeper(Protocol):
         """Publish the feedback of a goal."""
 
     def state_changed(self, goal: ServerGoalHandle) -> None:
-        """Publish the states of all goals."""
+        """Handle a change of a goal's state: publish the states of all goals."""
 
     def forget(self, goal: ServerGoalHandle) -> None:
-        """Drop a goal."""
+        """Remove a goal from the server."""
 
 
 class ServerGoalHandle:
-    """An accepted goal, as its server works with it. It may be used from any thread.
+    """The server's handle of an accepted goal. It may be used from any thread.
 
     Attributes:
         request: the goal message.
-        goal_info: its id and when it was accepted (action_msgs/msg/GoalInfo).
-        ended_ns: when it ended, by the server's clock; None before.
+        goal_info: the goal's ID and the time at which it was accepted (action_msgs/msg/GoalInfo).
+        ended_ns: when the goal ended, in nanoseconds of the server's clock; None while it has not ended.
     """
 
-    __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
+    __class_getitem__: Any = classmethod(GenericAlias)  # as in rclpy, annotations may name the action type
 
     def __init__(self, action_server: GoalKeeper, goal_info: Any, goal_request: Any) -> None:
         self._server = action_server
@@ -115,28 +115,28 @@ class ServerGoalHandle:
 
     @property
     def goal_id(self) -> Any:
-        """The goal's id (unique_identifier_msgs/msg/UUID)."""
+        """The goal's ID (unique_identifier_msgs/msg/UUID)."""
         return self.goal_info.goal_id
 
     @property
     def status(self) -> int:
-        """The goal's state; UNKNOWN when the handle was destroyed."""
+        """The goal's state; UNKNOWN once the handle has been destroyed."""
         return int(GoalStatus.UNKNOWN if self._destroyed else self._status)
 
     @property
     def is_active(self) -> bool:
-        """Whether it has not ended."""
+        """Whether the goal has not ended."""
         return not self._destroyed and self._status in ACTIVE
 
     @property
     def is_cancel_requested(self) -> bool:
-        """Whether it is to be canceled."""
+        """Whether the goal is being canceled."""
         return not self._destroyed and self._status is GoalStatus.CANCELING
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
-        """Start the work: schedule a callback, the server's when it is left out.
+        """Start executing the goal: schedule the given callback, or the server's by default.
 
-        A goal that was canceled in the meantime is passed to the callback as well, which decides how it ends.
+        A goal that has been canceled in the meantime is passed to the callback as well, which decides how it ends.
         """
         with self._lock:
             if not self.is_cancel_requested:
@@ -147,7 +147,7 @@ class ServerGoalHandle:
         """Publish feedback.
 
         Raises:
-            TypeError: it is not a feedback message of the action.
+            TypeError: `feedback` is not a feedback message of the action.
         """
         kind = self._server.action_type
         if not isinstance(feedback, kind.Feedback):
@@ -156,23 +156,27 @@ class ServerGoalHandle:
             self._server.publish_feedback(self.goal_id, feedback)
 
     def succeed(self, response: Any = None) -> None:
-        """The goal was reached; `response` is its result, unless the execute callback gives that.
+        """Mark the goal as succeeded.
+
+        `response` is the goal's result; if it is left out, the execute callback returns the result.
 
         Raises:
-            RuntimeError: the goal is in no state in which this can be.
+            RuntimeError: the goal's state does not allow it to succeed.
         """
         self._end(GoalEvent.SUCCEED, response)
 
     def abort(self, response: Any = None) -> None:
-        """The goal cannot be reached; see `succeed`."""
+        """Mark the goal as aborted; see `succeed`."""
         self._end(GoalEvent.ABORT, response)
 
     def canceled(self, response: Any = None) -> None:
-        """The goal was canceled, as requested; see `succeed`."""
+        """Mark the goal as canceled, after a cancel request; see `succeed`."""
         self._end(GoalEvent.CANCELED, response)
 
     def update(self, event: GoalEvent) -> None:
-        """Move the goal to another state, and publish it on the status topic. Nothing happens to a destroyed handle.
+        """Move the goal to another state, and publish its status.
+
+        Does nothing once the handle is destroyed.
 
         Raises:
             RuntimeError: the event cannot happen in the goal's state.
@@ -190,16 +194,16 @@ class ServerGoalHandle:
         self._server.state_changed(self)
 
     def destroy(self) -> None:
-        """Forget the goal."""
+        """Deactivate the handle, and remove the goal from its server."""
         self._destroyed = True
         self._server.forget(self)
 
     def retire(self) -> None:
-        """Do nothing any more; the server forgets the goal by itself."""
+        """Deactivate the handle without a call to the server, which removes the goal itself."""
         self._destroyed = True
 
     def set_result(self, result: Any) -> None:
-        """Answer the clients that ask for the result, unless they were answered."""
+        """Send the result to the clients that requested it, unless a result was set before."""
         if not self.result.ended():
             response = self._server.action_type.Impl.GetResultService.Response()
             response.status = int(self._status)

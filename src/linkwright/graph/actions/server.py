@@ -37,7 +37,7 @@ def default_goal_callback(goal_request: Any) -> GoalResponse:  # noqa: ARG001  #
 
 
 def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
-    """Execute the goal at once."""
+    """Execute the goal immediately."""
     goal_handle.execute()
 
 
@@ -47,34 +47,36 @@ def default_cancel_callback(cancel_request: ServerGoalHandle) -> CancelResponse:
 
 
 async def outcome_of(value: Any) -> Any:
-    """The return value of a callback; the result of its coroutine where it returned one."""
+    """Return the result of a callback, awaiting it first if it is a coroutine."""
     return await value if isawaitable(value) else value
 
 
 class ActionServer(ActionEndpoint):
     """Serves an action (rclpy ``ActionServer``).
 
-    It is made of three services and two topics below ``NAME/_action/``. Callbacks may be coroutine functions; an
-    execute callback that is not runs in the dispatcher's thread and blocks its other callbacks.
+    The server consists of three services and two topics below ``NAME/_action/``. Callbacks may be coroutine functions.
+    An
+    execute callback that is not a coroutine function runs in the dispatcher's thread and blocks other callbacks there.
 
     Args:
-        node: whose it is.
-        action_type: the class of the action, or its name.
+        node: the node that owns the server.
+        action_type: the action's class or type name.
         action_name: relative, absolute or private name.
-        execute_callback: called with the handle of a goal to work on; gives the result.
-        callback_group: for the callbacks below; goals are worked on outside of all groups.
-        goal_callback: called with a goal, decides whether it is accepted.
-        handle_accepted_callback: called with the handle of an accepted goal; begins the work, now or later.
-        cancel_callback: called with the handle of a goal that is to be canceled, decides whether it is.
-        goal_service_qos_profile: for the service that takes goals.
-        result_service_qos_profile: for the service that gives results.
-        cancel_service_qos_profile: for the service that cancels.
-        feedback_pub_qos_profile: for the feedback topic.
-        status_pub_qos_profile: for the status topic.
-        result_timeout: how many seconds a goal's result is kept after its end; negative for ever.
+        execute_callback: called with the handle of a goal to execute; returns the result.
+        callback_group: the group of the callbacks below; goals are executed outside all groups.
+        goal_callback: called with a goal; decides whether it is accepted.
+        handle_accepted_callback: called with the handle of an accepted goal; starts its execution, now or later.
+        cancel_callback: called with the handle of a goal whose cancellation was requested; decides whether to cancel
+            it.
+        goal_service_qos_profile: the QoS of the service that accepts goals.
+        result_service_qos_profile: the QoS of the service that returns results.
+        cancel_service_qos_profile: the QoS of the service that cancels goals.
+        feedback_pub_qos_profile: the QoS of the feedback topic.
+        status_pub_qos_profile: the QoS of the status topic.
+        result_timeout: how many seconds a goal's result is kept after its end; negative to keep it forever.
 
     Raises:
-        TypeError: the execute callback cannot be called, or the type is none of an action.
+        TypeError: the execute callback is not callable, or the type is not an action type.
         InvalidServiceNameError: the name is not valid.
     """
 
@@ -127,7 +129,7 @@ class ActionServer(ActionEndpoint):
         """Set the callback that executes goals.
 
         Raises:
-            TypeError: it cannot be called.
+            TypeError: `execute_callback` is not callable.
         """
         if not callable(execute_callback):
             raise TypeError("Failed to register goal execution callback: not callable")
@@ -140,7 +142,7 @@ class ActionServer(ActionEndpoint):
     def register_handle_accepted_callback(
         self, handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Set the callback that begins the work on accepted goals; None begins at once."""
+        """Set the callback that starts the execution of accepted goals; None starts it immediately."""
         self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
 
     def register_cancel_callback(self, cancel_callback: Callable[[ServerGoalHandle], Any] | None) -> None:
@@ -148,7 +150,7 @@ class ActionServer(ActionEndpoint):
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def destroy(self) -> None:
-        """Leave the graph; unfinished goals are dropped. A second call does nothing."""
+        """Remove the server from the graph; unfinished goals are dropped. A second call does nothing."""
         with self._lock:
             if self._destroyed:
                 return
@@ -179,14 +181,14 @@ class ActionServer(ActionEndpoint):
             self._feedback.publish(message)
 
     def state_changed(self, goal: ServerGoalHandle) -> None:
-        """Publish the states of all goals; the result of one that ended is kept for a while."""
+        """Publish the states of all goals; if the goal ended, start the timeout of its result."""
         if GoalStatus(goal.status) not in ACTIVE:
             goal.ended_ns = self._node.get_clock().now_ns()
             self._watch_expiry()
         self._publish_status()
 
     def forget(self, goal: ServerGoalHandle) -> None:
-        """Drop a goal."""
+        """Remove a goal from the server."""
         with self._lock:
             self._goal_handles.pop(bytes(goal.goal_id.uuid), None)
 
@@ -238,9 +240,11 @@ class ActionServer(ActionEndpoint):
         reply(response)
 
     def _to_cancel(self, info: Any) -> tuple[int, list[ServerGoalHandle]]:
-        """The goals that a request means (rcl_action ``process_cancel_request``), and the answer so far.
+        """Return the preliminary return code of a cancel request, and the goals that it selects.
 
-        An id means that goal, a stamp all goals accepted up to then, both both, and neither all goals.
+        As in rcl_action's ``process_cancel_request``: an ID selects that goal, a stamp selects all goals accepted up to
+        then,
+        an ID and a stamp select both, and a request with neither selects all goals.
         """
         uuid = bytes(info.goal_id.uuid)
         has_id = any(uuid)
@@ -271,7 +275,7 @@ class ActionServer(ActionEndpoint):
             return
         goal.result.add_done_callback(lambda future: reply(future.result()))
 
-    # --- the work ----------------------------------------------------------------------------------------------------
+    # --- execution ---------------------------------------------------------------------------------------------------
 
     async def _execute(self, callback: Callable[[ServerGoalHandle], Any], goal: ServerGoalHandle) -> None:
         result = None
@@ -314,7 +318,7 @@ class ActionServer(ActionEndpoint):
         message.status_list = statuses
         self._status.publish(message)
 
-    # --- the keeping of results --------------------------------------------------------------------------------------
+    # --- expiry of results -------------------------------------------------------------------------------------------
 
     def _watch_expiry(self) -> None:
         with self._lock:
@@ -346,7 +350,7 @@ class ActionServer(ActionEndpoint):
 
 
 class _Executions(Entity):
-    """Accepted goals whose execution has not started."""
+    """A queue of accepted goals whose execution has not started."""
 
     def __init__(self, node: NodeHandle) -> None:
         super().__init__(node, FREE_GROUP)
@@ -354,7 +358,7 @@ class _Executions(Entity):
 
     @property
     def what(self) -> str:
-        """How log messages name it."""
+        """The description of this entity in log messages."""
         return "execute callback of an action"
 
     def add(self, call: Callable[[], object]) -> None:
@@ -363,9 +367,9 @@ class _Executions(Entity):
         self.announce()
 
     def has_work(self) -> bool:
-        """Whether a request waits."""
+        """Return whether an execution is queued."""
         return bool(self._waiting)
 
     def take(self) -> Callable[[], object] | None:
-        """The call that has waited longest."""
+        """Remove the oldest call from the queue and return it; None if the queue is empty."""
         return self._next_of(self._waiting)

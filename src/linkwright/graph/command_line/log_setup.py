@@ -1,4 +1,4 @@
-"""The logging of a process as its ROS arguments configure it: levels, console, log file."""
+"""The logging setup of a process, as its ROS arguments configure it: levels, console, log file."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from linkwright.graph.log.logger import LogLevels, LogRecord, LogSink
 
 @dataclass(slots=True)
 class Logging:
-    """The logging of a process.
+    """The logging setup of a process.
 
     Attributes:
-        sink: receives the records of its graph.
+        sink: receives the log records of the process's graph.
         levels: the levels of its loggers.
-        rosout: whether nodes publish their log.
-        file: its log file; None where there is none.
+        rosout: whether nodes publish their log records on ``/rosout``.
+        file: its log file; None if there is none.
     """
 
     sink: LogSink
@@ -28,13 +28,13 @@ class Logging:
     file: LogFile | None = None
 
     def close(self) -> None:
-        """Write out buffered records."""
+        """Flush buffered log records."""
         if self.file is not None:
             self.file.close()
 
 
 def set_levels(levels: LogLevels, arguments: RosArguments) -> None:
-    """Give loggers the levels of ``--log-level``."""
+    """Set the logger levels that ``--log-level`` specifies."""
     if arguments.log_level is not None:
         levels.set("", arguments.log_level)
     for name, level in arguments.log_levels.items():
@@ -42,12 +42,12 @@ def set_levels(levels: LogLevels, arguments: RosArguments) -> None:
 
 
 def set_up(arguments: RosArguments, executable: str, levels: LogLevels | None = None) -> Logging:
-    """The logging of a process.
+    """Set up the logging of a process as its ROS arguments configure it.
 
     Args:
-        arguments: its ROS arguments.
-        executable: the program's name, after which its log file is named.
-        levels: receives the levels; new ones when left out.
+        arguments: the ROS arguments of the process.
+        executable: the program's name, which names the log file.
+        levels: the object that receives the levels; a new one by default.
     """
     levels = levels or LogLevels()
     set_levels(levels, arguments)

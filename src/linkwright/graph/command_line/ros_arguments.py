@@ -1,4 +1,4 @@
-"""ROS arguments: the words between ``--ros-args`` and ``--`` on a command line, in the forms of rcl."""
+"""ROS arguments: the arguments between ``--ros-args`` and ``--``, in the syntax of rcl."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _NODE_PREFIX = re.compile(r"(?!ros(?:topic|service)://)(/?[A-Za-z_*][\w/*]*):(.+
 
 @dataclass(frozen=True, slots=True)
 class RemapRule:
-    """One remapping.
+    """A remapping rule.
 
     Attributes:
-        node: the node that it is for; None for every node.
-        source: the name to replace (``rostopic://`` or ``rosservice://`` before it limits its kind), ``__node``
-            (or ``__name``), or ``__ns``.
+        node: the name of the node that the rule applies to; None for every node.
+        source: the name to replace, ``__node`` (or ``__name``), or ``__ns``. A prefix ``rostopic://`` or
+            ``rosservice://`` restricts the rule to topics or services.
         target: the new name.
     """
 
@@ -38,14 +38,14 @@ class RosArguments:
     """The parsed ROS arguments of a command line.
 
     Attributes:
-        remap_rules: remappings, in order.
+        remap_rules: the remapping rules, in order.
         parameters: parameter values, from files and from the command line, in order.
-        log_level: the least severity to log; None when it is not given.
-        log_levels: the same for loggers by name.
-        log_config_file: the file that configures the log files, as it is given.
-        rosout_logs: whether the log goes to ``/rosout``; None when it is not given.
-        stdout_logs: whether it goes to the console; None when it is not given.
-        external_lib_logs: whether it goes to a log file; None when it is not given.
+        log_level: the minimum severity to log; None if not given.
+        log_levels: the minimum severities of individual loggers, by name.
+        log_config_file: the file that configures the log files, as given on the command line.
+        rosout_logs: whether to publish the log on ``/rosout``; None if not given.
+        stdout_logs: whether to write the log to the console; None if not given.
+        external_lib_logs: whether to write the log to a log file; None if not given.
         enclave: the security enclave.
         others: the arguments that are not ROS arguments.
     """
@@ -62,24 +62,24 @@ class RosArguments:
     others: list[str] = field(default_factory=list)
 
     def remappings_for(self, node_name: str) -> list[tuple[str, str]]:
-        """The remappings ``(from, to)`` of a node, which are those of every node and its own, in order.
+        """Return the remappings ``(from, to)`` for a node, in order, including those for every node.
 
         Args:
-            node_name: the name that its code gives it.
+            node_name: the name that the node's code gives it.
         """
         return [(rule.source, rule.target) for rule in self.remap_rules if rule.node in (None, node_name)]
 
     def parameters_for(self, full_name: str) -> dict[str, Any]:
-        """The parameter values of a node by parameter name.
+        """Return the parameter values of a node by parameter name.
 
         Args:
-            full_name: the namespace and name that the node really has.
+            full_name: the node's namespace and name, after remapping.
         """
         return self.parameters.for_node(full_name)
 
 
 def parse(arguments: Sequence[str]) -> RosArguments:
-    """Read a command line, without the program's name.
+    """Parse a command line, given without the program's name.
 
     Raises:
         LinkwrightError: GRAPH221, a ROS argument is unknown, lacks its value or has a malformed one; or the code of a
@@ -111,7 +111,7 @@ def parse(arguments: Sequence[str]) -> RosArguments:
 
 
 def remove_ros_arguments(arguments: Sequence[str]) -> list[str]:
-    """The arguments of a command line that are not ROS arguments."""
+    """Return the arguments of a command line that are not ROS arguments."""
     others: list[str] = []
     inside = False
     for argument in arguments:
@@ -134,7 +134,7 @@ def _read_remapping(ros: RosArguments, rule: str) -> None:
 
 
 def _read_parameter(ros: RosArguments, rule: str) -> None:
-    from linkwright.graph.parameters.files import parse_value  # few nodes are given parameters
+    from linkwright.graph.parameters.files import parse_value  # imported here: few nodes are given parameters
 
     name, text = _assignment(rule, phrase("a parameter"), phrase("name:=value"))
     pattern = ANY_NODE

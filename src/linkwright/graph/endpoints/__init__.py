@@ -1,1 +1,1 @@
-"""Publishers, subscriptions, services and clients, and the events of their quality of service."""
+"""Publishers, subscriptions, services and clients, and their QoS events."""

@@ -1,6 +1,6 @@
 """The base of publishers, subscriptions, services and clients, and how the graph describes them.
 
-Whether a class is that of a message or service is checked as rclpy's ``type_support`` does, with its errors.
+Message and service classes are checked as in rclpy's ``type_support``, with the same errors.
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ class EndpointKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class EndpointInfo:
-    """One publisher, subscription, service or client, of this process or of another.
+    """The description of a publisher, subscription, service or client, of this process or another.
 
     Attributes:
         kind: publisher, subscription, service or client.
-        node: the node it belongs to; None until discovery has found out.
+        node: the node it belongs to; None until discovery has found it.
         name: the topic's or service's absolute ROS name.
         type_name: such as ``sensor_msgs/msg/JointState``.
         qos: the QoS that it offers or requests.
         gid: its globally unique identifier, 16 bytes.
-        type_hash: ``RIHS01_...``; empty where it is not known (Humble does not send it).
+        type_hash: ``RIHS01_...``; empty if it is not known (Humble does not send it).
         local: whether it belongs to this process.
-        host: the machine that it is on; empty where it is not known.
+        host: the machine that it runs on; empty if it is not known.
     """
 
     kind: EndpointKind
@@ -57,15 +57,17 @@ class EndpointInfo:
 
 @dataclass(slots=True)
 class MessageInfo(Mapping[str, Any]):
-    """The metadata of a message (rmw ``rmw_message_info_t``); values are attributes and, as in rclpy, items.
+    """The metadata of a message (rmw ``rmw_message_info_t``).
+
+    The values can be read as attributes and, as in rclpy, as items.
 
     Attributes:
-        source_timestamp: when it was published, nanoseconds since the epoch.
-        received_timestamp: when it was received, nanoseconds since the epoch.
+        source_timestamp: when the message was published, in nanoseconds since the epoch.
+        received_timestamp: when it was received, in nanoseconds since the epoch.
         publisher_gid: the GID of the publisher, 16 bytes.
-        from_outside: whether it comes from another process.
-        publication_sequence_number: counted by the publisher; None where it does not send it.
-        reception_sequence_number: counted by the subscription; None where it does not count.
+        from_outside: whether it was sent by another process.
+        publication_sequence_number: counted by the publisher; None if the publisher does not send it.
+        reception_sequence_number: counted by the subscription; None if the subscription does not count.
     """
 
     source_timestamp: int
@@ -97,10 +99,10 @@ SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
 def check_for_type_support(interface: Any) -> None:
-    """Check that an object is an interface class made by Linkwright (rclpy ``check_for_type_support``).
+    """Check that an object is an interface class of Linkwright (rclpy ``check_for_type_support``).
 
     Raises:
-        AttributeError: it is not.
+        AttributeError: the object is not such a class.
     """
     if isinstance(getattr(interface, "TYPE_NAME", None), str):
         return
@@ -114,11 +116,11 @@ def check_for_type_support(interface: Any) -> None:
 
 
 def check_is_valid_msg_type(msg_type: Any) -> None:
-    """Check that an object is the class of a message.
+    """Check that an object is a message class.
 
     Raises:
-        AttributeError: it is not a class of an interface.
-        RuntimeError: it is the class of a service or action.
+        AttributeError: the object is not an interface class.
+        RuntimeError: the object is a service or action class.
     """
     check_for_type_support(msg_type)
     if "/msg/" not in msg_type.TYPE_NAME and hasattr(msg_type, "Request"):
@@ -126,11 +128,11 @@ def check_is_valid_msg_type(msg_type: Any) -> None:
 
 
 def check_is_valid_srv_type(srv_type: Any) -> None:
-    """Check that an object is the class of a service.
+    """Check that an object is a service class.
 
     Raises:
-        AttributeError: it is not a class of an interface.
-        RuntimeError: it is the class of a message or action.
+        AttributeError: the object is not an interface class.
+        RuntimeError: the object is a message or action class.
     """
     check_for_type_support(srv_type)
     if not (hasattr(srv_type, "Request") and hasattr(srv_type, "Response")):
@@ -144,16 +146,16 @@ _gid_numbers = itertools.count(1)
 
 
 class Endpoint(Part):
-    """One side of a topic or a service.
+    """A publisher, subscription, service or client of this process.
 
     Attributes:
         name: the absolute name of the topic or service.
         type_name: such as ``sensor_msgs/msg/JointState``.
         qos_profile: the QoS that it offers or requests.
         type_hash: the hash of the type (``RIHS01_...``) as other nodes announce it, which takes precedence over the
-            hash of the local definition; empty where none announces one.
-        is_listed: whether other processes see it in the graph; a transport that cannot hide endpoints shows it anyhow.
-        raw: whether its payloads are bytes, CDR with its header, so that the type need not be known here.
+            hash of the local definition; empty if no node announces one.
+        is_listed: whether other processes see it in the graph. A transport that cannot hide endpoints shows it anyway.
+        raw: whether its payloads are bytes (CDR with its header), in which case the type need not be known here.
     """
 
     kind: EndpointKind
@@ -175,7 +177,7 @@ class Endpoint(Part):
 
     @property
     def interface(self) -> Any:
-        """The class of the type; made when it is first asked for."""
+        """The interface class, created on first access."""
         if self._interface is None:
             from linkwright.messages import get_interface
 
@@ -184,7 +186,10 @@ class Endpoint(Part):
 
     @property
     def gid(self) -> bytes:
-        """The endpoint's GID (globally unique identifier), 16 bytes; a transport sets that of its reader or writer."""
+        """The endpoint's GID (globally unique identifier), 16 bytes.
+
+        A transport sets it to the GID of its reader or writer.
+        """
         if not self._gid:
             self._gid = _GID_START + next(_gid_numbers).to_bytes(6, "big")
         return self._gid
@@ -204,36 +209,39 @@ class Endpoint(Part):
         return self.node.logger.name
 
     def info(self) -> EndpointInfo:
-        """Its description, as graph queries return it."""
+        """Return the endpoint's description for graph queries."""
         return EndpointInfo(
             self.kind, self.node.identity, self.name, self.type_name, resolved(self.qos_profile), self.gid, local=True
         )
 
     def begin(self) -> None:
-        """Add it to the graph, which connects it with the endpoints that match."""
+        """Add the endpoint to the graph, which connects it with the matching endpoints."""
         super().begin()
         self.node.graph.add(self)
 
     def retire(self) -> None:
-        """Remove it from the graph."""
+        """Remove the endpoint from the graph."""
         self.node.graph.remove(self)
         super().retire()
 
 
 class MatchListener(Protocol):
-    """Is notified when endpoints match, and when they no longer do."""
+    """A listener that is notified when endpoints match, and when they no longer match."""
 
     def matched(self, change: int) -> None:
-        """The number of matching endpoints changed; negative when some left."""
+        """Handle a change in the number of matching endpoints.
+
+        `change` is negative when endpoints left.
+        """
 
 
 class TopicEndpoint(Endpoint, Generic[M]):
     """A publisher or a subscription.
 
     Attributes:
-        callback_group: the group that decides which callbacks may run at the same time as its own.
-        events: its QoS events; None where there are no callbacks for them.
-        is_alive: of a publisher, whether it has not lost its liveliness.
+        callback_group: the group that decides which callbacks may run at the same time as those of this endpoint.
+        events: its QoS events; None if it has no callbacks for them.
+        is_alive: for a publisher, whether it has kept its liveliness.
     """
 
     callback_group: CallbackGroup
@@ -258,7 +266,7 @@ class TopicEndpoint(Endpoint, Generic[M]):
         return self.interface  # type: ignore[no-any-return]  # made from the name of a type
 
     def set_outside_count(self, count: int) -> None:
-        """Set by the transport: how many endpoints in other processes match."""
+        """Set the number of matching endpoints in other processes. Called by the transport."""
         before, self._outside_count = self._outside_count, count
         if self.events is not None and count != before:
             self.events.matched(count - before)
@@ -292,7 +300,7 @@ class ServiceEndpoint(Endpoint):
             half: ``Request`` or ``Response``.
 
         Raises:
-            TypeError: it is not of the service's type, or not bytes where those are sent.
+            TypeError: the message is not of the service's type, or is not bytes although the endpoint is raw.
         """
         wanted = bytes if self.raw else getattr(self.srv_type, half)
         if not isinstance(message, wanted):
@@ -300,16 +308,19 @@ class ServiceEndpoint(Endpoint):
 
 
 class Presence(Endpoint):
-    """A subscription or a client that other processes see, and that receives no messages and sends no requests.
+    """A subscription or client that only announces itself to other processes.
 
-    A bridge uses it for a subscription or client in another network, and forwards messages and responses to that one.
+    It receives no messages and sends no requests.
+
+    A bridge uses it to represent a subscription or client of another network, to which it forwards messages and
+    responses.
 
     Args:
-        node: its node.
-        info: a subscription or a client.
+        node: the node that owns it.
+        info: the description of a subscription or a client.
 
     Raises:
-        ValueError: `info` is of another kind.
+        ValueError: `info` describes an endpoint of another kind.
     """
 
     raw = True

@@ -1,11 +1,10 @@
-"""The in-process bus, which connects the endpoints of one process; and the interface of transports to others.
+"""The in-process bus, which connects the endpoints of a process, and the interface of transports.
 
 A publisher and a subscription whose QoS is incompatible are not connected, and both nodes are notified of the reason.
 
-The interface of transports, which carry the traffic of a graph to other processes.
-
-In the process a message is handed over as an object. A transport mirrors the endpoints of the process on a network; it
-is called only for topics and services that other processes use. Transports are in the room `linkwright.wire`.
+Transports carry the traffic of a graph to other processes. Inside the process a message is passed as an object. A
+transport mirrors the endpoints of the process on a network; it is called only for topics and services that other
+processes use. Transports are in the room `linkwright.wire`.
 """
 
 from __future__ import annotations
@@ -24,14 +23,15 @@ from linkwright.graph.qos.profile import QoSPolicyKind, QoSProfile
 
 
 class Transport(Protocol):
-    """Mirrors the endpoints of one graph outside of the process.
+    """Mirrors the endpoints of a graph outside the process.
 
-    ``open_*`` is called for each endpoint when it is made, ``close_*`` when it is destroyed; neither may block.
-    Incoming traffic goes to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply,
+    ``open_*`` is called for each endpoint when it is created, ``close_*`` when it is destroyed; neither may block.
+    Incoming traffic is passed to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply,
     request_id)``, from any thread. For outgoing traffic the transport calls ``Publisher.set_outside`` and
-    ``Client.set_outside`` while an endpoint outside matches, and again when none does; for a transient local publisher
-    from the start, so that late joiners are served. It reports the number of matches with ``set_outside_count``, and
-    the number of live publishers among them with ``Subscription.set_outside_liveliness``.
+    ``Client.set_outside`` while an endpoint outside matches, and again when none does any longer. For a transient local
+    publisher it calls ``Publisher.set_outside`` from the start, because late joiners must be served. It reports the
+    number of matches with ``set_outside_count``, and the number of live publishers among them with
+    ``Subscription.set_outside_liveliness``.
     """
 
     def open_node(self, node: NodeIdentity) -> None:
@@ -44,7 +44,10 @@ class Transport(Protocol):
         """Mirror a publisher."""
 
     def close_publisher(self, publisher: Publisher[Any]) -> None:
-        """Stop mirroring a publisher once its reliable messages are acknowledged, or no reader is left to do so."""
+        """Stop mirroring a publisher once its reliable messages are acknowledged.
+
+        It also stops if no reader is left to acknowledge them.
+        """
 
     def open_subscription(self, subscription: Subscription[Any]) -> None:
         """Mirror a subscription."""
@@ -65,49 +68,54 @@ class Transport(Protocol):
         """Stop mirroring a client."""
 
     def open_presence(self, presence: Presence) -> None:
-        """Show an endpoint that takes no part."""
+        """Announce an endpoint that neither receives messages nor sends requests."""
 
     def close_presence(self, presence: Presence) -> None:
-        """Show it no longer."""
+        """Withdraw an endpoint that was announced with `open_presence`."""
 
     def look_around(self) -> None:
-        """Discover the nodes and endpoints outside; called before each query of them.
+        """Discover the nodes and endpoints outside the process; called before each query for them.
 
-        A transport need not discover earlier. It may block the first time, for a few seconds at most; from then on it
-        discovers everything.
+        A transport need not discover them earlier. The first call may block for a few seconds at most; from then on the
+        transport discovers everything.
         """
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
-        """The nodes of other processes, as far as discovery has come.
+        """Return the nodes of other processes that have been discovered so far.
 
-        Nodes that share a name with a node of this process are among them, whoever asked before.
+        The result includes nodes that share their name with a node of this process, regardless of earlier queries.
         """
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
-        """The endpoints of other processes, as far as discovery has come.
+        """Return the endpoints of other processes that have been discovered so far.
 
-        Actions are the services and topics they are made of.
+        Actions are represented by the services and topics that they consist of.
         """
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback for changes of nodes and endpoints outside, called from any thread."""
+        """Register a callback for changes of nodes and endpoints outside.
+
+        It may be called from any thread.
+        """
 
     def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
-        """Register a callback for publishers outside that are lost, called with each from any thread.
+        """Register a callback for lost publishers of other processes.
 
-        Its process was killed or has crashed, or it has not been heard of for longer than it promised. It is called for
-        the first time when a subscription wants to know (`Subscription.watch_lost`).
+        It may be called from any thread.
+        A publisher is lost when its process was killed or crashed, or when it has been silent for longer than it
+        promised.
+        This method is first called when a subscription asks for such notifications (`Subscription.watch_lost`).
         """
 
     def close(self) -> None:
-        """Leave the network; nothing of the transport (no thread, no socket) outlives this."""
+        """Leave the network; no thread or socket of the transport remains open."""
 
 
 E = TypeVar("E", bound=Endpoint)
 
 
 class _Directory(Generic[E]):
-    """Endpoints of one kind by name, each name's in order of creation."""
+    """The endpoints of one kind by name; those that share a name are in order of creation."""
 
     def __init__(self) -> None:
         self._by_name: dict[str, dict[E, None]] = {}
@@ -132,7 +140,10 @@ class _Directory(Generic[E]):
 
 
 class Bus:
-    """Holds all endpoints of the process and connects those that match. It may be used from any thread."""
+    """Holds all endpoints of the process, and connects those that match.
+
+    It may be used from any thread.
+    """
 
     def __init__(self) -> None:
         self._lock = threading.RLock()
@@ -142,7 +153,7 @@ class Bus:
         self._clients: _Directory[Client[Any, Any]] = _Directory()
 
     def add(self, endpoint: Endpoint) -> None:
-        """Connect a new endpoint to those of its name."""
+        """Connect a new endpoint to the matching endpoints with the same name."""
         with self._lock:
             if isinstance(endpoint, Publisher):
                 self._publishers.add(endpoint)
@@ -160,14 +171,21 @@ class Bus:
                 self._find_servers(endpoint.name)
 
     def _match(self, publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
-        """Connect the two, or warn; not of a type that another subscription of the same node takes."""
+        """Connect a publisher and a subscription, or warn of incompatible QoS.
+
+        They stay unconnected if another subscription of the same node takes the publisher's type, and this one another
+        type.
+        """
         kind = publisher.type_name
         others = () if subscription.type_name == kind else self._subscriptions.of(subscription.name)
         if not any(other.node is subscription.node and other.type_name == kind for other in others):
             match(publisher, subscription)
 
     def remove(self, endpoint: Endpoint) -> None:
-        """Remove an endpoint. Messages of a publisher are still delivered; the queue of a subscription is dropped."""
+        """Remove an endpoint.
+
+        Messages that a publisher has sent are still delivered; the queue of a subscription is dropped.
+        """
         with self._lock:
             if isinstance(endpoint, Publisher):
                 self._publishers.remove(endpoint)
@@ -182,17 +200,17 @@ class Bus:
                 self._clients.remove(endpoint)
 
     def publishers(self, topic: str | None = None) -> tuple[Publisher[Any], ...]:
-        """The publishers of a topic, or all of them."""
+        """Return the publishers of a topic, or of all topics."""
         with self._lock:
             return tuple(self._publishers) if topic is None else self._publishers.of(topic)
 
     def subscriptions(self, topic: str | None = None) -> tuple[Subscription[Any], ...]:
-        """The subscriptions to a topic, or all of them."""
+        """Return the subscriptions to a topic, or to all topics."""
         with self._lock:
             return tuple(self._subscriptions) if topic is None else self._subscriptions.of(topic)
 
     def endpoints(self) -> tuple[Endpoint, ...]:
-        """All endpoints."""
+        """Return all endpoints."""
         with self._lock:
             return (*self._publishers, *self._subscriptions, *self._services, *self._clients)
 
@@ -203,7 +221,7 @@ class Bus:
 
 
 def match(publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
-    """Connect the two, or warn both nodes of the policies that are incompatible."""
+    """Connect a publisher and a subscription, or warn both nodes of incompatible QoS policies."""
     if publisher.type_name != subscription.type_name:
         subscription.node.logger.warning(
             f"Topic '{publisher.name}' has different types: '{publisher.node_name}' publishes "
@@ -222,12 +240,14 @@ def match(publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
 
 
 def report_to_subscription(subscription: Subscription[Any], policy: str, sides: str) -> None:
-    """Report to a subscription a publisher that offers less than it requests: by its callback, or in the log.
+    """Report to a subscription that a publisher offers less than it requests.
+
+    The report is made through the subscription's callback, or in the log.
 
     Args:
         subscription: the subscription.
-        policy: the name of the policy.
-        sides: the values that each of the two offers or requests; see `describe_mismatch`.
+        policy: the name of the incompatible policy.
+        sides: the values that the two nodes offer and request; see `describe_mismatch`.
     """
     if subscription.events is not None and subscription.events.incompatible(policy):
         return
@@ -238,7 +258,10 @@ def report_to_subscription(subscription: Subscription[Any], policy: str, sides: 
 
 
 def report_to_publisher(publisher: Publisher[Any], policy: str, sides: str) -> None:
-    """Report to a publisher a subscription that requests more than it offers; see `report_to_subscription`."""
+    """Report to a publisher that a subscription requests more than it offers.
+
+    See `report_to_subscription`.
+    """
     if publisher.events is not None and publisher.events.incompatible(policy):
         return
     publisher.node.logger.warning(
@@ -250,7 +273,7 @@ def report_to_publisher(publisher: Publisher[Any], policy: str, sides: str) -> N
 def describe_mismatch(
     publisher: str, offered: QoSProfile, subscription: str, requested: QoSProfile, policies: list[QoSPolicyKind]
 ) -> str:
-    """The values that two nodes offer and request in the incompatible policies."""
+    """Describe the values that two nodes offer and request in the incompatible policies."""
     return f"'{publisher}' offers {_terms(offered, policies)}, '{subscription}' requests {_terms(requested, policies)}"
 
 

@@ -1,4 +1,7 @@
-"""Tracks the publisher of the last command, so that a drive, for example, can stop when that publisher is lost."""
+"""Tracks the publisher of the last command, and reports when that publisher is lost.
+
+A drive, for example, can then stop.
+"""
 
 from __future__ import annotations
 
@@ -15,16 +18,18 @@ if TYPE_CHECKING:
 
 
 class Commander:
-    """Tracks the publisher of the command in force, and revokes the command when that publisher is lost.
+    """Tracks the publisher of the current command, and revokes it when the publisher is lost.
 
-    A publisher that leaves has ended, and its last command stays in force. A publisher that is lost was killed, has
-    crashed or is out of reach, so it cannot replace its command. Its loss does not affect commands of other publishers.
+    A publisher that leaves the graph has ended in an orderly way, and its last command stays in force. A publisher that
+    is
+    lost was killed, has crashed or is out of reach, so it cannot replace its command. Its loss does not affect the
+    commands of other publishers.
 
     Args:
-        revoke: called with the publisher that is lost, after the last of its commands, as callbacks of its
-            subscription are.
-        drivers: receives each command of `accepting`, to warn of several publishers that command at once; None for no
-            warning.
+        revoke: called with the lost publisher, after its last command, in the same way as the subscription's callback.
+        drivers: receives each command that arrives through `accepting`, to warn of several publishers that send
+            commands
+            at the same time; None for no warning.
     """
 
     def __init__(self, revoke: Callable[[EndpointInfo], object], drivers: DriverWatch | None = None) -> None:
@@ -33,15 +38,18 @@ class Commander:
         self._gid: bytes | None = None
 
     def accepting(self, callback: Callable[[Any], object]) -> Callable[[Any, MessageInfo], object]:
-        """A callback for a subscription to commands: it notes the publisher and passes the message on."""
+        """Return a subscription callback that notes the publisher of a command and passes the command on."""
         return partial(self._accept, callback)
 
     def note_publisher(self, info: MessageInfo) -> None:
-        """Note the publisher of a command that arrived by another callback than those of `accepting`."""
+        """Note the publisher of a command that did not arrive through a callback of `accepting`."""
         self._gid = info.publisher_gid
 
     def watch(self, subscription: Subscription[Any]) -> None:
-        """Watch for lost publishers of a subscription; its callback is of `accepting` or calls `note_publisher`."""
+        """Watch for lost publishers of a subscription.
+
+        Its callback must come from `accepting` or call `note_publisher`.
+        """
         subscription.watch_lost(self._lost)
 
     def _accept(self, callback: Callable[[Any], object], message: Any, info: MessageInfo) -> None:
@@ -57,7 +65,7 @@ class Commander:
 
 
 def describe_lost_publisher(publisher: EndpointInfo) -> Any:
-    """A publisher that was lost, for the log: its node, and its topic."""
+    """Describe a lost publisher in a log message, with its node and topic."""
     node = publisher.node.full_name if publisher.node is not None else ""
     if not node:
         return phrase(

@@ -1,7 +1,8 @@
-"""Content filters: conditions on the fields of messages, in the SQL subset of DDS (OMG DDS 1.4, annex B).
+"""Content filters: conditions on message fields, in the SQL subset of DDS (OMG DDS 1.4, annex B).
 
-An example: ``temperature > 20 AND header.frame_id LIKE 'base%'``. Parameters are written ``%0``, ``%1``, ...; nested
-fields with dots (``header.frame_id``), elements of arrays with an index in brackets (``position[0]``).
+An example: ``temperature > 20 AND header.frame_id LIKE 'base%'``. Parameters are written as ``%0``, ``%1``, ...
+Nested fields are written with dots (``header.frame_id``), and elements of arrays with an index in brackets
+(``position[0]``).
 """
 
 from __future__ import annotations
@@ -41,15 +42,15 @@ _PART = re.compile(r"(\w+)|\[(\d+)\]")
 
 
 class ContentFilterError(ValueError):
-    """A condition that cannot be parsed, or that names fields that the message does not have."""
+    """Raised when a condition cannot be parsed, or names a field or parameter that does not exist."""
 
 
 class ContentFilterOptions(NamedTuple):
     """The content filter of a subscription (rclpy ``ContentFilterOptions``).
 
     Attributes:
-        filter_expression: the condition; empty for none.
-        expression_parameters: the values of ``%0``, ``%1``, ... in it; strings with or without single quotes.
+        filter_expression: the condition; empty for no filter.
+        expression_parameters: the values of ``%0``, ``%1``, ... in the condition; strings may be quoted or not.
     """
 
     filter_expression: str
@@ -61,10 +62,10 @@ class ContentFilter:
 
     Args:
         options: the condition and its parameters.
-        message_class: of the messages.
+        message_class: the class of the messages.
 
     Raises:
-        ContentFilterError: it cannot be parsed, or a field or parameter does not exist.
+        ContentFilterError: the condition cannot be parsed, or a field or parameter does not exist.
     """
 
     def __init__(self, options: ContentFilterOptions, message_class: Any) -> None:
@@ -74,7 +75,7 @@ class ContentFilter:
         self._condition = _Parser(options, message_class).parse()
 
     def accepts(self, message: Any) -> bool:
-        """Whether a message meets the condition."""
+        """Return whether a message meets the condition."""
         return self._condition(message)
 
 
@@ -85,7 +86,7 @@ class _Token:
 
     @property
     def word(self) -> str:
-        """A key word, in capitals; empty for any other token."""
+        """The keyword in capital letters; empty for any other token."""
         return self.text.upper() if self.kind == "name" and self.text.upper() in _WORDS else ""
 
 
@@ -221,7 +222,7 @@ class _Parser:
                 phrase("{type_name} has no field '{path}'", type_name=self._class.TYPE_NAME, path=path)
             ) from None
         except (IndexError, TypeError):
-            pass  # of a sequence, which may be longer in a message
+            pass  # an element of a sequence, which may be longer in a received message
         return lambda message: _reached(message, steps)
 
 
@@ -236,10 +237,10 @@ def _compared(left: _Value, relation: Callable[[Any, Any], Any], right: _Value) 
     def holds(message: Any) -> bool:
         try:
             one, other = left(message), right(message)
-            if isinstance(one, str) != isinstance(other, str):  # a text beside a parameter that looks like a number
+            if isinstance(one, str) != isinstance(other, str):  # a string and a numeric parameter
                 one, other = str(one), str(other)
             return bool(relation(one, other))
-        except (IndexError, TypeError):  # a sequence that is too short, or something that has no order
+        except (IndexError, TypeError):  # the sequence is too short, or the values have no order
             return False
 
     return holds
@@ -250,7 +251,7 @@ def _constant(value: Any) -> _Value:
 
 
 def _literal(text: str) -> Any:
-    """The value of a number, a text with or without quotes, or a truth value."""
+    """Return the value of a literal: a number, a truth value, or a string with or without quotes."""
     text = text.strip()
     if len(text) > 1 and text[0] in "'`" and text[-1] == "'":
         return text[1:-1]

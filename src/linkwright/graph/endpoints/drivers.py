@@ -1,4 +1,4 @@
-"""Detects several publishers that command one robot at the same time, and warns of them in the log."""
+"""Detects, and logs, several publishers that command one robot at the same time."""
 
 from __future__ import annotations
 
@@ -20,18 +20,20 @@ _QUIET_S = 10.0
 
 
 class Dispute:
-    """Detects publishers whose commands replace each other again and again.
+    """Detects publishers whose commands repeatedly replace each other.
 
-    A command takes over when it differs from the one before, which another publisher sent. It is a dispute when several
-    publishers take over repeatedly for a while. These are not disputes: a handover, a stop that another publisher sends
-    at the end, and the second for which nav2's velocity smoother continues when another server begins to drive.
+    A publisher takes over when its command differs from the previous one, which another publisher sent. It is a dispute
+    when several publishers take over repeatedly for a while. These are not disputes: a handover, a stop that another
+    publisher sends at the end, and the second for which nav2's velocity smoother continues when another server begins
+    to
+    drive.
 
     Args:
         lasting_s: how long the parties must contradict each other, in seconds.
-        times: how often each party must take over; the party in command at the start counts once for that.
+        times: how often each party must take over. The party that is in command at the start has one takeover already.
 
     Attributes:
-        parties: the parties of the current dispute, or of the last one.
+        parties: the parties of the current or last dispute.
     """
 
     def __init__(self, lasting_s: float = 3.0, times: int = 3) -> None:
@@ -43,15 +45,15 @@ class Dispute:
         self.parties: frozenset[Hashable] = frozenset()
 
     def hear(self, publisher: Hashable, command: object, now_s: float) -> bool:
-        """Note a command.
+        """Note a command, and return whether it starts a dispute.
 
         Args:
-            publisher: its publisher.
-            command: its content; equal where two commands demand the same.
+            publisher: the publisher of the command.
+            command: its content; two commands that demand the same must compare equal.
             now_s: when it arrived, in seconds.
 
         Returns:
-            Whether a dispute begins, or has a new party.
+            Whether a dispute begins or gains a new party.
         """
         before, self._last = self._last, (publisher, command, now_s)
         if before is None or before[0] == publisher or before[1] == command:
@@ -74,13 +76,13 @@ class Dispute:
 
 
 class KnownEndpoints(Protocol):
-    """The part of the graph that `DriverWatch` asks."""
+    """The graph queries that `DriverWatch` needs."""
 
     def endpoints(self) -> Collection[EndpointInfo]:
-        """All endpoints that are known."""
+        """Return all known endpoints."""
 
     def identities(self) -> Collection[NodeIdentity]:
-        """All nodes that are known, each as often as there are nodes of its name."""
+        """Return all known nodes; a name that several nodes share occurs once for each of them."""
 
 
 class CommandedNode(Protocol):
@@ -88,24 +90,26 @@ class CommandedNode(Protocol):
 
     @property
     def graph(self) -> KnownEndpoints:
-        """The graph that it is in."""
+        """The graph that the node belongs to."""
 
     def get_logger(self) -> Logger:
-        """Its logger."""
+        """Return the node's logger."""
 
     def get_clock(self) -> Clock:
-        """Its clock."""
+        """Return the node's clock."""
 
 
 class DriverWatch:
-    """Warns, once for each change, where several nodes command the same robot at the same time, and names them.
+    """Warns when several nodes command the same robot at the same time, and names them.
 
-    Each message takes effect as it arrives, as in ROS and Gazebo: a dispute is reported and not prevented.
+    It warns once for each change of these nodes. Each message takes effect as it arrives, as in ROS and Gazebo: a
+    dispute
+    is reported and not prevented.
 
     Args:
         logger: logs the warnings.
-        graph: knows which node a publisher belongs to.
-        now_ns: the time that the commands follow, in nanoseconds.
+        graph: finds the node that a publisher belongs to.
+        now_ns: returns the time that the commands follow, in nanoseconds.
     """
 
     def __init__(self, logger: Logger, graph: KnownEndpoints, now_ns: Callable[[], int]) -> None:
@@ -116,17 +120,17 @@ class DriverWatch:
 
     @classmethod
     def of(cls, node: CommandedNode) -> DriverWatch:
-        """A watch that uses the clock of a node and warns in its log."""
+        """Return a watch that uses the clock of a node and warns in its log."""
         return cls(node.get_logger(), node.graph, node.get_clock().now_ns)
 
     def hear(self, message: Any, info: MessageInfo) -> None:
-        """Note a message; of a message with a header the twist counts."""
+        """Note a command message; if it has a header, only its twist is compared."""
         command = getattr(message, "twist", message)
         if self._dispute.hear(info.publisher_gid, command, self._now_ns() / NANOSECONDS_PER_SECOND):
             self._warn()
 
     def _warn(self) -> None:
-        """Warn, if the nodes of at least two parties are known."""
+        """Warn of the dispute if the nodes of at least two parties are known."""
         publishers = publishers_of(self._graph, self._dispute.parties)
         drivers = drivers_of(self._graph, publishers)
         if len(drivers) > 1:
@@ -143,16 +147,16 @@ class DriverWatch:
 
 
 def publishers_of(graph: KnownEndpoints, gids: Collection[Hashable]) -> list[EndpointInfo]:
-    """The publishers with these identifiers."""
+    """Return the publishers with the given GIDs."""
     return [
         endpoint for endpoint in graph.endpoints() if endpoint.kind is EndpointKind.PUBLISHER and endpoint.gid in gids
     ]
 
 
 def drivers_of(graph: KnownEndpoints, publishers: Iterable[EndpointInfo]) -> list[str]:
-    """Full names of the nodes that publishers belong to, sorted; one twice where two nodes have it.
+    """Return the sorted full names of the nodes that own the publishers.
 
-    Publishers of no node, and those whose node is not known yet, are left out.
+    A name that two nodes share occurs twice. Publishers whose node is not known (yet) are left out.
     """
     publishing = Counter(publisher.node.full_name for publisher in publishers if publisher.node is not None)
     present = Counter(identity.full_name for identity in graph.identities())

@@ -1,4 +1,4 @@
-"""QoS events of an endpoint: counted, timed, and queued for the user's callbacks."""
+"""QoS events of an endpoint, which are counted, timed, and queued for the user's callbacks."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ from linkwright.graph.time.clock import Alarm
 
 
 class _Watch:
-    """Calls a function whenever a limit of time passes without a sign of life, of which there was one before."""
+    """Calls a function each time a time limit passes without a sign of life.
+
+    The watch starts with the first sign of life.
+    """
 
     def __init__(self, owner: EndpointEvents, limit: int, missed: Callable[[], None]) -> None:
         self._owner = owner
@@ -42,13 +45,13 @@ class _Watch:
         self._lock = threading.Lock()
 
     def sign(self) -> None:
-        """A sign of life, from any thread: the limit counts from now."""
+        """Note a sign of life, from any thread, which restarts the time limit."""
         with self._lock:
             self._last_ns = self._owner.node.timebase.steady_ns()
             self._arm()
 
     def resume(self) -> None:
-        """Watch on with the owner's dispatcher of now, if there was a sign of life."""
+        """Continue watching with the owner's current dispatcher, if there has been a sign of life."""
         with self._lock:
             self._arm()
 
@@ -77,7 +80,7 @@ class _Watch:
 
 
 class EndpointEvents(Entity):
-    """The QoS events of one endpoint, which wait in a queue for their callbacks as messages do."""
+    """The QoS events of an endpoint, which wait in a queue for their callbacks as messages do."""
 
     _deadline_info: type[EventCount]
 
@@ -96,20 +99,21 @@ class EndpointEvents(Entity):
 
     @property
     def what(self) -> str:
-        """How log messages name it."""
+        """The description of this entity in log messages."""
         return f"event callback of topic '{self._name}'"
 
     def matched(self, change: int) -> None:
-        """The number of endpoints that match changed."""
+        """Count a change in the number of matching endpoints, and notify the callback."""
         self._current += change
         total = self._count("matched", max(change, 0))
         self._notify(self._callbacks.matched, QoSMatchedInfo(total, max(change, 0), self._current, change))
 
     def incompatible(self, policy: str) -> bool:
-        """An endpoint of the other side has incompatible QoS.
+        """Note that an endpoint of the other side has incompatible QoS.
 
         Returns:
-            Whether the warning in the log is left out: a callback is called instead, or the user wants no default.
+            Whether to leave out the warning in the log, because a callback is called instead or the user disabled the
+            default.
         """
         total = self._count("incompatible", 1)
         if self._callbacks.incompatible_qos is None:
@@ -119,15 +123,18 @@ class EndpointEvents(Entity):
         return True
 
     def has_work(self) -> bool:
-        """Whether events wait."""
+        """Return whether events are queued."""
         return bool(self._waiting)
 
     def take(self) -> Callable[[], object] | None:
-        """The call of the callback of the oldest event."""
+        """Remove the oldest event from the queue and return the call of its callback.
+
+        The result is None if there is none.
+        """
         return self._next_of(self._waiting)
 
     def retire(self) -> None:
-        """Never call back again."""
+        """Stop calling callbacks, and drop the queued events."""
         for watch in self._watches:
             watch.stop()
         super().retire()
@@ -172,21 +179,21 @@ class SubscriptionEvents(EndpointEvents):
         self._outside = (0, 0)
 
     def received(self) -> None:
-        """A message arrived, from this process or another."""
+        """Note that a message arrived, from this process or another."""
         if self._deadline is not None:
             self._deadline.sign()
 
     def lost(self, count: int) -> None:
-        """Messages were lost."""
+        """Count lost messages, and notify the callback."""
         self._notify(self._message_lost, QoSMessageLostInfo(self._count("lost", count), count))
 
     def outside(self, alive: int, not_alive: int) -> None:
-        """How many publishers of other processes are alive, and how many have lost their liveliness."""
+        """Set how many publishers of other processes are alive, and how many have lost their liveliness."""
         (alive_before, not_alive_before), self._outside = self._outside, (alive, not_alive)
         self.liveliness(alive - alive_before, not_alive - not_alive_before)
 
     def liveliness(self, alive_change: int, not_alive_change: int) -> None:
-        """Publishers appeared or left, became alive, or lost their liveliness."""
+        """Note that publishers appeared or left, became alive, or lost their liveliness."""
         if not alive_change and not not_alive_change:
             return
         self._alive += alive_change
@@ -200,7 +207,7 @@ class PublisherEvents(EndpointEvents):
 
     Args:
         publisher: the publisher.
-        callbacks: the user's.
+        callbacks: the user's callbacks.
         liveliness_changed: called with -1 when the publisher loses its liveliness, with 1 when it is alive again.
     """
 
@@ -223,17 +230,17 @@ class PublisherEvents(EndpointEvents):
 
     @property
     def wants_messages(self) -> bool:
-        """Whether `published` has to be called for every message."""
+        """Whether `published` must be called for every message."""
         return bool(self._watches)
 
     def published(self) -> None:
-        """A message was published."""
+        """Note that a message was published."""
         if self._deadline is not None:
             self._deadline.sign()
         self.assert_liveliness()
 
     def assert_liveliness(self) -> None:
-        """The publisher asserted that it is alive."""
+        """Note that the publisher asserted its liveliness."""
         if self._lease is not None:
             self._lease.sign()
             if not self._is_alive:
@@ -241,7 +248,10 @@ class PublisherEvents(EndpointEvents):
                 self._liveliness_changed(1)
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Have a dispatcher run the callbacks and watch the time limits from now on; that is a sign of life, too."""
+        """Set the dispatcher that runs the callbacks and watches the time limits.
+
+        This counts as a sign of life.
+        """
         super().set_dispatcher(dispatcher)
         if self._lease is not None:
             self._lease.sign()

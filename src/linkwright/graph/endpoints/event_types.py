@@ -1,6 +1,8 @@
-"""QoS events as callbacks receive them: incompatible QoS, missed deadlines, liveliness, lost messages, matches.
+"""QoS events as callbacks receive them.
 
-The classes have the names of rclpy's (``rclpy.event_handler``).
+The events are incompatible QoS, missed deadlines, liveliness, lost messages and matches.
+
+The classes are named after those of ``rclpy.event_handler``.
 """
 
 from __future__ import annotations
@@ -17,11 +19,11 @@ EventCallback = Callable[[Any], object]
 
 @dataclass(frozen=True, slots=True)
 class EventCount:
-    """How often an event happened.
+    """How often an event occurred.
 
     Attributes:
-        total_count: since the beginning.
-        total_count_change: since the last callback.
+        total_count: the count since the endpoint was created.
+        total_count_change: the count since the last callback.
     """
 
     total_count: int
@@ -41,7 +43,7 @@ class QoSOfferedDeadlineMissedInfo(EventCount):
 
 
 class QoSLivelinessLostInfo(EventCount):
-    """How often a publisher did not assert its liveliness within the lease."""
+    """How often a publisher failed to assert its liveliness within the lease."""
 
     __slots__ = ()
 
@@ -74,7 +76,7 @@ class QoSLivelinessChangedInfo:
 
 @dataclass(frozen=True, slots=True)
 class QoSMatchedInfo(EventCount):
-    """How many endpoints have matched in all, and how many match now."""
+    """How many endpoints have matched in total, and how many match currently."""
 
     current_count: int
     current_count_change: int
@@ -85,7 +87,7 @@ QoSSubscriptionMatchedInfo = QoSMatchedInfo
 
 
 class QoSPublisherEventType(IntEnum):
-    """The kinds of events of a publisher; numbers and names are rcl's."""
+    """The kinds of publisher events, with the numbers and names of rcl."""
 
     RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
     RCL_PUBLISHER_LIVELINESS_LOST = 1
@@ -95,7 +97,7 @@ class QoSPublisherEventType(IntEnum):
 
 
 class QoSSubscriptionEventType(IntEnum):
-    """The kinds of events of a subscription; numbers and names are rcl's."""
+    """The kinds of subscription events, with the numbers and names of rcl."""
 
     RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
     RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
@@ -109,8 +111,8 @@ class EventHandler(NamedTuple):
     """The handler of one kind of event.
 
     Attributes:
-        event_type: the kind.
-        callback: the callback; None where the event is only logged.
+        event_type: the kind of event.
+        callback: the callback; None if the event is only logged.
     """
 
     event_type: QoSPublisherEventType | QoSSubscriptionEventType
@@ -119,15 +121,17 @@ class EventHandler(NamedTuple):
 
 @dataclass(kw_only=True)
 class EndpointEventCallbacks:
-    """A user's callbacks for the events of a publisher or a subscription; each gets the class of its event.
+    """A user's callbacks for the events of a publisher or a subscription.
+
+    Each receives the info object of its event.
 
     Attributes:
         deadline: no message was received, or published, within the deadline.
         incompatible_qos: a subscription requests more than is offered, or a publisher offers less than is requested.
         liveliness: publishers became alive or lost their liveliness; for a publisher, that it lost its own.
-        incompatible_type: accepted as by rclpy, never called; topics of several types are reported in the log.
-        matched: the number of endpoints that match changed.
-        use_default_callbacks: whether incompatible QoS is logged where there is no callback for it.
+        incompatible_type: accepted as in rclpy but never called; topics with several types are reported in the log.
+        matched: the number of matching endpoints changed.
+        use_default_callbacks: whether incompatible QoS is logged if there is no callback for it.
     """
 
     deadline: EventCallback | None = None
@@ -142,7 +146,7 @@ class PublisherEventCallbacks(EndpointEventCallbacks):
     """A user's callbacks for the events of a publisher."""
 
     def handlers(self) -> list[EventHandler]:
-        """The handlers: one for each kind of event that is listened for."""
+        """Return one handler for each kind of event that is monitored."""
         kinds = QoSPublisherEventType
         return _handlers(
             (kinds.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED, self.deadline),
@@ -164,7 +168,7 @@ class SubscriptionEventCallbacks(EndpointEventCallbacks):
     message_lost: EventCallback | None = None
 
     def handlers(self) -> list[EventHandler]:
-        """The handlers: one for each kind of event that is listened for."""
+        """Return one handler for each kind of event that is monitored."""
         kinds = QoSSubscriptionEventType
         return _handlers(
             (kinds.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED, self.deadline),

@@ -1,4 +1,4 @@
-"""Publishers: they hand messages to subscriptions of this process, and to the transport for those of others."""
+"""Publishers, which pass messages to subscriptions of this process and to the transport."""
 
 from __future__ import annotations
 
@@ -25,11 +25,15 @@ M = TypeVar("M")
 
 
 class Publisher(TopicEndpoint[M]):
-    """Publishes messages on a topic, from any thread (rclpy ``Publisher``); made by ``Node.create_publisher``.
+    """Publishes messages on a topic, from any thread (rclpy ``Publisher``).
 
-    Inside the process a message is not copied: once it is published, neither publisher nor receivers may change it.
-    For nodes that may change theirs (`NodeHandle.copies_messages`) a message is serialized when it is published, and
-    deserialized for each subscription.
+    ``Node.create_publisher`` creates it.
+
+    Inside the process a message is not copied: once it is published, neither the publisher nor its receivers may change
+    it.
+    For nodes that may change their messages (`NodeHandle.copies_messages`) a message is serialized when it is
+    published,
+    and deserialized for each subscription.
     """
 
     kind = EndpointKind.PUBLISHER
@@ -66,13 +70,15 @@ class Publisher(TopicEndpoint[M]):
         self._copies = node.copies_messages
         self._is_plain = not keeps and not self._copies
         if event_callbacks is not None:
-            from linkwright.graph.endpoints.endpoint_events import PublisherEvents  # here: few ask for events
+            from linkwright.graph.endpoints.endpoint_events import PublisherEvents  # here: few use events
 
             self.events = PublisherEvents(self, event_callbacks, self._liveliness_changed)
             self._is_plain = self._is_plain and not self.events.wants_messages
 
     def publish(self, msg: M | bytes) -> None:
-        """Send a message to all matching subscriptions, in the order in which they were made; callbacks run later.
+        """Send a message to all matching subscriptions, in the order of their creation.
+
+        Callbacks run later.
 
         Args:
             msg: the message, or its CDR bytes with their header.
@@ -94,17 +100,17 @@ class Publisher(TopicEndpoint[M]):
 
     @property
     def event_handlers(self) -> list[EventHandler]:
-        """The handlers of its events: those with a callback, and those that only log."""
+        """The publisher's event handlers, including those that only log."""
         from linkwright.graph.endpoints.event_types import PublisherEventCallbacks
 
         return (self.event_callbacks or PublisherEventCallbacks()).handlers()
 
     def get_subscription_count(self) -> int:
-        """How many subscriptions receive the messages, inside the process and outside."""
+        """Return the number of subscriptions that receive the messages, inside the process and outside."""
         return len(self._matched) + self._outside_count
 
     def assert_liveliness(self) -> None:
-        """Assert that the publisher is alive, as the liveliness policy MANUAL_BY_TOPIC asks for.
+        """Assert that the publisher is alive, as the liveliness policy MANUAL_BY_TOPIC requires.
 
         Raises:
             InvalidHandleError: the publisher was destroyed.
@@ -118,13 +124,13 @@ class Publisher(TopicEndpoint[M]):
     def wait_for_all_acked(self, timeout: Duration | None = None) -> bool:
         """Block until all reliable subscriptions have acknowledged the published messages.
 
-        Subscriptions of this process receive them at once.
+        Subscriptions of this process receive messages immediately.
 
         Args:
-            timeout: the longest wait; negative or None for no limit.
+            timeout: the maximum wait; negative or None for no limit.
 
         Returns:
-            Whether all have acknowledged; False at the timeout.
+            Whether all have acknowledged; False after the timeout.
         """
         seconds = None if timeout is None or timeout.nanoseconds < 0 else timeout.nanoseconds / 1e9
         if self._held and not self._sent(seconds):
@@ -134,7 +140,10 @@ class Publisher(TopicEndpoint[M]):
     # --- for the bus and the transport ----------------------------------------------------------------------------
 
     def connect(self, subscription: Subscription[Any]) -> None:
-        """Connect a subscription of this process; a transient local one first gets the messages for late joiners."""
+        """Connect a subscription of this process.
+
+        A transient local subscription first receives the messages kept for late joiners.
+        """
         receive = subscription.receiver(self, self.lifespan_ns)
         with self._lock:
             if self._kept and subscription.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL:
@@ -157,13 +166,13 @@ class Publisher(TopicEndpoint[M]):
             self.events.matched(-1)
 
     def begin(self) -> None:
-        """Add it to the graph, after its events."""
+        """Add the publisher to the graph, after its events."""
         if self.events is not None:
             self.node.add(self.events)
         super().begin()
 
     def retire(self) -> None:
-        """Remove it from the graph, and disconnect its subscriptions."""
+        """Remove the publisher from the graph, and disconnect its subscriptions."""
         if self.events is not None:
             self.node.remove(self.events)
         super().retire()
@@ -173,17 +182,21 @@ class Publisher(TopicEndpoint[M]):
         self.outside = None
 
     def matched(self) -> tuple[Subscription[Any], ...]:
-        """The subscriptions of this process that receive the messages."""
+        """Return the subscriptions of this process that receive the messages."""
         return tuple(self._matched)
 
     def hold_for_outside(self, sent: Callable[[float | None], bool]) -> None:
-        """Called by the transport, which calls `set_outside` soon: hold messages until then.
+        """Hold messages until `set_outside` is called.
 
-        Under ROS 2 a subscription that has been discovered gets every message from the publisher's first on. Here the
-        transport makes the writer in a thread of its own, a moment after the publisher.
+        The transport calls this, and `set_outside` soon after.
+
+        Under ROS 2 a subscription that has been discovered receives every message of a publisher, from the first. Here
+        the
+        transport creates the writer in its own thread, a moment after the publisher.
 
         Args:
-            sent: waits until `set_outside` was called, at most the seconds given (None for any time); returns whether
+            sent: waits until `set_outside` was called, for at most the given seconds (None for no limit); returns
+                whether
                 it was.
         """
         with self._lock:
@@ -197,14 +210,14 @@ class Publisher(TopicEndpoint[M]):
         send: Callable[[Any], None] | None,
         acknowledged: Callable[[float | None], bool] | None = None,
     ) -> None:
-        """Called by the transport: send messages to other processes from now on, or no longer.
+        """Set or clear the function that sends messages to other processes. Called by the transport.
 
         Messages that are held, or kept for late joiners, are sent first: none is lost, none is sent twice.
 
         Args:
-            send: called in the publishing thread with each message, or its CDR bytes where those were published; None
+            send: called in the publishing thread with each message, or its CDR bytes if those were published; None
                 to send nothing.
-            acknowledged: waits until all readers have acknowledged, at most the seconds given (None for any time);
+            acknowledged: waits until all readers have acknowledged, for at most the given seconds (None for no limit);
                 returns whether they have.
         """
         with self._lock:
@@ -212,7 +225,7 @@ class Publisher(TopicEndpoint[M]):
             if send is not None and (self.outside is None or held is not None):
                 for message in self._still_valid() if held is None else held:
                     what = f"sending the messages of topic '{self.name}'"
-                    run_logged(self.node.logger, what, partial(send, message))  # the caller of `publish` has returned
+                    run_logged(self.node.logger, what, partial(send, message))  # `publish` has returned
             self.outside = send
             self._acknowledged = acknowledged if send is not None else None
 
@@ -238,7 +251,7 @@ class Publisher(TopicEndpoint[M]):
                 subscription.events.liveliness(change, -change)
 
     def _still_valid(self) -> list[Any]:
-        """The messages kept for late joiners whose lifespan is not over."""
+        """Return the messages kept for late joiners whose lifespan has not expired."""
         if not self._kept:
             return []
         if self.lifespan_ns is not None:

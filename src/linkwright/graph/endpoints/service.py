@@ -1,4 +1,7 @@
-"""Services and clients: requests wait in a queue until a dispatcher runs the callback, which gives the response."""
+"""Services and clients.
+
+Requests wait in a queue until a dispatcher runs the callback, which returns the response.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,7 @@ EVENT_TOPIC_SUFFIX = "/_service_event"
 
 
 class ServiceIntrospectionState(IntEnum):
-    """Which part of a request is published; numbers and names are rclpy's."""
+    """How much of each request is published for introspection, with the numbers and names of rclpy."""
 
     OFF = 0
     METADATA = 1
@@ -44,11 +47,11 @@ class EventType(IntEnum):
 
 
 class RequestId(NamedTuple):
-    """Which request of which client.
+    """The identification of a request and its client.
 
     Attributes:
         client_gid: the GID of the client, 16 bytes.
-        number: counted by the client, from 1.
+        number: the request's sequence number, counted by the client from 1.
     """
 
     client_gid: bytes
@@ -59,13 +62,13 @@ NO_REQUEST_ID = RequestId(bytes(16), 0)
 
 
 class ServiceEvents:
-    """Publishes the events of the requests of one client or service.
+    """Publishes the introspection events of the requests of a client or service.
 
     Args:
-        endpoint: the client or service; the publisher becomes its node's.
+        endpoint: the client or service, whose node owns the publisher.
         clock: stamps the events.
-        qos_profile: how they are published.
-        contents: whether requests and responses are published too.
+        qos_profile: the QoS of the publisher.
+        contents: whether the events include requests and responses.
     """
 
     def __init__(self, endpoint: ServiceEndpoint, clock: Clock, qos_profile: QoSProfile, *, contents: bool) -> None:
@@ -81,7 +84,7 @@ class ServiceEvents:
     def publish_event(
         self, event_type: EventType, request_id: RequestId, *, request: Any = None, response: Any = None
     ) -> None:
-        """Publish an event, with its request or response."""
+        """Publish an event, including its request or response if contents are enabled."""
         info = self._info_class(
             event_type=int(event_type),
             stamp=self.clock.now().to_msg(),
@@ -103,7 +106,7 @@ class IntrospectedEndpoint(ServiceEndpoint):
     """A client or service whose requests can be introspected.
 
     Attributes:
-        service_events: publishes them; None while that is off, which is the default.
+        service_events: publishes the events; None while introspection is off, which is the default.
     """
 
     service_events: ServiceEvents | None = None
@@ -111,12 +114,12 @@ class IntrospectedEndpoint(ServiceEndpoint):
     def configure_introspection(
         self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
     ) -> None:
-        """Publish the events of requests on ``SERVICE/_service_event``, or stop that.
+        """Start or stop publishing the events of requests on ``SERVICE/_service_event``.
 
         Args:
             clock: stamps the events.
-            service_event_qos_profile: the QoS of the publisher; one that exists already keeps its own.
-            introspection_state: whether they are published, and whether with the requests and responses.
+            service_event_qos_profile: the QoS of the publisher; an existing publisher keeps its QoS.
+            introspection_state: whether events are published, and whether they include requests and responses.
 
         Raises:
             InvalidHandleError: the client or service was destroyed.
@@ -134,7 +137,7 @@ class IntrospectedEndpoint(ServiceEndpoint):
             events.contents = state is ServiceIntrospectionState.CONTENTS
 
     def end_introspection(self) -> None:
-        """Publish events no longer."""
+        """Stop publishing events."""
         events, self.service_events = self.service_events, None
         if events is not None:
             events.close()
@@ -150,13 +153,13 @@ _NO_REQUESTS: deque[Any] = deque(maxlen=0)
 
 
 class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
-    """Answers the requests to a service (rclpy ``Service``); made by ``Node.create_service``.
+    """Answers the requests to a service (rclpy ``Service``); created by ``Node.create_service``.
 
     Args:
         callback: called with the request and an empty response, returns the response; it may be a coroutine function.
-        replying: whether the callback gets, in place of the empty response, a function that sends the response, which
-            it may call later.
-        raw: whether requests and responses are bytes, CDR with its header; the callback has to be `replying` then.
+        replying: whether the callback receives, instead of the empty response, a function that sends the response and
+            may be called later.
+        raw: whether requests and responses are bytes (CDR with its header), which requires `replying`.
     """
 
     kind = EndpointKind.SERVICE
@@ -185,7 +188,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
     @property
     def what(self) -> str:
-        """How log messages name it."""
+        """The description of this entity in log messages."""
         return f"callback of service '{self.name}'"
 
     def receive(self, request: Request, reply: Reply, request_id: RequestId = NO_REQUEST_ID) -> None:
@@ -197,16 +200,19 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
             request_id: the client and the request's number, for service introspection.
         """
         if self._waiting is _NO_REQUESTS:
-            vars(self).setdefault("_waiting", deque(maxlen=self.qos_profile.queue_length))  # safe in any thread
+            vars(self).setdefault("_waiting", deque(maxlen=self.qos_profile.queue_length))  # atomic
         self._waiting.append((request, reply, request_id))
         self.announce()
 
     def has_work(self) -> bool:
-        """Whether requests wait."""
+        """Return whether requests are queued."""
         return bool(self._waiting)
 
     def take(self) -> Callable[[], object] | None:
-        """The call that answers the oldest request."""
+        """Remove the oldest request from the queue and return the call that answers it.
+
+        The result is None if there is none.
+        """
         waiting = self._next_of(self._waiting)
         return None if waiting is None else partial(self._answer, *waiting)
 
@@ -215,7 +221,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
         Args:
             response: the response.
-            header: the reply callable that came with the request, in the place of rclpy's request header.
+            header: the reply callable that came with the request, which takes the place of rclpy's request header.
 
         Raises:
             TypeError: the response is not of the service's type.
@@ -224,7 +230,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         header(copy_of(response) if self.node.copies_messages else response)
 
     def retire(self) -> None:
-        """Remove it from the graph; requests in the queue get no response."""
+        """Remove the service from the graph; queued requests get no response."""
         super().retire()
         self._waiting.clear()
         self.end_introspection()
@@ -256,7 +262,7 @@ M = TypeVar("M")
 
 
 def copy_of(message: M) -> M:
-    """A deep copy of a message, made by serializing it.
+    """Return a deep copy of a message, made by serializing it.
 
     Raises:
         MessageDataError: MSG202, the value of a field does not fit the type.
@@ -266,7 +272,7 @@ def copy_of(message: M) -> M:
 
 
 class OutsideService(Protocol):
-    """A server in another process, as a client sees it."""
+    """A server in another process, as a client calls it."""
 
     def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
         """Send a request.
@@ -274,18 +280,19 @@ class OutsideService(Protocol):
         Args:
             request: the request.
             answer: called with the response, from any thread, at most once.
-            number: the request's sequence number, unique for the client.
+            number: the request's sequence number, unique within the client.
 
         Returns:
-            A function that gives the request up.
+            A function that cancels the request.
         """
 
 
 class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
-    """Calls a service (rclpy ``Client``); made by ``Node.create_client``.
+    """Calls a service (rclpy ``Client``); created by ``Node.create_client``.
 
-    Requests that are made before there is a server wait for one, as many as the QoS depth says. Of several servers of
-    the name the oldest of this process is called, else one of another process.
+    Requests that are made before a server exists wait for one; at most as many as the QoS depth are kept. If several
+    servers have the name, the oldest of this process is called, and a server of another process only if this process
+    has none.
     """
 
     kind = EndpointKind.CLIENT
@@ -315,11 +322,11 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
     @property
     def what(self) -> str:
-        """How log messages name it."""
+        """The description of this entity in log messages."""
         return f"client of service '{self.name}'"
 
     def service_is_ready(self) -> bool:
-        """Whether a server is available.
+        """Return whether a server is available.
 
         Raises:
             InvalidHandleError: the client was destroyed.
@@ -331,10 +338,10 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         """Block the calling thread until a server is available.
 
         Args:
-            timeout_sec: seconds to wait at most; None for any time.
+            timeout_sec: the maximum wait, in seconds; None for no limit.
 
         Returns:
-            Whether one is available. False also when the graph is closed meanwhile.
+            Whether a server is available. False also if the graph is closed in the meantime.
         """
         return self.node.graph.wait_until(self.service_is_ready, timeout_sec)
 
@@ -359,14 +366,16 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return future
 
     def call(self, request: Request, timeout_sec: float | None = None) -> Response | None:
-        """Send a request, and block until the response arrives. Another thread must run the node's callbacks.
+        """Send a request, and block until the response arrives.
+
+        Another thread must run the node's callbacks in the meantime.
 
         Args:
             request: the request.
-            timeout_sec: seconds to wait at most; None for any time.
+            timeout_sec: the maximum wait, in seconds; None for no limit.
 
         Returns:
-            The response; None, as in Jazzy, if none arrives in time.
+            The response; None, as in Jazzy, if it does not arrive in time.
 
         Raises:
             TypeError: the request is not of the service's type.
@@ -385,7 +394,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return future.result()
 
     def remove_pending_request(self, future: Future[Any]) -> None:
-        """Give a request up: its future will get no response."""
+        """Cancel a request: its future will not receive a response."""
         with self._lock:
             forget = self._pending.pop(future, None)
             self._unsent = deque(
@@ -397,15 +406,15 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     # --- for dispatchers ---------------------------------------------------------------------------------------------
 
     def has_work(self) -> bool:
-        """Whether responses wait."""
+        """Return whether responses are queued."""
         return bool(self._endings)
 
     def take(self) -> Callable[[], object] | None:
-        """The call that completes the future of the oldest response."""
+        """Return the call that completes the future of the oldest response; None if there is none."""
         return self._next_of(self._endings)
 
     def retire(self) -> None:
-        """Remove it from the graph, and give up all requests."""
+        """Remove the client from the graph, and cancel all requests."""
         with self._lock:
             pending, self._pending = self._pending, {}
             self._unsent.clear()
@@ -420,12 +429,15 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     # --- for the bus and the transport ---------------------------------------------------------------------------
 
     def set_server(self, server: Service[Request, Response] | None) -> None:
-        """Call a service of this process from now on; None for none."""
+        """Set the service of this process that requests go to; None if there is none."""
         self._server = server
         self._send_waiting()
 
     def set_outside(self, outside: OutsideService | None) -> None:
-        """Called by the transport: the server in another process to call where this one has none; None for none."""
+        """Set the server in another process, which is called if this process has none.
+
+        The transport calls this. None means that there is no such server.
+        """
         self.outside = outside
         self._send_waiting()
         self.node.graph.notify_change()
@@ -465,7 +477,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self._end(future, partial(self._hand_over, future, request_id, response))
 
     def _end(self, future: Future[Response], end: Callable[[], None]) -> None:
-        """Schedule the end of a future as a callback, unless the request was cancelled."""
+        """Queue a callback that completes a future, unless the request was cancelled."""
         if self._pending.pop(future, None) is not None:
             self._endings.append(end)
             self.announce()
@@ -477,4 +489,4 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
 
 def _nothing() -> None:
-    """Cancels a request to a service of this process: nothing needs to be undone."""
+    """Do nothing: a request to a service of this process needs no cancellation."""

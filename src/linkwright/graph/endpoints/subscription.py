@@ -1,4 +1,4 @@
-"""Subscriptions: messages wait in a queue until a dispatcher runs the callback."""
+"""Subscriptions, whose messages wait in a queue until a dispatcher runs the callback."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ M = TypeVar("M")
 
 @dataclass(slots=True)
 class Detailed:
-    """A message in the queue, with its metadata.
+    """A queued message with its metadata.
 
     Attributes:
         message: the message, or its CDR bytes.
-        info: the source and time of the message.
-        expires_ns: the steady time at which its lifespan ends, nanoseconds; None for no lifespan.
+        info: the publisher and times of the message.
+        expires_ns: the steady time at which its lifespan ends, in nanoseconds; None for no lifespan.
     """
 
     message: Any
@@ -48,9 +48,12 @@ class CallbackType(Enum):
 
 
 class Subscription(TopicEndpoint[M], Entity):
-    """Receives the messages of a topic (rclpy ``Subscription``); made by ``Node.create_subscription``.
+    """Receives the messages of a topic (rclpy ``Subscription``).
 
-    Messages wait in a queue, whose length QoS history and depth give; when it is full, the oldest is dropped.
+    Created by ``Node.create_subscription``.
+
+    Messages wait in a queue whose length follows from the QoS history and depth. When it is full, the oldest message is
+    dropped.
     """
 
     kind = EndpointKind.SUBSCRIPTION
@@ -80,7 +83,7 @@ class Subscription(TopicEndpoint[M], Entity):
         self.event_callbacks = event_callbacks
         self.events: SubscriptionEvents | None = None
         if event_callbacks is not None:
-            from linkwright.graph.endpoints.endpoint_events import SubscriptionEvents  # here: few ask for events
+            from linkwright.graph.endpoints.endpoint_events import SubscriptionEvents  # here: few use events
 
             self.events = SubscriptionEvents(self, event_callbacks)
         self._publishers: dict[TopicEndpoint[Any], None] = {}
@@ -91,15 +94,15 @@ class Subscription(TopicEndpoint[M], Entity):
 
     @property
     def what(self) -> str:
-        """How log messages name it."""
+        """The description of this entity in log messages."""
         return f"callback of topic '{self.name}'"
 
     @property
     def callback(self) -> Callable[..., object]:
-        """The callback; it is called with the message, and with a `MessageInfo` if it takes two arguments.
+        """The callback, called with the message, and with a `MessageInfo` if it takes two arguments.
 
         Raises:
-            RuntimeError: the callback takes neither one argument nor two.
+            RuntimeError: the callback takes neither one nor two arguments.
         """
         return self._callback
 
@@ -123,13 +126,13 @@ class Subscription(TopicEndpoint[M], Entity):
 
     @property
     def event_handlers(self) -> list[EventHandler]:
-        """The handlers of its events: those with a callback, and those that only log."""
+        """The subscription's event handlers, including those that only log."""
         from linkwright.graph.endpoints.event_types import SubscriptionEventCallbacks
 
         return (self.event_callbacks or SubscriptionEventCallbacks()).handlers()
 
     def get_publisher_count(self) -> int:
-        """How many publishers it receives from."""
+        """Return the number of publishers that the subscription receives from."""
         return len(self._publishers) + self._outside_count
 
     @property
@@ -138,7 +141,7 @@ class Subscription(TopicEndpoint[M], Entity):
         return self._filter is not None
 
     def get_content_filter(self) -> ContentFilterOptions:
-        """The content filter in force; an empty one where there is none."""
+        """Return the content filter in force; an empty one if there is none."""
         from linkwright.graph.endpoints.content_filter import ContentFilterOptions
 
         return ContentFilterOptions("") if self._filter is None else self._filter.options
@@ -159,34 +162,42 @@ class Subscription(TopicEndpoint[M], Entity):
         self._filter = ContentFilter(options, self.msg_type) if filter_expression.strip() else None
 
     def watch_lost(self, lost: Callable[[EndpointInfo], object]) -> None:
-        """Register a callback for lost publishers of other processes; it runs as the subscription's callback does.
+        """Register a callback for lost publishers of other processes.
 
-        The publisher's process was killed or has crashed, or is out of reach. Its messages are delivered before.
+        It runs in the same way as the subscription's callback.
+        A publisher is lost when its process was killed, crashed or is out of reach. Its messages are delivered first.
         """
         self._on_lost = lost
         self.node.graph.watch_lost()
 
     def publisher_lost(self, publisher: EndpointInfo) -> None:
-        """Called by the graph, from any thread: a publisher outside is gone without having left."""
+        """Queue the notification of a lost publisher outside the process.
+
+        The graph calls this, from any thread.
+        """
         if self._on_lost is not None:
             self._lost.append(publisher)
             self.announce()
 
     def take_together(self) -> None:
-        """From now on a call hands the callback all messages that wait, one after the other.
+        """From now on, pass all queued messages to the callback, one after the other, in a single call.
 
-        For callbacks that are soon done and have many messages, as those of tf: with a message a turn, a loop that is
-        busy otherwise would be the length of the queue late.
+        This is for short callbacks with many messages, such as those of tf. With one message per call, a loop that has
+        other
+        work would lag behind by the length of the queue.
         """
         self._together = True
 
     def set_outside_liveliness(self, alive: int, not_alive: int) -> None:
-        """Set by the transport: how many matching publishers in other processes are alive, and how many are not."""
+        """Set how many matching publishers in other processes are alive, and how many are not.
+
+        The transport calls this.
+        """
         if self.events is not None:
             self.events.outside(alive, not_alive)
 
     def lost_outside(self, count: int) -> None:
-        """Called by the transport: messages from other processes were lost."""
+        """Count lost messages of other processes. Called by the transport."""
         if self.events is not None:
             self.events.lost(count)
 
@@ -194,15 +205,15 @@ class Subscription(TopicEndpoint[M], Entity):
         """Queue a message for the callback, from any thread.
 
         Args:
-            message: the message, or its CDR bytes, which are deserialized when the callback's turn comes.
-            info: its metadata; needed for messages of other processes.
+            message: the message, or its CDR bytes, which are deserialized just before the callback is called.
+            info: its metadata; required for messages of other processes.
         """
         intake = self.node.intake
         if intake is None or intake(self, message):
             self.enqueue(message, info)
 
     def enqueue(self, message: M | bytes | Detailed, info: MessageInfo | None = None) -> None:
-        """Queue a message for the callback, whatever the node's `intake` returns; see `receive`."""
+        """Queue a message for the callback without asking the node's `intake`; see `receive`."""
         if self._filter is not None and not self._is_wanted(message, self._filter):
             return
         if self.events is not None:
@@ -215,11 +226,11 @@ class Subscription(TopicEndpoint[M], Entity):
                 dispatcher.ready(self)
 
     def receiver(self, publisher: TopicEndpoint[Any], lifespan_ns: int | None) -> Callable[[Any], None]:
-        """The function that a publisher of this process calls with each message.
+        """Return the function that a publisher of this process calls with each message.
 
         Args:
             publisher: the publisher.
-            lifespan_ns: the lifespan of its messages, nanoseconds; None for no limit.
+            lifespan_ns: the lifespan of its messages, in nanoseconds; None for no limit.
         """
         if not self._wants_info and lifespan_ns is None and self.events is None:
             return self.receive
@@ -237,24 +248,29 @@ class Subscription(TopicEndpoint[M], Entity):
         return receive
 
     def connected(self, publisher: TopicEndpoint[Any]) -> None:
-        """Called by a publisher of this process that was connected."""
+        """Note that a publisher of this process was connected. Called by the publisher."""
         self._publishers[publisher] = None
         if self.events is not None:
             self.events.matched(1)
             self.events.liveliness(int(publisher.is_alive), int(not publisher.is_alive))
 
     def disconnected(self, publisher: TopicEndpoint[Any]) -> None:
-        """Called by a publisher of this process that was disconnected."""
+        """Note that a publisher of this process was disconnected. Called by the publisher."""
         if self._publishers.pop(publisher, self) is None and self.events is not None:
             self.events.matched(-1)
             self.events.liveliness(-int(publisher.is_alive), -int(not publisher.is_alive))
 
     def has_work(self) -> bool:
-        """Whether messages wait."""
+        """Return whether messages or notifications of lost publishers are queued."""
         return bool(self._waiting or self._lost)
 
     def take(self) -> Callable[[], object] | None:
-        """The call of the callback with the oldest message; after the last one that of a publisher that is lost."""
+        """Remove the oldest message from the queue and return the call of its callback.
+
+        The result is None if there is nothing to call.
+
+        When no messages are left, the notification of a lost publisher is next.
+        """
         self._announced = False
         waiting = self._waiting
         try:
@@ -278,7 +294,7 @@ class Subscription(TopicEndpoint[M], Entity):
         self._lost.clear()
 
     def retire(self) -> None:
-        """Never call back again."""
+        """Stop calling callbacks, and drop the queued messages."""
         super().retire()
         self.discard()
         if self.events is not None:
@@ -300,7 +316,10 @@ class Subscription(TopicEndpoint[M], Entity):
         return self._prepared(item)
 
     def _prepared(self, item: Any) -> Callable[[], object] | None:
-        """The call for CDR bytes, or for a message with metadata."""
+        """Return the call of the callback for CDR bytes or for a message with metadata.
+
+        The result is None if there is nothing to call.
+        """
         if type(item) is bytes and not self._wants_info and not self.raw:
             message = self._read(item)
             return None if message is None else partial(self._callback, message)
@@ -326,7 +345,10 @@ class Subscription(TopicEndpoint[M], Entity):
         return serialize(message)
 
     def _is_wanted(self, message: Any, content_filter: ContentFilter) -> bool:
-        """Whether the content filter lets a message in; one that cannot be decoded passes, and is reported later."""
+        """Return whether the content filter accepts a message.
+
+        A message that cannot be decoded is accepted, and reported later.
+        """
         inner = message.message if type(message) is Detailed else message
         if isinstance(inner, (bytes, bytearray, memoryview)):
             try:
@@ -336,7 +358,7 @@ class Subscription(TopicEndpoint[M], Entity):
         return content_filter.accepts(inner)
 
     def _read(self, data: bytes | bytearray | memoryview) -> Any:
-        """The decoded message; None, which is logged once, when the bytes cannot be decoded."""
+        """Decode a message; if that fails, log it once and return None."""
         try:
             return deserialize(data, self.msg_type)
         except LinkwrightError as error:

@@ -1,4 +1,4 @@
-"""The base of all executors: nodes, ready work, tasks and shutdown (rclpy ``executors.Executor``)."""
+"""The base of all executors (rclpy ``executors.Executor``): nodes, ready work, tasks, shutdown."""
 
 from __future__ import annotations
 
@@ -35,38 +35,42 @@ _POSTPONED_AT_MOST = 2
 
 
 class Context(Protocol):
-    """The context that tells executors whether the program continues (rclpy ``Context``)."""
+    """A context that determines whether the program continues (rclpy ``Context``)."""
 
     def ok(self) -> bool:
-        """Whether the program is to continue."""
+        """Return whether the program should continue."""
 
     def on_shutdown(self, callback: Callable[[], None]) -> None:
-        """Register a callback for the shutdown."""
+        """Register a callback for the shutdown of the context."""
 
 
 class SpunNode(Protocol):
-    """A node, as an executor sees it."""
+    """The interface of a node that an executor needs."""
 
     @property
     def handle(self) -> NodeHandle:
-        """Its handle in the graph."""
+        """The node's handle in the graph."""
 
 
 def deadline_after(timeout_sec: float | None) -> int | None:
-    """The count of ``time.monotonic_ns`` at which a timeout in seconds is over; None and negative numbers have none."""
+    """Return the value of ``time.monotonic_ns`` at which a timeout ends.
+
+    Returns None if the timeout is None or negative, which means no limit.
+    """
     if timeout_sec is None or timeout_sec < 0:
         return None
     return time.monotonic_ns() + int(timeout_sec * NANOSECONDS_PER_SECOND)
 
 
 class Executor:
-    """Runs the callbacks of nodes in the threads of its choice; a base class for users' own executors.
+    """Runs the callbacks of nodes; the base class of all executors, including users' own.
 
-    A user's own defines `spin_once`, and gets its work from `wait_for_ready_callbacks`. As in rclpy the class is not
+    A user's executor defines `spin_once`, and gets its work from `wait_for_ready_callbacks`. As in rclpy the class is
+    not
     abstract, and may be instantiated.
 
     Args:
-        context: when this is no longer ok, spinning ends; None for an executor without one.
+        context: spinning ends when this context is no longer ok; None for an executor without a context.
     """
 
     def __init__(self, *, context: Context | None = None) -> None:
@@ -89,11 +93,14 @@ class Executor:
 
     @property
     def is_spinning(self) -> bool:
-        """Whether a thread spins."""
+        """Whether a thread is spinning the executor."""
         return bool(self._spinners)
 
     def add_node(self, node: SpunNode) -> bool:
-        """Run the callbacks of a node from now on. False when the executor does so already, or was shut down."""
+        """Run the callbacks of a node from now on.
+
+        Returns False if the executor already does, or was shut down.
+        """
         with self._nodes_lock:
             if self._is_shutdown or node.handle in self._nodes:
                 return False
@@ -106,7 +113,10 @@ class Executor:
         return True
 
     def remove_node(self, node: SpunNode) -> None:
-        """Run the callbacks of a node no longer; callbacks that are due by then wait for its next executor."""
+        """Stop running the callbacks of a node.
+
+        Callbacks that are due wait for the node's next executor.
+        """
         with self._nodes_lock:
             if self._nodes.pop(node.handle, None) is None:
                 return
@@ -114,7 +124,7 @@ class Executor:
         self.wake()
 
     def get_nodes(self) -> list[Any]:
-        """The nodes that were added."""
+        """Return the nodes that were added."""
         with self._nodes_lock:
             return list(self._nodes.values())
 
@@ -133,7 +143,7 @@ class Executor:
     def create_task(self, callback: Coroutine[Any, Any, T], *args: Any, **kwargs: Any) -> Task[T]: ...
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
-        """Run a callable or a coroutine while the executor spins, after the work that is ready by now.
+        """Run a callable or a coroutine while the executor spins, after the work that is already ready.
 
         Args:
             callback: a callable, a coroutine function or a coroutine.
@@ -145,7 +155,7 @@ class Executor:
         return task
 
     def create_future(self) -> Future[Any]:
-        """A future whose done callbacks are run by this executor."""
+        """Create a future whose done callbacks this executor runs."""
         return Future(executor=self)
 
     def spin(self) -> None:
@@ -154,15 +164,18 @@ class Executor:
             self.spin_once()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for one callback and run it.
+        """Wait for a callback and run it.
 
         Args:
-            timeout_sec: the longest wait, in seconds; none at 0, no limit when None or negative.
+            timeout_sec: the maximum wait, in seconds; 0 for no wait, None or a negative number for no limit.
         """
         raise NotImplementedError
 
     def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
-        """Run callbacks until a future is done or cancelled, or `timeout_sec` seconds have passed (None: no limit)."""
+        """Run callbacks until a future is done or cancelled, or the timeout has passed.
+
+        `timeout_sec` is in seconds; None means no limit.
+        """
         report_self_wait(future)
         future.add_waiter(self.wake)
         deadline_ns = deadline_after(timeout_sec)
@@ -176,18 +189,18 @@ class Executor:
                 return
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
-        """As `spin_once`, but the wait ends when the future is done, too."""
+        """Wait for a callback and run it, as `spin_once` does, but stop waiting when the future is done."""
         future.add_waiter(self.wake)
         self.spin_once(timeout_sec)
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Run no further callbacks, and wait for those that run in other threads.
+        """Stop running callbacks, and wait for those that are running in other threads.
 
         Args:
-            timeout_sec: the longest wait, in seconds; no limit when None or negative.
+            timeout_sec: the maximum wait, in seconds; None or a negative number for no limit.
 
         Returns:
-            Whether all have ended.
+            Whether all of them have ended.
         """
         self._is_shutdown = True
         self._work.wake()
@@ -200,7 +213,7 @@ class Executor:
         return True
 
     def can_execute(self, entity: Any) -> bool:
-        """Whether the callback group of an entity lets it run now."""
+        """Return whether the callback group of an entity lets it run now."""
         return bool(entity.unblockable or entity.callback_group.can_execute(entity))
 
     def wait_for_ready_callbacks(
@@ -209,35 +222,36 @@ class Executor:
         nodes: Sequence[SpunNode] | None = None,
         condition: Callable[[], bool] | None = None,
     ) -> tuple[Task[Any], Any, Any]:
-        """Wait for work.
+        """Wait for a callback or task that is ready to run.
 
         Args:
-            timeout_sec: the longest wait, in seconds; none at 0, no limit when None or negative.
-            nodes: whose callbacks to wait for; those of all nodes when None.
-            condition: ends the wait when it gives True after a `wake`.
+            timeout_sec: the maximum wait, in seconds; 0 for no wait, None or a negative number for no limit.
+            nodes: the nodes whose callbacks to wait for; None for all nodes.
+            condition: ends the wait when it returns True after a `wake`.
 
         Returns:
-            A task to be called, whose ``exception()`` gives the error afterwards; its entity (None for a task that was
-            made by `create_task`); and its node.
+            A task to be called, whose ``exception()`` returns the error afterwards; its entity (None for a task that
+            was
+            created by `create_task`); and its node.
 
         Raises:
             TimeoutException: no work was ready in time.
             ShutdownException: the executor was shut down.
             ExternalShutdownException: the context was shut down.
-            ConditionReachedException: the condition has come true.
+            ConditionReachedException: the condition has become true.
         """
         return next(self._wait_for_ready_callbacks(timeout_sec, nodes, condition))
 
     def ready(self, entity: Entity) -> None:
-        """See ``Dispatcher.ready``."""
+        """Queue an entity that has work; see ``Dispatcher.ready``."""
         self._work.add(entity)
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledCall:
-        """See ``Dispatcher.call_at``; the count is that of ``time.monotonic_ns``."""
+        """Schedule a callback for a value of ``time.monotonic_ns``; see ``Dispatcher.call_at``."""
         return self._work.call_at(steady_ns, callback)
 
     def run_again(self, task: Task[Any]) -> None:
-        """Give a task its next turn."""
+        """Queue a task for its next step."""
         self._work.add(task)
 
     def __enter__(self) -> Self:
@@ -257,7 +271,10 @@ class Executor:
         nodes: Sequence[SpunNode] | None = None,
         condition: Callable[[], bool] | None = None,
     ) -> Iterator[tuple[Task[Any], Any, Any]]:
-        """Give one piece of work after another; see `wait_for_ready_callbacks`."""
+        """Yield ready tasks, with their entities and nodes, one after another.
+
+        See `wait_for_ready_callbacks`.
+        """
         wanted = None if nodes is None else {node.handle for node in nodes}
         while True:
             deadline_ns = deadline_after(timeout_sec)
@@ -275,9 +292,10 @@ class Executor:
                 yield self._handler(item), item, self._nodes.get(item.node)
 
     def _next(self, deadline_ns: int | None, condition: Callable[[], bool] | None, *, begin: bool = True) -> Any:
-        """The next task to run, or entity whose group lets it run and, if `begin`, was notified that it begins.
+        """Wait for the next task, or the next entity that its callback group lets run, and return it.
 
-        Raises as `wait_for_ready_callbacks` does.
+        If `begin` is true, the group has been notified that the entity begins. Raises the same errors as
+        `wait_for_ready_callbacks`.
         """
         while True:
             if self._is_shutdown:
@@ -295,7 +313,10 @@ class Executor:
                 return item
 
     def _admit(self, item: Any, *, begin: bool = True) -> bool:
-        """Whether work that was taken out of the queue can run now; an entity that may not yet is put aside."""
+        """Return whether work taken from the queue can run now.
+
+        An entity that must still wait is set aside.
+        """
         if isinstance(item, Task):
             return not item.ended()
         if item.dispatcher is not self:
@@ -309,10 +330,11 @@ class Executor:
         return False
 
     def _postpone(self, answer: Entity) -> bool:
-        """Put the answer that a client got behind other ready work, and behind the work that it makes ready.
+        """Move a client's answer behind the work that is ready, and work that follows from it.
 
-        rclpy runs tasks and messages first: a client that waits for an action's answer to a goal has its feedback by
-        then, if the goal was executed meanwhile.
+        Returns whether the answer was postponed. rclpy runs tasks and messages first: when a client learns that its
+        goal was
+        accepted, it already has the feedback, if the goal was executed in the meantime.
         """
         if answer.postponed >= _POSTPONED_AT_MOST or not self._work.has_ready():
             answer.postponed = 0
@@ -322,7 +344,9 @@ class Executor:
         return True
 
     def _execute(self, item: Any) -> None:
-        """Run a task up to its next await, or the next call of an entity whose group knows that it begins.
+        """Run a task up to its next await, or the next call of an entity.
+
+        The entity's group must have been notified that it begins.
 
         Exceptions of the user's code propagate.
         """
@@ -371,13 +395,13 @@ class Executor:
 
     def _block(self, entity: Entity) -> None:
         self._blocked.append(entity)
-        if entity.callback_group.can_execute(entity):  # the one it waited for has ended meanwhile
+        if entity.callback_group.can_execute(entity):  # the member it waited for has just ended
             self._release_blocked()
 
     def _release_blocked(self) -> None:
         released = []
         while self._blocked:
-            with suppress(IndexError):  # another thread was quicker
+            with suppress(IndexError):  # another thread was faster
                 released.append(self._blocked.popleft())
         if released:
             self._work.add_first(released)
@@ -411,7 +435,7 @@ def _raise_fault(task: Task[Any]) -> None:
 
 
 class SpinningExecutor(Executor):
-    """An executor whose spinning is a loop; subclasses define one turn of it."""
+    """An executor that spins in a loop; subclasses define a single turn of the loop."""
 
     def spin(self) -> None:
         """Run callbacks until the executor or the context is shut down."""
@@ -423,11 +447,14 @@ class SpinningExecutor(Executor):
             self._spinner_ends()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for one callback and have it run; see ``Executor.spin_once``."""
+        """Wait for a callback and have it run; see ``Executor.spin_once``."""
         self._single_turn(timeout_sec, None)
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
-        """As `spin_once`, but the wait ends when the future is done, too."""
+        """Wait for a callback and have it run, but stop waiting when the future is done.
+
+        Apart from that it works like `spin_once`.
+        """
         future.add_waiter(self.wake)
         self._single_turn(timeout_sec, future.ended)
 
@@ -440,9 +467,49 @@ class SpinningExecutor(Executor):
 
     @abstractmethod
     def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
-        """Wait for one callback and have it run.
+        """Wait for a callback and have it run.
 
         Args:
-            deadline_ns: the count of ``time.monotonic_ns`` at which the wait ends; None for any time.
-            condition: ends the wait when it gives True after a `wake`.
+            deadline_ns: the value of ``time.monotonic_ns`` at which the wait ends; None for no limit.
+            condition: ends the wait when it returns True after a `wake`.
+
+        Runs callbacks in a pool of threads, as far as their groups allow (rclpy ``MultiThreadedExecutor``).
+
+        The spinning thread hands out work to at most as many threads as the pool has; other work waits with its
+        entities,
+        according to their QoS. `spin_once` does not wait until the work that it handed out ends. If a callback raises
+        an
+        exception, ``spin`` raises it in the spinning thread.
+
+        Args:
+            num_threads: the number of threads; None for the number of processors of the process.
+            context: see `Executor`.
+
+        Stop running callbacks; wait for those that are running, and for the threads to end.
+
+        Args:
+            timeout_sec: the maximum wait, in seconds; None or a negative number for no limit.
+            wait_for_threads: False to return without waiting for the threads.
+
+        Returns:
+            Whether all of them have ended.
+
+        Run a task and, while the executor spins, the work that becomes ready next; this avoids a thread switch.
+
+        A pool of daemon threads, each started when it is needed.
+
+        Args:
+            limit: the maximum number of threads.
+            name: the prefix of the threads' names.
+            freed: called when a job has ended and its thread is free for the next one.
+
+        Whether a job that is submitted now would start immediately.
+
+        End the threads after the submitted jobs, and wait for the threads.
+
+        Args:
+            timeout_sec: the maximum wait, in seconds; None for no limit.
+
+        Returns:
+            Whether all have ended. A thread that calls this method does not wait for itself.
         """

@@ -23,14 +23,14 @@ from linkwright.process.processors import usable_processors
 
 
 class MultiThreadedExecutor(SpinningExecutor):
-    """Runs callbacks in a pool of threads, as far as their groups allow (rclpy ``MultiThreadedExecutor``).
+    """Runs callbacks in a pool of threads, as groups allow (rclpy ``MultiThreadedExecutor``).
 
-    The thread that spins gives out the work, at most as much as there are threads; the rest waits with its entities,
-    by their quality of service. `spin_once` does not wait for the end of the work that it gave out. The exception of a
-    callback leaves ``spin`` in the thread that spins.
+    The spinning thread hands out work to at most as many threads as the pool has; other work waits with its entities,
+    according to their QoS. `spin_once` does not wait until the work that it handed out ends. If a callback raises an
+    exception, ``spin`` raises it in the spinning thread.
 
     Args:
-        num_threads: how many threads; as many as the process has processors when None.
+        num_threads: the number of threads; None for the number of processors of the process.
         context: see `Executor`.
     """
 
@@ -57,14 +57,14 @@ class MultiThreadedExecutor(SpinningExecutor):
             self._is_spinning = False
 
     def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
-        """Run no further callbacks; wait for those that run, and for the threads to end.
+        """Stop running callbacks; wait for those that are running, and for the threads to end.
 
         Args:
-            timeout_sec: the longest wait, in seconds; no limit when None or negative.
-            wait_for_threads: False to leave the threads to end by themselves.
+            timeout_sec: the maximum wait, in seconds; None or a negative number for no limit.
+            wait_for_threads: False to return without waiting for the threads.
 
         Returns:
-            Whether all have ended.
+            Whether all of them have ended.
         """
         deadline_ns = deadline_after(timeout_sec)
         ended = super().shutdown(timeout_sec)
@@ -98,7 +98,10 @@ class MultiThreadedExecutor(SpinningExecutor):
             raise self._faults.popleft()
 
     def _run(self, item: Any) -> None:
-        """Run a task and, while the executor spins, the work that is ready after it, which spares a thread switch."""
+        """Run a task and, while the executor spins, the work that becomes ready next.
+
+        This avoids a thread switch.
+        """
         while item is not None:
             try:
                 self._execute(item)
@@ -119,12 +122,12 @@ class MultiThreadedExecutor(SpinningExecutor):
 
 
 class Workers:
-    """Up to a number of threads, each started when it is needed. They do not keep the program from ending.
+    """A pool of daemon threads, each started when it is needed.
 
     Args:
-        limit: how many at most.
+        limit: the maximum number of threads.
         name: the prefix of the threads' names.
-        freed: called when a job has ended and its thread has time for the next.
+        freed: called when a job has ended and its thread is free for the next one.
     """
 
     def __init__(self, limit: int, name: str, freed: Callable[[], None]) -> None:
@@ -138,7 +141,7 @@ class Workers:
 
     @property
     def has_room(self) -> bool:
-        """Whether a job that is submitted now would begin at once."""
+        """Whether a job that is submitted now would start immediately."""
         return self._unfinished < self._limit
 
     def submit(self, job: Callable[[], None]) -> None:
@@ -152,13 +155,13 @@ class Workers:
         self._jobs.put(job)
 
     def close(self, timeout_sec: float | None = None) -> bool:
-        """End the threads after the jobs that were submitted, and wait for them.
+        """End the threads after the submitted jobs, and wait for the threads.
 
         Args:
-            timeout_sec: the longest wait, in seconds; no limit when None.
+            timeout_sec: the maximum wait, in seconds; None for no limit.
 
         Returns:
-            Whether all have ended. A thread that calls this itself is not waited for.
+            Whether all have ended. A thread that calls this method does not wait for itself.
         """
         with self._lock:
             threads, self._threads = self._threads, []

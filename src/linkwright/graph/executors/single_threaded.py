@@ -12,12 +12,12 @@ from linkwright.graph.faults import ConditionReachedException, ShutdownException
 class SingleThreadedExecutor(SpinningExecutor):
     """Runs callbacks one after another in the thread that spins (rclpy ``SingleThreadedExecutor``).
 
-    The exception of a callback leaves ``spin``. When the context is shut down from outside during the wait,
-    ``ExternalShutdownException`` does.
+    If a callback raises an exception, ``spin`` raises it. If the context is shut down from outside during the wait,
+    ``spin`` raises ``ExternalShutdownException``.
     """
 
     def is_own_thread(self) -> bool:
-        """Whether the calling thread is the one that runs callbacks, which must not wait for others of them."""
+        """Return whether the calling thread runs the callbacks, and so must not wait for other callbacks."""
         return set(self._spinners) == {threading.get_ident()}
 
     def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:

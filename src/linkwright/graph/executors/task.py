@@ -1,4 +1,4 @@
-"""Tasks: a callable or a coroutine that an executor runs to its end, step by step (rclpy ``task.Task``)."""
+"""Tasks: callables or coroutines that an executor runs step by step (rclpy ``task.Task``)."""
 
 from __future__ import annotations
 
@@ -13,27 +13,28 @@ T = TypeVar("T")
 
 
 class TaskRunner(Protocol):
-    """An executor, as its tasks know it."""
+    """The interface of an executor that its tasks need."""
 
     def create_task(self, callback: Callable[..., Any], *args: Any) -> Any:
-        """Run a callable after the work that is ready by now."""
+        """Run a callable after the work that is already ready."""
 
     def run_again(self, task: Task[Any]) -> None:
-        """Give a task its next turn."""
+        """Queue a task for its next step."""
 
 
 class Task(Future[T]):
     """The future result of a callable or a coroutine.
 
-    Calling the task runs the callable, or the coroutine up to its next ``await``. With an executor the task asks it for
-    its next turn as soon as the awaited future is done.
+    Calling the task runs the callable, or the coroutine up to its next ``await``. A task with an executor asks it for
+    the
+    next step as soon as the awaited future is done.
 
     Args:
         handler: a callable, a coroutine function or a coroutine.
         args: positional arguments for it.
         kwargs: keyword arguments for it.
         executor: the executor that runs the task and its done callbacks.
-        ended: called once when there is nothing left to run, whether it ended, failed or was cancelled.
+        ended: called once when nothing is left to run, whether the task finished, failed or was cancelled.
     """
 
     def __init__(
@@ -59,7 +60,10 @@ class Task(Future[T]):
         self._turn = threading.Lock()
 
     def __call__(self) -> None:
-        """Run until the next await, or to the end. Does nothing while another thread is at it, or afterwards."""
+        """Run until the next await, or to the end.
+
+        Do nothing while another thread runs the task, or once it has ended.
+        """
         if self.ended() or not self._turn.acquire(blocking=False):
             return
         try:
@@ -70,11 +74,11 @@ class Task(Future[T]):
             self._wait_for(awaited)
 
     def executing(self) -> bool:
-        """Whether a thread runs the task right now."""
+        """Return whether a thread is currently running the task."""
         return self._turn.locked()
 
     def cancel(self) -> None:
-        """Stop: a coroutine is closed at its present await, unless it runs right now."""
+        """Cancel the task: a coroutine is closed at its current await, unless it is running right now."""
         super().cancel()
         if self.cancelled() and self._turn.acquire(blocking=False):
             try:
@@ -86,7 +90,7 @@ class Task(Future[T]):
 
     def __await__(self) -> Generator[Any, None, T | None]:
         if is_stepped_by_executor():
-            # Tasks that await each other take turns even where the other is done.
+            # Yield even if the other task is done, so that tasks that await each other take turns.
             yield self
         return (yield from super().__await__())
 

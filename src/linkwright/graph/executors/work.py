@@ -1,4 +1,4 @@
-"""The work of an executor: a queue of ready entities, alarms, and the wait for either."""
+"""The work queue of an executor: ready entities, alarms, and the wait for either."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MANY_CANCELLED = 64
 
 
 class ScheduledCall:
-    """A callback that the queue will call; see ``WorkQueue.call_at``."""
+    """A callback that is scheduled with ``WorkQueue.call_at``."""
 
     __slots__ = ("_queue", "callback", "number", "steady_ns")
 
@@ -41,11 +41,14 @@ class ScheduledCall:
 
 
 class WorkQueue:
-    """A queue that any thread may add to. A thread that takes from it also sets off the alarms that are due.
+    """A queue that any thread may add to.
 
-    Adding to it takes no lock while no thread waits, so that a message handed to the own thread costs next to nothing.
-    Nor does waiting hold one: Ctrl-C may raise KeyboardInterrupt at any point of it, and a ``threading.Condition``
-    would be left with a lock that its thread does not hold (RuntimeError: cannot release un-acquired lock).
+    A thread that takes from it also triggers the alarms that are due.
+
+    Adding to it takes no lock while no thread waits, so passing a message to the own thread costs almost nothing.
+    Waiting
+    holds no lock either: Ctrl-C may raise KeyboardInterrupt at any point of the wait, and would leave a
+    ``threading.Condition`` with a lock that its thread does not hold (RuntimeError: cannot release un-acquired lock).
     """
 
     def __init__(self) -> None:
@@ -58,7 +61,7 @@ class WorkQueue:
         self._woken = False
 
     def add(self, item: Any) -> None:
-        """Put an item at the end."""
+        """Add an item at the end."""
         self._ready.append(item)
         if self._sleepers:
             self._rouse()
@@ -69,11 +72,14 @@ class WorkQueue:
         self._rouse()
 
     def has_ready(self) -> bool:
-        """Whether an item is ready."""
+        """Return whether an item is ready."""
         return bool(self._ready)
 
     def take(self) -> Any:
-        """The first ready entity, after the alarms that are due have added theirs; None if there is none."""
+        """Remove and return the first ready entity, after running the alarms that are due.
+
+        The result is None if there is none.
+        """
         if self._alarms and self._alarms[0].steady_ns <= time.monotonic_ns():
             self._call_due()
         try:
@@ -82,23 +88,26 @@ class WorkQueue:
             return None
 
     def wait(self, deadline_ns: int | None) -> None:
-        """Wait until an entity may be ready, an alarm is due, `wake` is called, or `deadline_ns` has come.
+        """Wait for an entity that may be ready, a due alarm, `wake`, or `deadline_ns`.
 
-        It may also return for no reason.
+        The wait may also end for no reason.
         """
         self._sleep(deadline_ns, until_wake=False)
 
     def wait_for_wake(self, deadline_ns: int | None) -> None:
-        """Wait until `wake` is called, or `deadline_ns` has come; ready entities stay."""
+        """Wait until `wake` is called, or `deadline_ns` is reached; ready entities stay in the queue."""
         self._sleep(deadline_ns, until_wake=True)
 
     def wake(self) -> None:
-        """End the wait of the threads that wait, or the next one."""
+        """End the wait of all waiting threads; if no thread is waiting, end the next wait."""
         self._woken = True
         self._rouse()
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledCall:
-        """Schedule a callback for a count of ``time.monotonic_ns``; a thread that takes from the queue calls it."""
+        """Schedule a callback for a value of ``time.monotonic_ns``.
+
+        A thread that takes from the queue calls it.
+        """
         with self._alarms_lock:
             self._numbers += 1
             call = ScheduledCall(self, steady_ns, self._numbers, callback)
@@ -109,7 +118,7 @@ class WorkQueue:
         return call
 
     def forget_one(self) -> None:
-        """Count a cancelled alarm; when there are many, they are cleared away."""
+        """Count a cancelled alarm; when there are many, remove them."""
         self._cancelled += 1
         if self._cancelled > _MANY_CANCELLED:
             with self._alarms_lock:
@@ -119,7 +128,7 @@ class WorkQueue:
                     self._cancelled = 0
 
     def clear(self) -> None:
-        """Forget everything."""
+        """Remove all entities and alarms."""
         with self._alarms_lock:
             self._ready.clear()
             self._alarms.clear()
@@ -140,7 +149,7 @@ class WorkQueue:
     def _sleep(self, deadline_ns: int | None, *, until_wake: bool) -> None:
         sleeper = threading.Lock()
         sleeper.acquire()
-        self._sleepers.append(sleeper)  # before the check of the queue: a thread that adds after the check rouses it
+        self._sleepers.append(sleeper)  # before the check of the queue: a thread that adds after the check wakes it
         try:
             if self._woken or (self._ready and not until_wake):
                 return
@@ -153,7 +162,7 @@ class WorkQueue:
                 sleeper.acquire(timeout=seconds)
         finally:
             self._woken = False
-            with suppress(ValueError):  # it was roused
+            with suppress(ValueError):  # it was woken
                 self._sleepers.remove(sleeper)
 
     def _first_of_alarm_and(self, deadline_ns: int | None) -> int | None:
@@ -164,5 +173,5 @@ class WorkQueue:
 
     def _rouse(self) -> None:
         while self._sleepers:
-            with suppress(IndexError):  # another thread was quicker
+            with suppress(IndexError):  # another thread was faster
                 self._sleepers.popleft().release()

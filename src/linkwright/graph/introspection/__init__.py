@@ -1,1 +1,1 @@
-"""Questions to the graph: names, types, endpoints, and the traffic of topics."""
+"""Graph queries: names, types, endpoints, and the traffic of topics."""

@@ -1,4 +1,4 @@
-"""Questions to a graph: nodes and endpoints of this process and of others, and nodes of others with our names."""
+"""Graph queries for nodes and endpoints, and detection of duplicate node names."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ OnNamesakes = Callable[[frozenset[str]], object]
 
 
 class Namesakes:
-    """Tracks names of our nodes that nodes of other processes share, and reports changes.
+    """Tracks node names of this process that other processes use too, and reports changes.
 
     Args:
-        notify: receives the changes. When left out, each name is logged once by its node, as long as it is shared.
+        notify: receives the shared names when they change. By default the node logs each name once while it is shared.
     """
 
     def __init__(self, notify: OnNamesakes | None = None) -> None:
@@ -34,7 +34,10 @@ class Namesakes:
         self._lock = threading.RLock()
 
     def review(self, ours: Collection[NodeHandle], outside: Collection[NodeIdentity]) -> None:
-        """Compare the names of our nodes with those outside; report when the shared ones have changed."""
+        """Compare the names of our nodes with those of other processes.
+
+        Report when the set of shared names has changed.
+        """
         if not outside and not self._shared:
             return
         with self._lock:
@@ -66,7 +69,7 @@ _FEEDBACK = "_FeedbackMessage"
 
 
 class TopicEndpointTypeEnum(IntEnum):
-    """The kinds of endpoints of a topic (rclpy)."""
+    """The kinds of topic endpoints (rclpy ``TopicEndpointTypeEnum``)."""
 
     INVALID = 0
     PUBLISHER = 1
@@ -75,17 +78,17 @@ class TopicEndpointTypeEnum(IntEnum):
 
 @dataclass
 class TopicEndpointInfo:
-    """A publisher or subscription of a topic (rclpy ``TopicEndpointInfo``).
+    """The description of a publisher or subscription of a topic (rclpy ``TopicEndpointInfo``).
 
     Attributes:
         node_name: the name of its node.
-        node_namespace: that node's namespace.
+        node_namespace: the namespace of its node.
         topic_type: the name of the message type.
-        topic_type_hash: ``RIHS01_...``; empty where it is not known.
-        endpoint_type: its kind.
-        endpoint_gid: its identity.
+        topic_type_hash: ``RIHS01_...``; empty if it is not known.
+        endpoint_type: publisher or subscription.
+        endpoint_gid: its GID.
         qos_profile: the QoS that it offers or requests.
-        host: the machine that it is on, which rclpy does not give; empty for this process, and where it is not known.
+        host: the machine that it runs on, which rclpy does not provide; empty for this process, and if it is not known.
     """
 
     node_name: str = ""
@@ -121,7 +124,7 @@ class TopicEndpointInfo:
 
     @classmethod
     def of(cls, info: EndpointInfo) -> TopicEndpointInfo:
-        """The form for tools."""
+        """Convert an endpoint's description to the form that rclpy returns."""
         node = info.node or UNKNOWN_NODE
         kind = (
             TopicEndpointTypeEnum.PUBLISHER
@@ -132,7 +135,7 @@ class TopicEndpointInfo:
 
 
 def names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> NamesAndTypes:
-    """The names and types of endpoints of some kinds."""
+    """Return the names and types of the endpoints of the given kinds."""
     types: dict[str, set[str]] = {}
     for endpoint in endpoints:
         if endpoint.kind in kinds:
@@ -141,9 +144,11 @@ def names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> 
 
 
 def action_names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> NamesAndTypes:
-    """The names and types of the actions whose feedback topic is among endpoints of some kinds, as rcl_action gives.
+    """Return the names and types of actions, as rcl_action does.
 
-    A server publishes feedback, a client subscribes to it.
+    These are the actions whose feedback topic has endpoints of the given kinds.
+
+    An action server publishes feedback, an action client subscribes to it.
     """
     types: dict[str, set[str]] = {}
     for endpoint in endpoints:
@@ -158,7 +163,7 @@ _SERVICE, _CLIENT = EndpointKind.SERVICE, EndpointKind.CLIENT
 
 
 class GraphQueries:
-    """The questions to a graph, with rclpy's names; `Graph` derives from it."""
+    """The queries that a graph answers, with the names of rclpy; base class of `Graph`."""
 
     bus: Bus
     _nodes: dict[NodeHandle, None]
@@ -169,7 +174,7 @@ class GraphQueries:
     _logger: Logger
 
     def identities(self) -> list[NodeIdentity]:
-        """The nodes of this process and, as far as discovery has come, of others."""
+        """Return the nodes of this process, and those discovered so far in other processes."""
         outside: Sequence[NodeIdentity] = ()
         if self._transport is not None:
             self._transport.look_around()
@@ -177,69 +182,69 @@ class GraphQueries:
         return [*(node.identity for node in tuple(self._nodes)), *outside]
 
     def endpoints(self) -> list[EndpointInfo]:
-        """The endpoints of this process and, as far as discovery has come, of others."""
+        """Return the endpoints of this process, and those discovered so far in other processes."""
         return self._those(lambda _: True)
 
     def publishers(self) -> list[EndpointInfo]:
-        """The publishers of all topics, in this process and outside."""
+        """Return the publishers of all topics, in this process and outside."""
         return self._those(lambda endpoint: endpoint.kind is _PUBLISHER)
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
-        """The endpoints of other processes, as far as discovery has come."""
+        """Return the endpoints of other processes that have been discovered so far."""
         if self._transport is None:
             return ()
         self._transport.look_around()
         return self._transport.remote_endpoints()
 
     def node_names(self) -> list[str]:
-        """Full names of the nodes of this process, sorted."""
+        """Return the sorted full names of the nodes of this process."""
         return sorted(node.identity.full_name for node in tuple(self._nodes))
 
     def topics(self) -> dict[str, list[str]]:
-        """Topic names, sorted, each with the names of the message types in use on it."""
+        """Return the sorted topic names, each with the names of the message types in use on it."""
         return dict(self.get_topic_names_and_types())
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
-        """Name and namespace of each node."""
+        """Return the name and namespace of each node."""
         return [(node.name, node.namespace) for node in self.identities()]
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
-        """Name, namespace and enclave of each node."""
+        """Return the name, namespace and enclave of each node."""
         return [(node.name, node.namespace, node.enclave) for node in self.identities()]
 
     def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
-        """Names of topics, sorted, each with the names of its types.
+        """Return the sorted topic names, each with the names of its types.
 
         Args:
-            no_demangle: whether names and types are given as they are on the wire.
+            no_demangle: whether to return names and types as they are on the wire.
         """
         return _mangled(names_and_types(self.endpoints(), _PUBLISHER, _SUBSCRIPTION), no_demangle)
 
     def get_service_names_and_types(self) -> NamesAndTypes:
-        """Names of services, sorted, each with the names of its types."""
+        """Return the sorted service names, each with the names of its types."""
         return names_and_types(self.endpoints(), _SERVICE, _CLIENT)
 
     def get_action_names_and_types(self) -> NamesAndTypes:
-        """Names of actions, sorted, each with the names of its types."""
+        """Return the sorted action names, each with the names of its types."""
         return action_names_and_types(self.endpoints(), _PUBLISHER, _SUBSCRIPTION)
 
     def get_action_server_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """The actions that a node serves; see `get_publisher_names_and_types_by_node`."""
+        """Return the actions that a node serves; see `get_publisher_names_and_types_by_node`."""
         return action_names_and_types(self._of_node(node_name, node_namespace), _PUBLISHER)
 
     def get_action_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """The actions that a node has clients of; see `get_publisher_names_and_types_by_node`."""
+        """Return the actions that a node has clients of; see `get_publisher_names_and_types_by_node`."""
         return action_names_and_types(self._of_node(node_name, node_namespace), _SUBSCRIPTION)
 
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
-        """The topics that a node publishes.
+        """Return the topics that a node publishes, with their types.
 
         Args:
             node_name: the node's name.
-            node_namespace: its namespace.
-            no_demangle: whether names and types are given as they are on the wire.
+            node_namespace: the node's namespace.
+            no_demangle: whether to return names and types as they are on the wire.
 
         Raises:
             NodeNotFoundError: there is no such node.
@@ -249,59 +254,63 @@ class GraphQueries:
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
-        """The topics that a node subscribes to; see `get_publisher_names_and_types_by_node`."""
+        """Return the topics that a node subscribes to; see `get_publisher_names_and_types_by_node`."""
         return _mangled(names_and_types(self._of_node(node_name, node_namespace), _SUBSCRIPTION), no_demangle)
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """The services of a node; see `get_publisher_names_and_types_by_node`."""
+        """Return the services that a node serves; see `get_publisher_names_and_types_by_node`."""
         return names_and_types(self._of_node(node_name, node_namespace), _SERVICE)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """The services that a node has clients of; see `get_publisher_names_and_types_by_node`."""
+        """Return the services that a node has clients of; see `get_publisher_names_and_types_by_node`."""
         return names_and_types(self._of_node(node_name, node_namespace), _CLIENT)
 
     def get_publishers_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
-        """The publishers of a topic; absolute name."""
+        """Return the publishers of a topic, given by its absolute name."""
         return [TopicEndpointInfo.of(_hashed(endpoint)) for endpoint in self._of_name(topic, _PUBLISHER)]
 
     def get_subscriptions_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
-        """The subscriptions to a topic; absolute name."""
+        """Return the subscriptions to a topic, given by its absolute name."""
         return [TopicEndpointInfo.of(_hashed(endpoint)) for endpoint in self._of_name(topic, _SUBSCRIPTION)]
 
     def count_publishers(self, topic: str) -> int:
-        """How many publishers a topic has; absolute name."""
+        """Return the number of publishers of a topic, given by its absolute name."""
         return len(self._of_name(topic, _PUBLISHER))
 
     def count_subscribers(self, topic: str) -> int:
-        """How many subscriptions a topic has; absolute name."""
+        """Return the number of subscriptions to a topic, given by its absolute name."""
         return len(self._of_name(topic, _SUBSCRIPTION))
 
     def count_services(self, service: str) -> int:
-        """How many servers a service has; absolute name."""
+        """Return the number of servers of a service, given by its absolute name."""
         return len(self._of_name(service, _SERVICE))
 
     def count_clients(self, service: str) -> int:
-        """How many clients a service has; absolute name."""
+        """Return the number of clients of a service, given by its absolute name."""
         return len(self._of_name(service, _CLIENT))
 
     # --- waiting -----------------------------------------------------------------------------------------------------
 
     def notify_change(self) -> None:
-        """Wake the waiters of `wait_until`, which check their condition again; from any thread."""
+        """Wake the threads blocked in `wait_until` to check their conditions again.
+
+        It may be called from any thread.
+        """
         with self._changed:
             self._changed.notify_all()
         for changed in tuple(self._watchers):
             run_logged(self._logger, "a callback for changes of the graph", changed)
 
     def watch(self, changed: Callable[[], object]) -> None:
-        """Register a callback for changes of nodes and endpoints; it is called in the thread where they happen.
+        """Register a callback for changes of nodes and endpoints.
 
-        Its exceptions are logged.
+        It is called in the thread in which they happen.
+        Exceptions that it raises are logged.
         """
         self._watchers[changed] = None
 
     def unwatch(self, changed: Callable[[], object]) -> None:
-        """Unregister a callback of `watch`."""
+        """Unregister a callback that was registered with `watch`."""
         self._watchers.pop(changed, None)
 
     def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:
@@ -309,10 +318,10 @@ class GraphQueries:
 
         Args:
             holds: the condition, checked whenever nodes or endpoints appear or leave.
-            timeout_sec: seconds to wait at most; None or a negative number for any time.
+            timeout_sec: the maximum wait, in seconds; None or a negative number for no limit.
 
         Returns:
-            Whether it holds. Also the end of the graph ends the wait.
+            Whether the condition holds. Closing the graph ends the wait as well.
         """
         deadline = None if timeout_sec is None or timeout_sec < 0 else time.monotonic() + timeout_sec
         while True:
@@ -322,15 +331,15 @@ class GraphQueries:
             if self._closed or (left is not None and left <= 0):
                 return False
             with self._changed:
-                # Discovery may report a change between the check and the wait, so no wait is long.
+                # Discovery may report a change between the check and the wait, so keep each wait short.
                 self._changed.wait(_LONGEST_WAIT_S if left is None else min(left, _LONGEST_WAIT_S))
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float | None = None) -> bool:
         """Block the calling thread until a node exists; return whether it does.
 
         Args:
-            fully_qualified_node_name: its name, with or without the slash in front.
-            timeout: seconds to wait at most; None or a negative number for any time.
+            fully_qualified_node_name: the node's full name, with or without the leading slash.
+            timeout: the maximum wait, in seconds; None or a negative number for no limit.
         """
         full_name = "/" + fully_qualified_node_name.removeprefix("/")
         return self.wait_until(lambda: any(identity.full_name == full_name for identity in self.identities()), timeout)
@@ -348,7 +357,10 @@ class GraphQueries:
         return self._those(lambda endpoint: endpoint.kind is kind and endpoint.name == name)
 
     def _those(self, are_asked_for: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
-        """Endpoints that are asked for, here and outside; only these are described, which takes the time."""
+        """Return the endpoints that meet a condition, in this process and outside.
+
+        Only these are described, because describing an endpoint takes time.
+        """
         own = (endpoint.info() for endpoint in self.bus.endpoints() if are_asked_for(endpoint))
         return [*own, *(endpoint for endpoint in self.remote_endpoints() if are_asked_for(endpoint))]
 
@@ -357,7 +369,7 @@ _LONGEST_WAIT_S = 0.1
 
 
 def _hashed(endpoint: EndpointInfo) -> EndpointInfo:
-    """The endpoint with the hash of its type, which is worked out only when it is asked for."""
+    """Return the description of an endpoint with its type hash, which is computed only on request."""
     if endpoint.type_hash or not endpoint.local:
         return endpoint
     from linkwright.messages import get_interface, type_hash

@@ -1,4 +1,7 @@
-"""The methods of a node that ask about the graph, as ``rclpy.node.Node`` has them; and its type descriptions."""
+"""A node's methods that query the graph, and its type description service.
+
+The methods are those of ``rclpy.node.Node``.
+"""
 
 from __future__ import annotations
 
@@ -22,16 +25,21 @@ _HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
 
 
 def is_usual(variables: Mapping[str, str] = os.environ) -> bool:
-    """Whether nodes of the distribution in ``ROS_DISTRO`` have the service; without one, they are those of Humble."""
+    """Return whether nodes of the distribution in ``ROS_DISTRO`` have the type description service.
+
+    If ``ROS_DISTRO`` is not set, the distribution is taken to be Humble.
+    """
     return not is_before_iron(variables)
 
 
 class TypeDescriptions:
-    """The service. It answers for the types of the node's publishers, subscriptions, services and clients.
+    """A node's ``get_type_description`` service.
+
+    It describes the types of the node's publishers, subscriptions, services and clients.
 
     Args:
-        handle: the node's.
-        create_service: its `Node.create_service`.
+        handle: the node's handle.
+        create_service: the node's `Node.create_service`.
     """
 
     def __init__(self, handle: NodeHandle, create_service: Callable[..., object]) -> None:
@@ -64,7 +72,7 @@ class TypeDescriptions:
         return response
 
     def _in_use(self) -> Iterator[str]:
-        """The names of the types, each once."""
+        """Iterate over the type names in use, without duplicates."""
         return iter(dict.fromkeys(endpoint.type_name for endpoint in self._handle.parts(Endpoint)))
 
 
@@ -75,7 +83,7 @@ def _is_asked_for(name: str, request: Any) -> bool:
 
     try:
         return type_hash(name) == str(request.type_hash)
-    except InterfaceNotFoundError:  # an endpoint for bytes, whose type is not known here
+    except InterfaceNotFoundError:  # a raw endpoint whose type is not known here
         return False
 
 
@@ -84,14 +92,20 @@ def _interface(name: str) -> Any:
 
 
 def _individual(described: Mapping[str, Any]) -> Any:
-    """An IndividualTypeDescription; defaults are not in it, as they are not part of the hash."""
+    """Convert a type description to an IndividualTypeDescription message.
+
+    Default values are left out, because they are not part of the hash.
+    """
     field, field_type = _interface("Field"), _interface("FieldType")
     fields = [field(name=member["name"], type=field_type(**member["type"])) for member in described["fields"]]
     return _interface("IndividualTypeDescription")(type_name=described["type_name"], fields=fields)
 
 
 def _source(name: str) -> Any:
-    """The text of an interface file. A type without a file of its own, such as a request, is ``implicit``."""
+    """Return the source text of an interface as a TypeSource message.
+
+    A type without its own file, such as a request, has the encoding ``implicit``.
+    """
     _, encoding, own_name = name.split("/")
     if "_" in own_name:
         return _interface("TypeSource")(type_name=name, encoding="implicit")
@@ -105,16 +119,19 @@ R = TypeVar("R")
 
 
 class NodeQueries:
-    """A node's queries about the graph, a base of `Node`. Names are relative to the node, and remapped."""
+    """A node's queries to the graph; base class of `Node`.
+
+    Names are relative to the node, and remapped.
+    """
 
     def __init__(self, graph: GraphQueries, handle: NodeHandle) -> None:
-        # The names are mangled, for users' nodes to have attributes of these names.
+        # These names are mangled so that a user's node class may use the plain names.
         self.__graph = graph
         self.__handle = handle
 
     @staticmethod
     def _of_graph(question: Callable[Concatenate[GraphQueries, P], R]) -> Callable[Concatenate[NodeQueries, P], R]:
-        """The method by which a node asks its graph the same question; for the lines below."""
+        """Wrap a graph query as a method of the node; used only for the assignments below."""
 
         @wraps(question)
         def ask(node: NodeQueries, /, *args: P.args, **kwargs: P.kwargs) -> R:
@@ -123,27 +140,27 @@ class NodeQueries:
         return ask
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """The absolute name of a topic as this node names it, expanded and, unless `only_expand`, remapped.
+        """Return the absolute name of a topic, expanded and, unless `only_expand` is true, remapped.
 
         Raises:
-            InvalidTopicNameError: it is not valid.
+            InvalidTopicNameError: the topic name is not valid.
         """
         return self.__handle.resolve_topic_name(topic, only_expand=only_expand)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """The absolute name of a service or action as this node names it; see `resolve_topic_name`.
+        """Return the absolute name of a service or action; see `resolve_topic_name`.
 
         Raises:
-            InvalidServiceNameError: it is not valid.
+            InvalidServiceNameError: the service name is not valid.
         """
         return self.__handle.resolve_service_name(service, only_expand=only_expand)
 
     def get_node_names(self) -> list[str]:
-        """Names of the nodes of the graph, without namespaces."""
+        """Return the names of the graph's nodes, without namespaces."""
         return [name for name, _ in self.__graph.get_node_names_and_namespaces()]
 
     def get_fully_qualified_node_names(self) -> list[str]:
-        """Full names of the nodes of the graph."""
+        """Return the full names of the graph's nodes."""
         return [join(namespace, name) for name, namespace in self.__graph.get_node_names_and_namespaces()]
 
     get_node_names_and_namespaces = _of_graph(GraphQueries.get_node_names_and_namespaces)
@@ -156,41 +173,44 @@ class NodeQueries:
     get_service_names_and_types_by_node = _of_graph(GraphQueries.get_service_names_and_types_by_node)
     get_client_names_and_types_by_node = _of_graph(GraphQueries.get_client_names_and_types_by_node)
     wait_for_node = _of_graph(GraphQueries.wait_for_node)
-    del _of_graph  # a user's node may have an attribute of the name
+    del _of_graph  # a user's node may have an attribute with this name
 
     def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
-        """The publishers of a topic, as this node names it unless `no_mangle` says that it is the name itself."""
+        """Return the publishers of a topic.
+
+        The name is expanded and remapped unless `no_mangle` is true.
+        """
         return self.__graph.get_publishers_info_by_topic(
             topic_name if no_mangle else _resolved(self.__handle.resolve_topic_name, topic_name)
         )
 
     def get_subscriptions_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
-        """The subscriptions to a topic; see `get_publishers_info_by_topic`."""
+        """Return the subscriptions to a topic; see `get_publishers_info_by_topic`."""
         name = topic_name if no_mangle else _resolved(self.__handle.resolve_topic_name, topic_name)
         return self.__graph.get_subscriptions_info_by_topic(name)
 
     def count_publishers(self, topic_name: str) -> int:
-        """How many publishers a topic has, in this process and outside."""
+        """Return the number of publishers of a topic, in this process and outside."""
         return self.__graph.count_publishers(_resolved(self.__handle.resolve_topic_name, topic_name))
 
     def count_subscribers(self, topic_name: str) -> int:
-        """How many subscriptions a topic has, in this process and outside."""
+        """Return the number of subscriptions to a topic, in this process and outside."""
         return self.__graph.count_subscribers(_resolved(self.__handle.resolve_topic_name, topic_name))
 
     def count_services(self, service_name: str) -> int:
-        """How many servers a service has."""
+        """Return the number of servers of a service."""
         return self.__graph.count_services(_resolved(self.__handle.resolve_service_name, service_name))
 
     def count_clients(self, service_name: str) -> int:
-        """How many clients a service has."""
+        """Return the number of clients of a service."""
         return self.__graph.count_clients(_resolved(self.__handle.resolve_service_name, service_name))
 
 
 def _resolved(resolve: Callable[[str], str], name: str) -> str:
-    """The absolute name of a query; a name that is not valid is refused in rclpy's words.
+    """Return the absolute name for a query; invalid names raise errors with rclpy's wording.
 
     Raises:
-        TypeError: the name is not a text.
+        TypeError: the name is not a string.
         ValueError: the name is not valid.
     """
     if not isinstance(name, str):

@@ -1,4 +1,4 @@
-"""The rate and bandwidth of a topic over its last messages."""
+"""The rate and bandwidth of a topic, measured over its most recent messages."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 @dataclass(frozen=True, slots=True)
 class Traffic:
-    """Statistics of the last messages of a topic.
+    """Statistics of the most recent messages of a topic.
 
     Attributes:
-        messages_per_second: how many come in a second.
-        bytes_per_second: how many bytes come in a second.
-        mean_size: the average size of a message, bytes.
-        least_size: that of the smallest.
-        most_size: that of the largest.
-        count: over how many messages this is.
-        age_ns: the age of the first of them, nanoseconds.
+        messages_per_second: the message rate.
+        bytes_per_second: the bandwidth.
+        mean_size: the mean message size, in bytes.
+        least_size: the size of the smallest message, in bytes.
+        most_size: the size of the largest message, in bytes.
+        count: the number of messages in the statistics.
+        age_ns: the age of the oldest of them, in nanoseconds.
     """
 
     messages_per_second: float
@@ -32,12 +32,12 @@ class Traffic:
 
 
 class TrafficWindow:
-    """The sizes of the last messages of a topic, and their times of arrival.
+    """A window over the sizes and arrival times of the most recent messages of a topic.
 
     Args:
-        size: how many are kept at most.
-        longest_ns: how old they may become, nanoseconds; the last two are always kept, so that a slow topic has figures
-            too. None for any age.
+        size: the maximum number of messages.
+        longest_ns: the maximum age of the messages, in nanoseconds; None for no limit. The last two messages are always
+            kept, so that slow topics have statistics, too.
     """
 
     def __init__(self, size: int, longest_ns: int | None = None) -> None:
@@ -45,15 +45,16 @@ class TrafficWindow:
         self._longest_ns = longest_ns
 
     def add(self, now_ns: int, size: int) -> None:
-        """Count a message of `size` bytes."""
+        """Add a message of `size` bytes."""
         self._messages.append((now_ns, size))
 
     def traffic(self, now_ns: int) -> Traffic | None:
-        """The figures; None while there are fewer than two messages.
+        """Return the statistics; None while there are fewer than two messages.
 
-        Bytes are counted from the first message until now, as ``ros2 topic bw`` does, and so become fewer when the
-        topic falls silent. Messages are counted from the first to the last, until the silence is longer than twice
-        their usual distance.
+        The bandwidth is averaged from the first message until now, as ``ros2 topic bw`` does, and so decreases when the
+        topic falls silent. The rate is averaged from the first message to the last one, until the silence is longer
+        than
+        twice the mean interval.
         """
         messages = self._messages
         if self._longest_ns is not None:

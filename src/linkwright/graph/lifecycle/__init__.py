@@ -1,1 +1,1 @@
-"""Managed nodes."""
+"""Managed nodes, which have lifecycle states."""

@@ -11,30 +11,33 @@ from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallback
 
 
 class ManagedEntity:
-    """Is notified of the transitions of its node; its return values decide how they continue."""
+    """A part of a managed node that is notified of the node's transitions.
+
+    Its return values decide how a transition ends.
+    """
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """The node is configured, coming from a state."""
+        """Handle the configuration of the node, which was in `state` before."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """The node is cleaned up."""
+        """Handle the cleanup of the node."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """The node is shut down."""
+        """Handle the shutdown of the node."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """The node is activated."""
+        """Handle the activation of the node."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """The node is deactivated."""
+        """Handle the deactivation of the node."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """A transition of the node failed with an error."""
+        """Handle an error in a transition of the node."""
         return TransitionCallbackReturn.SUCCESS
 
 
@@ -45,25 +48,28 @@ class SimpleManagedEntity(ManagedEntity):
         self._enabled = False
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Be enabled."""
+        """Enable the entity."""
         self._enabled = True
         return TransitionCallbackReturn.SUCCESS
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Be not."""
+        """Disable the entity."""
         self._enabled = False
         return TransitionCallbackReturn.SUCCESS
 
     @property
     def is_activated(self) -> bool:
-        """Whether it is enabled."""
+        """Whether the entity is enabled."""
         return self._enabled
 
     @staticmethod
     def when_enabled(
         wrapped: Callable[..., Any] | None = None, *, when_not_enabled: Callable[..., Any] | None = None
     ) -> Callable[..., Any]:
-        """Decorates a method that does nothing unless its object is enabled, or calls the other one instead."""
+        """Decorate a method to run only while its object is enabled.
+
+        Otherwise `when_not_enabled`, if given, is called.
+        """
 
         def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
             @wraps(method)

@@ -1,4 +1,4 @@
-"""Managed nodes: nodes with a life cycle that others can drive, as ``rclpy.lifecycle`` has them."""
+"""Managed nodes: nodes whose lifecycle other nodes can control, as in ``rclpy.lifecycle``."""
 
 from __future__ import annotations
 
@@ -38,7 +38,10 @@ _CALLBACKS = {
 
 
 class LifecycleTransitionError(LinkwrightError, RclError):
-    """A transition is requested that does not start from the node's current state; the message is rcl's."""
+    """Raised when a requested transition does not start from the node's current state.
+
+    The message is that of rcl.
+    """
 
     def __init__(self, requested: object, state: LifecycleState, available: Iterable[str]) -> None:
         names = list(dict.fromkeys(available))
@@ -54,15 +57,17 @@ class LifecycleTransitionError(LinkwrightError, RclError):
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """Makes a class of nodes managed ones: to be mixed in, and initialised after the node.
+    """Turns a node class into a managed node class; to be initialized after the node.
 
-    The callbacks ``on_configure``, ``on_activate``, ``on_deactivate``, ``on_cleanup``, ``on_shutdown`` and
-    ``on_error`` get the state that the transition begins in and give a `TransitionCallbackReturn`; unless overridden
-    they ask the managed entities in turn.
+    The callbacks ``on_configure``, ``on_activate``, ``on_deactivate``, ``on_cleanup``, ``on_shutdown`` and ``on_error``
+    receive the state in which the transition starts, and return a `TransitionCallbackReturn`. Unless overridden, they
+    call
+    the managed entities in turn.
 
     Args:
-        enable_communication_interface: whether other nodes can drive the node, through services, and see its events.
-        callback_group: that of the services.
+        enable_communication_interface: whether other nodes can control the node through services, and see its
+            transition events.
+        callback_group: the callback group of the services.
     """
 
     def __init__(
@@ -90,14 +95,14 @@ class LifecycleNodeMixin(ManagedEntity):
 
     @property
     def lifecycle_state(self) -> LifecycleState:
-        """The state that the node is in."""
+        """The current state of the node."""
         return self._state_machine.state
 
     def trigger_configure(self) -> TransitionCallbackReturn:
         """Configure the node.
 
         Raises:
-            LifecycleTransitionError: the node is in a state where that cannot be.
+            LifecycleTransitionError: the transition does not start from the node's current state.
         """
         return self._change_by_label("configure")
 
@@ -118,12 +123,14 @@ class LifecycleNodeMixin(ManagedEntity):
         return self._change_by_label("shutdown")
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Notify an entity of the node's transitions."""
+        """Register an entity that is notified of the node's transitions."""
         if entity not in self._managed_entities:
             self._managed_entities.append(entity)
 
     def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> Any:
-        """A publisher that is silent unless the node is active; arguments are those of ``create_publisher``.
+        """Create a publisher that publishes only while the node is active.
+
+        The arguments are those of ``create_publisher``.
 
         Raises:
             TypeError: ``publisher_class`` is given.
@@ -143,27 +150,30 @@ class LifecycleNodeMixin(ManagedEntity):
         return node.destroy_publisher(publisher)
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """The node is being configured."""
+        """Configure the managed entities."""
         return self._ask_entities(lambda entity: entity.on_configure(state))
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """The node is being cleaned up."""
+        """Clean up the managed entities."""
         return self._ask_entities(lambda entity: entity.on_cleanup(state))
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """The node is being shut down."""
+        """Shut down the managed entities."""
         return self._ask_entities(lambda entity: entity.on_shutdown(state))
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """The node is being activated."""
+        """Activate the managed entities."""
         return self._ask_entities(lambda entity: entity.on_activate(state))
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """The node is being deactivated."""
+        """Deactivate the managed entities."""
         return self._ask_entities(lambda entity: entity.on_deactivate(state))
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """A transition failed: SUCCESS leads back to the beginning, any other return value ends the node's life."""
+        """Handle an error in a transition.
+
+        SUCCESS leads back to the unconfigured state; any other return value finalizes the node.
+        """
         return self._ask_entities(lambda entity: entity.on_error(state))
 
     def _ask_entities(self, ask: Callable[[ManagedEntity], TransitionCallbackReturn]) -> TransitionCallbackReturn:
@@ -181,7 +191,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return self._change(transition)
 
     def _change(self, transition: Transition) -> TransitionCallbackReturn:
-        """Go through a transition, its callback and its ending, and the processing of an error if there is one."""
+        """Perform a transition with its callback and its ending, and process an error if one occurs."""
         initial = self._state_machine.state
         self._enter(transition)
         verdict = self._call(initial)

@@ -1,6 +1,6 @@
-"""The state machine of managed nodes: states and transitions with the numbers and labels of lifecycle_msgs.
+"""The state machine of managed nodes, with the IDs and labels of lifecycle_msgs.
 
-Its design is that of "Managed nodes" (design.ros2.org), its tables those of rcl_lifecycle.
+The design follows "Managed nodes" (design.ros2.org), and the tables are those of rcl_lifecycle.
 """
 
 from __future__ import annotations
@@ -10,19 +10,19 @@ from typing import Any, NamedTuple
 
 
 class TransitionCallbackReturn(IntEnum):
-    """The results of transition callbacks; numbers of lifecycle_msgs/msg/Transition."""
+    """The results of transition callbacks, with the numbers of lifecycle_msgs/msg/Transition."""
 
     SUCCESS = 97
     FAILURE = 98
     ERROR = 99
 
     def to_label(self) -> str:
-        """The label by which the outcome is triggered."""
+        """Return the label that triggers the transition for this result."""
         return f"transition_{self.name.lower()}"
 
 
 class LifecycleState(NamedTuple):
-    """A state, as callbacks get it."""
+    """A lifecycle state, as callbacks receive it."""
 
     label: str
     state_id: int
@@ -56,13 +56,14 @@ STATES = (
 
 
 class Transition(NamedTuple):
-    """A way from one state to another.
+    """A transition from one state to another.
 
     Attributes:
-        transition_id: its number.
-        label: what sets it off: what is asked for, or ``transition_success`` and the like for how that went.
-        start: where it begins.
-        goal: where it ends.
+        transition_id: its ID.
+        label: the label that triggers it: that of a requested transition, or ``transition_success`` and the like for
+            the result of one.
+        start: the state in which it starts.
+        goal: the state in which it ends.
     """
 
     transition_id: int
@@ -74,7 +75,7 @@ class Transition(NamedTuple):
 def _endings(
     number: int, through: LifecycleState, success: LifecycleState, failure: LifecycleState, error: LifecycleState
 ) -> list[Transition]:
-    """The three ways in which a transition ends."""
+    """Return the transitions that end a requested transition: success, failure and error."""
     ends = (("success", success), ("failure", failure), ("error", error))
     return [Transition(number + place, f"transition_{name}", through, end) for place, (name, end) in enumerate(ends)]
 
@@ -82,7 +83,10 @@ def _endings(
 def _asked(
     number: int, label: str, start: LifecycleState, through: LifecycleState, goal: LifecycleState
 ) -> list[Transition]:
-    """A transition that users ask for, with its endings, whose numbers begin with ten times its own."""
+    """Return a transition that users can request, and its endings.
+
+    The IDs of the endings start at ten times the transition's ID.
+    """
     return [
         Transition(number, label, start, through),
         *_endings(number * 10, through, goal, start, ERRORPROCESSING),
@@ -103,7 +107,10 @@ TRANSITIONS = (
 
 
 class StateMachine:
-    """The current state of a managed node, and the services by which others drive it; None where it offers none."""
+    """The current state of a managed node, and the services that control the node.
+
+    The services are None if the node offers none.
+    """
 
     service_change_state: Any = None
     service_get_state: Any = None
@@ -116,17 +123,17 @@ class StateMachine:
 
     @property
     def current_state(self) -> tuple[int, str]:
-        """Number and label of the state (rclpy)."""
+        """The ID and label of the current state (rclpy)."""
         return self.state.state_id, self.state.label
 
     def available(self) -> list[Transition]:
-        """The transitions that start from the current state."""
+        """Return the transitions that start from the current state."""
         return [transition for transition in TRANSITIONS if transition.start == self.state]
 
     def by_id(self, transition_id: int) -> Transition | None:
-        """The available transition of a number; None when there is none."""
+        """Return the available transition with an ID; None if there is none."""
         return next((transition for transition in self.available() if transition.transition_id == transition_id), None)
 
     def by_label(self, label: str) -> Transition | None:
-        """The available transition of a label; None when there is none."""
+        """Return the available transition with a label; None if there is none."""
         return next((transition for transition in self.available() if transition.label == label), None)

@@ -1,1 +1,1 @@
-"""Logging: records, levels, formats, files, ``/rosout``."""
+"""Logging: records, levels, formats, files and ``/rosout``."""

@@ -1,6 +1,6 @@
-"""Where log records go: the console, in rcutils' format, and the topic /rosout.
+"""Outputs of log records: the console, in rcutils' format, and the topic ``/rosout``.
 
-RCUTILS_CONSOLE_OUTPUT_FORMAT changes the format, which is that of log files too.
+RCUTILS_CONSOLE_OUTPUT_FORMAT changes the format, which applies to log files, too.
 """
 
 from __future__ import annotations
@@ -29,13 +29,16 @@ Part = Callable[["LogRecord"], str]
 
 
 def console_line(record: LogRecord) -> str:
-    """A record as rcutils prints it, by default ``[INFO] [1700000000.123456789] [node]: text``."""
+    """Format a record as rcutils does, by default ``[INFO] [1700000000.123456789] [node]: text``."""
     return "".join(part(record) for part in _parts(os.environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or DEFAULT_FORMAT))
 
 
 @lru_cache(maxsize=8)
 def _parts(format_text: str) -> tuple[Part, ...]:
-    """The parts of a line: fixed texts, and functions for the tokens. Unknown tokens stay as they are."""
+    """Split a format into its parts: literal texts, and functions for the tokens.
+
+    Unknown tokens are left unchanged.
+    """
     text = _ESCAPE.sub(lambda match: _ESCAPES[match[1]], format_text[:_MAX_FORMAT_LENGTH])
     parts: list[Part] = []
     end = 0
@@ -89,14 +92,15 @@ _COLOURS = {
 
 
 def print_to_console(record: LogRecord) -> None:
-    """Write a record to standard error, or to standard output where RCUTILS_LOGGING_USE_STDOUT is 1.
+    """Write a record to standard error, or to standard output if RCUTILS_LOGGING_USE_STDOUT is 1.
 
-    Terminals get colours; RCUTILS_COLORIZED_OUTPUT, 0 or 1, decides otherwise, and NO_COLOR where that is not set.
-    Each record is written out at once, whatever RCUTILS_LOGGING_BUFFERED_STREAM says, so that none is lost with the
-    process; a stream without a reader is passed over.
+    Records are coloured on terminals. RCUTILS_COLORIZED_OUTPUT (0 or 1) overrides this; if it is not set, NO_COLOR
+    turns colours off. Each record is flushed immediately, regardless of RCUTILS_LOGGING_BUFFERED_STREAM, so that none
+    is
+    lost if the process dies. A stream without a reader is ignored.
     """
     stream: TextIO | None = sys.stdout if os.environ.get("RCUTILS_LOGGING_USE_STDOUT") == "1" else sys.stderr
-    if stream is None:  # of a program without a console
+    if stream is None:  # the program has no console
         return
     line = console_line(record)
     try:
@@ -105,7 +109,7 @@ def print_to_console(record: LogRecord) -> None:
         stream.write(f"{line}\n")
         stream.flush()
     except (OSError, ValueError):
-        # The reader has gone, the disk is full or the stream is closed: a log line is not a reason to end.
+        # The reader is gone, the disk is full or the stream is closed: none of these is a reason to end the program.
         return
 
 
@@ -146,7 +150,7 @@ class Rosout:
         logger.rosout = self.publish
 
     def publish(self, record: LogRecord) -> None:
-        """Publish one record. Records that this logs in turn are not published."""
+        """Publish a record. Records that are logged while doing so are not published."""
         if self._publishing:
             return
         self._publishing = True
@@ -156,7 +160,7 @@ class Rosout:
             self._publishing = False
 
     def close(self) -> None:
-        """Publish no more; the node destroys the publisher."""
+        """Stop publishing; the node destroys the publisher."""
         self._logger.rosout = None
 
     def _message(self, record: LogRecord) -> Any:

@@ -1,4 +1,4 @@
-"""Log files of processes, where rcl_logging_spdlog puts them and named as it names them."""
+"""Log files of processes, with the folder and the names that rcl_logging_spdlog uses."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.graph.log.logger import LogLevel, LogRecord
 
 
 def log_folder(environment: Mapping[str, str] | None = None) -> Path:
-    """The folder of log files: ROS_LOG_DIR, else ``log`` in ROS_HOME, else ``~/.ros/log``."""
+    """Return the folder of log files: ROS_LOG_DIR, else ``log`` in ROS_HOME, else ``~/.ros/log``."""
     environment = os.environ if environment is None else environment
     if environment.get("ROS_LOG_DIR"):
         return Path(environment["ROS_LOG_DIR"]).expanduser()
@@ -24,13 +24,14 @@ def log_folder(environment: Mapping[str, str] | None = None) -> Path:
 
 
 class LogFile:
-    """The log file of this process: ``EXECUTABLE_PID_MILLISECONDS.log``, made with the first record.
+    """The log file of this process, created with the first record.
 
-    Where the folder cannot be written there is no file, and the process continues.
+    Its name is ``EXECUTABLE_PID_MILLISECONDS.log``.
+    If the folder is not writable there is no file, and the process continues.
 
     Args:
-        executable: name of the program.
-        folder: where; `log_folder` when left out.
+        executable: the name of the program.
+        folder: the folder of the file; `log_folder` by default.
     """
 
     def __init__(self, executable: str, folder: Path | None = None) -> None:
@@ -40,7 +41,10 @@ class LogFile:
         self._failed = False
 
     def write(self, record: LogRecord) -> None:
-        """Write a record. Errors are flushed at once, the rest when the process ends or the buffer is full."""
+        """Write a record.
+
+        Errors are flushed immediately, other records when the buffer is full or the process ends.
+        """
         file = self._file or self._open()
         if file is None:
             return
@@ -52,7 +56,7 @@ class LogFile:
             self.close()
 
     def close(self) -> None:
-        """Write out buffered records, and end."""
+        """Flush buffered records, and close the file."""
         if self._file is not None:
             with suppress(OSError):
                 self._file.close()

@@ -1,4 +1,7 @@
-"""Loggers with the methods of rclpy's: their records, levels and filters (once, skip the first, throttle)."""
+"""Loggers with the methods of rclpy's loggers, and their records, levels and filters.
+
+The filters are once, skip the first, and throttle.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ from linkwright.diagnostics import LinkwrightError
 
 
 class LogLevel(IntEnum):
-    """Severities with rcutils' numbers and names."""
+    """The severities, with rcutils' numbers and names."""
 
     UNSET = 0
     DEBUG = 10
@@ -26,15 +29,16 @@ class LogLevel(IntEnum):
 
 
 def level_named(name: str) -> LogLevel | None:
-    """The severity of a name, in upper or lower case; None for an unknown name."""
+    """Return the severity with a name, in upper or lower case; None if the name is unknown."""
     return LogLevel.__members__.get(name.upper())
 
 
 class LogLevels:
     """The levels of the loggers of a graph.
 
-    A logger without a level of its own has that of the nearest one above it, ``robot`` for ``robot.arm``; the topmost
-    is the default level.
+    A logger that has no level itself inherits the level of its nearest ancestor: ``robot`` for ``robot.arm``. The root
+    of
+    this tree is the default level.
 
     Attributes:
         revision: changes with every change of a level.
@@ -54,17 +58,17 @@ class LogLevels:
         self.revision += 1
 
     def reset(self) -> None:
-        """Forget every level that was set."""
+        """Remove all levels that were set."""
         self._default = LogLevel.INFO
         self._own.clear()
         self.revision += 1
 
     def own(self, name: str) -> LogLevel:
-        """The level that was set for a logger itself; UNSET where none was."""
+        """Return the level that was set for the logger itself; UNSET if none was set."""
         return self._own.get(name, LogLevel.UNSET) if name else self._default
 
     def effective(self, name: str) -> LogLevel:
-        """The level in force for a logger: its own, or that of the nearest logger above it, or the default."""
+        """Return the level in force for a logger: its own, that of its nearest ancestor, or the default."""
         while name:
             level = self._own.get(name)
             if level:
@@ -75,16 +79,16 @@ class LogLevels:
 
 @dataclass(frozen=True, slots=True)
 class LogRecord:
-    """One message of a logger.
+    """A message of a logger.
 
     Attributes:
-        node: the logger's name: the node's name with its namespace before it, joined by dots.
-        level: its severity.
-        stamp_ns: the time, nanoseconds since the epoch by the graph's clock.
+        node: the logger's name, which consists of the node's namespace and name, joined by dots.
+        level: the severity.
+        stamp_ns: the time, in nanoseconds since the epoch by the graph's clock.
         text: the message; it may have several lines.
-        file: path of the source file that logged it; empty where that is not known.
-        function: the function in it.
-        line: the line in it.
+        file: the path of the source file that logged it; empty if it is not known.
+        function: the function that logged it.
+        line: the line number in the source file.
     """
 
     node: str
@@ -103,20 +107,21 @@ LogSink = Callable[[LogRecord], None]
 class Logger:
     """Logs under one name, with the methods of rclpy's loggers.
 
-    The methods ``debug`` to ``fatal`` and `log` take the filters ``once=True``, ``skip_first=True`` and
-    ``throttle_duration_sec=SECONDS``, with the last one also ``throttle_time_source_type=CLOCK``. A filter holds for
-    the place in the code that logs. The methods return whether the record was logged.
+    The methods ``debug`` to ``fatal`` and `log` accept the filters ``once=True``, ``skip_first=True`` and
+    ``throttle_duration_sec=SECONDS``; the latter may be combined with ``throttle_time_source_type=CLOCK``. A filter
+    applies
+    to the place in the code that logs. The methods return whether the record was logged.
 
     Args:
         name: the name in its records.
         sink: receives the records.
-        now_ns: the clock that stamps them, nanoseconds since the epoch.
-        levels: the tree of levels that it belongs to; a separate one when left out.
-        steady_ns: the steady time that throttles use, nanoseconds.
+        now_ns: the clock that stamps the records, in nanoseconds since the epoch.
+        levels: the tree of levels that it belongs to; a separate one by default.
+        steady_ns: the steady time that throttles use, in nanoseconds.
 
     Attributes:
         name: the name in its records.
-        rosout: receives the records too, for ``/rosout``; None for no topic. Children inherit it.
+        rosout: receives the records, too, for ``/rosout``; None for no topic. Children inherit it.
     """
 
     __slots__ = ("_calls", "_effective", "_levels", "_now_ns", "_revision", "_sink", "_steady_ns", "name", "rosout")
@@ -141,7 +146,7 @@ class Logger:
 
     @property
     def level(self) -> LogLevel:
-        """Records below this level are dropped. Setting it is `set_level`."""
+        """The level set for this logger; records below it are dropped. Assignment calls `set_level`."""
         return self.get_effective_level()
 
     @level.setter
@@ -149,22 +154,22 @@ class Logger:
         self.set_level(level)
 
     def set_level(self, level: int) -> None:
-        """Set its level, which its children inherit; with UNSET it inherits one again."""
+        """Set the logger's level, which its children inherit; with UNSET it inherits its level again."""
         self._levels.set(self.name, LogLevel(level))
 
     def get_effective_level(self) -> LogLevel:
-        """The level in force: its own, or that of the nearest logger above it, or the default level."""
+        """Return the level in force: the logger's own, that of its nearest ancestor, or the default."""
         if self._revision != self._levels.revision:
             self._effective = self._levels.effective(self.name)
             self._revision = self._levels.revision
         return self._effective
 
     def is_enabled_for(self, severity: int) -> bool:
-        """Whether records of a severity are logged."""
+        """Return whether records of a severity are logged."""
         return severity >= self.get_effective_level()
 
     def get_child(self, name: str) -> Logger:
-        """A logger whose name is this one's, a dot and the name given.
+        """Return a logger whose name is this logger's name, a dot and the given name.
 
         Raises:
             ValueError: the name is empty.
@@ -177,11 +182,13 @@ class Logger:
         return child
 
     def log(self, message: object, severity: int, **filters: Any) -> bool:
-        """Log a record unless its severity is below the level or a filter holds it back; returns whether it was logged.
+        """Log a record unless its severity is below the level or a filter suppresses it.
+
+        Returns whether it was logged.
 
         Raises:
-            TypeError: a filter is not known or incomplete.
-            ValueError: the same place in the code called with another severity or other filters before.
+            TypeError: a filter is unknown or incomplete.
+            ValueError: the same place in the code was called with another severity or other filters before.
         """
         enabled = severity >= self.get_effective_level()
         if not enabled and not filters:
@@ -218,7 +225,7 @@ class Logger:
         return self.log(message, LogLevel.WARN, **filters)
 
     def warn(self, message: object, **filters: Any) -> bool:
-        """The same as `warning`, which rclpy prefers."""
+        """Log with severity WARN; rclpy prefers `warning`."""
         return self.log(message, LogLevel.WARN, **filters)
 
     def error(self, message: object, **filters: Any) -> bool:
@@ -231,7 +238,7 @@ class Logger:
 
 
 def _caller() -> FrameType:
-    """The frame that called a logger: the first one outside of this module."""
+    """Return the frame that called a logger: the innermost frame outside this module."""
     frame = sys._getframe(2)
     while frame.f_code.co_filename == __file__ and frame.f_back is not None:
         frame = frame.f_back
@@ -239,7 +246,10 @@ def _caller() -> FrameType:
 
 
 def log_failure(logger: Logger, what: str, error: BaseException) -> None:
-    """Log a failure: a mistake in the user's input by its own words, any other exception with its traceback."""
+    """Log a failure.
+
+    For a mistake in the user's input this is its message, for any other exception the traceback.
+    """
     if isinstance(error, LinkwrightError):
         problem = f" {error}"
     else:
@@ -248,7 +258,7 @@ def log_failure(logger: Logger, what: str, error: BaseException) -> None:
 
 
 def run_logged(logger: Logger, what: str, callback: Callable[[], object]) -> None:
-    """Call a function; an exception is logged, not raised."""
+    """Call a function, and log an exception instead of raising it."""
     try:
         callback()
     except Exception as error:  # noqa: BLE001  # one callback must not take the other nodes of the process with it
@@ -260,16 +270,16 @@ _OPTIONS = ("throttle_duration_sec", "throttle_time_source_type", "skip_first", 
 
 
 class CallFilter:
-    """The filters of one place in the code that logs, and their state.
+    """The filters of one place in the code that logs, with their state.
 
     Args:
-        severity: that of the place's records.
-        name: the name of their logger.
+        severity: the severity of the place's records.
+        name: the name of the logger.
         options: ``throttle_duration_sec``, ``throttle_time_source_type``, ``skip_first``, ``once``.
-        steady_ns: the steady time that is used where no time source is given, nanoseconds.
+        steady_ns: the steady time that is used if no time source is given, in nanoseconds.
 
     Raises:
-        TypeError: an option is not known, or requires another one.
+        TypeError: an option is unknown, or requires another one.
         ValueError: the time source is neither a clock nor rcutils' steady time.
     """
 
@@ -300,7 +310,7 @@ class CallFilter:
         self._logged = False
 
     def check_unchanged(self, severity: int, name: str, options: dict[str, Any]) -> None:
-        """Raise ValueError if a call has another severity, name or other filters than the first one at the place."""
+        """Raise ValueError if a call's severity, logger name or filters differ from the first call's."""
         if severity != self._severity_and_name[0]:
             raise ValueError("Logger severity cannot be changed between calls.")
         if name != self._severity_and_name[1]:
@@ -311,10 +321,10 @@ class CallFilter:
             raise ValueError("Logging filter parameters cannot be changed between calls.")
 
     def lets_through(self) -> bool:
-        """Whether this call is logged; counts it."""
+        """Count this call, and return whether it is logged."""
         if self._duration_s:
             now_s = self._now_s()
-            # A clock that jumped back starts again.
+            # If the clock jumped back, the throttle starts again.
             if self._last_s is not None and self._last_s <= now_s < self._last_s + self._duration_s:
                 return False
             self._last_s = now_s

@@ -1,1 +1,1 @@
-"""Running callbacks: nodes and their entities, timers, rates, futures, and the dispatcher of the event loop."""
+"""Running of callbacks: node handles, entities, timers, rates, futures, and the dispatcher."""

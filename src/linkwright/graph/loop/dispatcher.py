@@ -1,8 +1,8 @@
-"""Entities, the parts of a node that call back, and the dispatcher of an event loop, which runs their calls in order.
+"""Entities, which are the sources of a node's callbacks, and the dispatcher of an event loop.
 
-An entity (a subscription, a timer, a service, ...) notifies the dispatcher of its node that it has a call to run; the
-dispatcher decides when, and in which thread, it takes the call and runs it. That of the launcher's event loop is here;
-the executors of rclpy are others (`linkwright.graph.executors`).
+An entity (a subscription, a timer, a service, ...) notifies the dispatcher of its node that it has a call to run. The
+dispatcher decides when, and in which thread, to take the call and run it. This module has the dispatcher of the
+launcher's event loop; the executors of rclpy are dispatchers, too (`linkwright.graph.executors`).
 """
 
 from __future__ import annotations
@@ -30,8 +30,9 @@ class Entity(Part, ABC):
     """A source of callbacks, from which a dispatcher takes calls.
 
     Attributes:
-        callback_group: which entities may run beside it; the node's default group unless another one is given.
-        dispatcher: runs its calls; None while the node has none, and after it was destroyed.
+        callback_group: decides which entities may run at the same time; the node's default group unless another is
+            given.
+        dispatcher: runs its calls; None while the node has none, and after the entity was destroyed.
     """
 
     unblockable = False
@@ -52,29 +53,30 @@ class Entity(Part, ABC):
 
     @abstractmethod
     def take(self) -> Callable[[], object] | None:
-        """The next call that is due, taken out of the entity's queue; None when there is no more.
+        """Remove the next due call from the entity's queue and return it; None if there is none.
 
-        The call may raise any exception of the user's; it may give a coroutine, which the dispatcher runs to its end.
+        The call may raise any exception of the user's code. It may return a coroutine, which the dispatcher runs to its
+        end.
         """
 
     @abstractmethod
     def has_work(self) -> bool:
-        """Whether `take` would give a call."""
+        """Return whether `take` would return a call."""
 
     @property
     @abstractmethod
     def what(self) -> str:
-        """Its name in messages about a failed call."""
+        """The description of this entity in log messages."""
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Set the dispatcher that runs the calls; pending ones are announced to it."""
+        """Set the dispatcher that runs the calls; pending calls are announced to it."""
         self.dispatcher = dispatcher
         self._announced = False
         if dispatcher is not None and self.has_work():
             self.announce()
 
     def announce(self) -> None:
-        """Notify the dispatcher that there is a call to take, unless it knows."""
+        """Notify the dispatcher that there is a call to take, unless it has been notified already."""
         if not self._announced:
             dispatcher = self.dispatcher
             if dispatcher is not None:
@@ -82,9 +84,9 @@ class Entity(Part, ABC):
                 dispatcher.ready(self)
 
     def _next_of(self, queue: deque[T]) -> T | None:
-        """Take the oldest item out of a queue that the entity's calls come from; None when it is empty.
+        """Remove the oldest item from a queue of the entity and return it; None if the queue is empty.
 
-        The items behind it are announced.
+        If items remain, the entity announces them.
         """
         self._announced = False
         try:
@@ -96,21 +98,24 @@ class Entity(Part, ABC):
         return item
 
     def begin(self) -> None:
-        """Be run by the node's dispatcher."""
+        """Let the node's dispatcher run the entity's calls."""
         self.set_dispatcher(self.node.dispatcher)
 
     def retire(self) -> None:
-        """Never call back again."""
+        """Stop calling callbacks."""
         self.dispatcher = None
         super().retire()
 
     def report(self, error: BaseException) -> None:
-        """Log in the node's name that a call failed."""
+        """Log with the node's logger that a call failed."""
         log_failure(self.node.logger, self.what, error)
 
 
 class GuardCondition(Entity):
-    """Calls back soon after it was triggered: once, however often it was triggered in between."""
+    """Calls its callback soon after it was triggered.
+
+    Several triggers in a row result in a single call.
+    """
 
     def __init__(
         self, node: NodeHandle, callback: Callable[[], object] | None, callback_group: CallbackGroup | None = None
@@ -121,21 +126,21 @@ class GuardCondition(Entity):
 
     @property
     def what(self) -> str:
-        """How log messages name it."""
+        """The description of this entity in log messages."""
         return "guard condition callback"
 
     def trigger(self) -> None:
-        """Make a call of the callback due."""
+        """Schedule a call of the callback."""
         if not self.destroyed:
             self._triggered = True
             self.announce()
 
     def has_work(self) -> bool:
-        """Whether it was triggered."""
+        """Return whether the guard condition was triggered."""
         return self._triggered
 
     def take(self) -> Callable[[], object] | None:
-        """The callback, if it was triggered."""
+        """Return the callback if the guard condition was triggered; otherwise None."""
         self._announced = False
         if not self._triggered or self.destroyed:
             return None
@@ -144,12 +149,12 @@ class GuardCondition(Entity):
 
 
 def accepts(callback: Callable[..., object], count: int, *, unknown: bool) -> bool:
-    """Whether a callback can be called with so many positional arguments.
+    """Return whether a callback can be called with a number of positional arguments.
 
     Args:
         callback: the callback.
-        count: how many.
-        unknown: the answer for a callable of which Python does not know.
+        count: the number of arguments.
+        unknown: the return value for a callable whose signature Python cannot determine.
     """
     try:
         signature = inspect.signature(callback)
@@ -169,12 +174,14 @@ _MOST_TURNS = 1000
 
 
 class LoopDispatcher:
-    """A dispatcher on the event loop of the thread that makes it.
+    """A dispatcher on the event loop of the thread that creates it.
 
-    Entities take turns: one that has more to do after its call goes to the end of the queue, so that a flood of
-    messages on one topic does not starve the others. A turn of the loop runs ready entities for a moment, and then lets
-    the loop serve sockets and timers. Work that becomes ready while a callback runs comes after it, never inside it.
-    Callbacks that are coroutines run as tasks of the loop, which end with their node.
+    Entities take turns: an entity that has more calls after its turn moves to the end of the queue, so that a flood of
+    messages on one topic does not starve the others. In each iteration of the loop the dispatcher runs ready entities
+    for
+    a moment, and then lets the loop serve sockets and timers. Work that becomes ready while a callback runs is run
+    after
+    it, never inside it. Callbacks that are coroutines run as tasks of the loop, which end with their node.
     """
 
     def __init__(self, timebase: Timebase, loop: asyncio.AbstractEventLoop) -> None:
@@ -193,15 +200,15 @@ class LoopDispatcher:
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop:
-        """The event loop it runs on."""
+        """The event loop that the dispatcher runs on."""
         return self._loop
 
     def is_own_thread(self) -> bool:
-        """Whether this is asked from the loop's thread."""
+        """Return whether the calling thread is the loop's thread."""
         return threading.get_ident() == self._thread
 
     def ready(self, entity: Entity) -> None:
-        """Run the entity's next call soon. It may be asked from any thread."""
+        """Run the entity's next call soon; callable from any thread."""
         self._ready.append(entity)
         if self._is_scheduled:
             return
@@ -212,13 +219,13 @@ class LoopDispatcher:
             self._call_threadsafe(self._wake)
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a callback for a count of the timebase."""
+        """Schedule a callback for a time of the timebase's steady clock."""
         if threading.get_ident() == self._thread:
             return self._timebase.call_at(self._loop, steady_ns, partial(self._alarmed, callback))
         return _AlarmFromElsewhere(self, steady_ns, callback)
 
     def call_threadsafe(self, callback: Callable[[], None]) -> None:
-        """Schedule a callback on the loop, from any thread; nothing happens when the loop has ended."""
+        """Schedule a callback on the loop, from any thread; does nothing if the loop has ended."""
         self._call_threadsafe(callback)
 
     def forget(self, node: NodeHandle) -> None:
@@ -228,10 +235,10 @@ class LoopDispatcher:
                 task.cancel()
 
     async def settle(self) -> None:
-        """Wait until nothing is ready any more, including the calls that other calls make ready.
+        """Wait until no work is ready, including calls that other calls make ready.
 
-        Other coroutines on the loop are given turns until they wait for something; there is a limit for one that never
-        does.
+        Other coroutines on the loop get turns until they wait for something; there is a limit for a coroutine that
+        never does.
         """
         await asyncio.sleep(0)
         turns = 0
@@ -240,7 +247,7 @@ class LoopDispatcher:
             await asyncio.sleep(0)
 
     def _others_are_ready(self) -> bool:
-        # asyncio's own loop keeps its queue here; a loop without one is taken to be idle.
+        # asyncio's own loop keeps its queue here; a loop without this attribute is assumed to be idle.
         return bool(getattr(self._loop, "_ready", ()))
 
     def close(self) -> None:
@@ -252,11 +259,11 @@ class LoopDispatcher:
             task.cancel()
 
     async def join(self) -> None:
-        """Wait for the coroutines that were cancelled."""
+        """Wait until the cancelled coroutines have ended."""
         tasks = [task for task in self._tasks if task is not asyncio.current_task()]
         if tasks:
             await asyncio.gather(*tasks, return_exceptions=True)
-            await asyncio.sleep(0)  # lets the loop forget them, too
+            await asyncio.sleep(0)  # lets the loop drop them, too
 
     def _call_threadsafe(self, callback: Callable[[], None]) -> None:
         try:
@@ -270,7 +277,7 @@ class LoopDispatcher:
             self._schedule()
 
     def _alarmed(self, callback: Callable[[], None]) -> None:
-        """Run an alarm and, in the same turn of the loop, the calls that it makes ready."""
+        """Run an alarm and, in the same iteration of the loop, the calls that it makes ready."""
         if self._is_scheduled:
             callback()
             return
@@ -365,7 +372,7 @@ class _Hold:
 
 
 class _AlarmFromElsewhere:
-    """An alarm that was set by a thread other than the loop's."""
+    """An alarm that was set by a thread other than the loop's thread."""
 
     __slots__ = ("_alarm", "_cancelled", "_dispatcher")
 

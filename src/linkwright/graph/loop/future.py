@@ -1,11 +1,9 @@
-"""Futures for callbacks, coroutines and threads (rclpy ``Future``), and callbacks that would wait for ever.
-
-Callbacks that block until an event which only their own callback group could let in.
+"""Futures (rclpy ``Future``), and detection of callbacks that would wait forever.
 
 In rclpy the response to a request is taken in the callback group of its client. While a callback of a mutually
-exclusive group runs, nothing else of that group does: a callback that blocks until the response arrives blocks for
-ever. Here responses run no code of the user's and are let in all the same. The mistake is logged as an error before the
-program runs on a robot; where the parameter `STRICT` of the node is set, the callback hangs as in rclpy.
+exclusive group runs, nothing else of that group does, so a callback that blocks until the response arrives blocks
+forever. Here, responses run no code of the user and are accepted anyway. The mistake is logged as an error, before the
+program runs on a robot. If the node's parameter `STRICT` is set, the callback hangs as in rclpy.
 """
 
 from __future__ import annotations
@@ -33,20 +31,22 @@ _reported: set[tuple[CodeType, str]] = set()
 
 
 class Waited(Protocol):
-    """A future, as it is looked at here.
+    """The part of a future that this check needs.
 
     Attributes:
-        source: the client whose server it waits for; None for any other future.
+        source: the client whose response the future waits for; None for any other future.
     """
 
     source: Any
 
     def ended(self) -> bool:
-        """Whether there is nothing more to wait for."""
+        """Return whether the wait is over."""
 
 
 def report_self_wait(future: Waited) -> None:
-    """Log an error where the calling thread is in a callback that would wait for ever on a robot; once for each place.
+    """Log an error if the calling thread is in a callback that would wait forever on a robot.
+
+    Each place in the code is reported once.
 
     Args:
         future: the future to wait for.
@@ -78,7 +78,7 @@ def report_self_wait(future: Waited) -> None:
 
 
 def _entity_of(frame: FrameType) -> Any:
-    """The entity whose callback a frame of an executor runs; None for any other frame."""
+    """Return the entity whose callback an executor's frame runs; None for any other frame."""
     return frame.f_locals.get(RUNNER) if RUNNER in frame.f_code.co_varnames else None
 
 
@@ -94,14 +94,14 @@ _driver = threading.local()
 
 
 def is_stepped_by_executor() -> bool:
-    """Whether this thread is inside of `StepsByExecutor`."""
+    """Return whether the calling thread is inside `StepsByExecutor`."""
     return bool(getattr(_driver, "depth", 0))
 
 
 class StepsByExecutor:
-    """While this is entered, coroutines are stepped in this thread by an executor of rclpy, not by asyncio.
+    """A context in which an executor of rclpy, not asyncio, steps the coroutines of this thread.
 
-    A future that is awaited then gives itself to the code that steps, even inside a running event loop.
+    An awaited future is then passed to the code that steps, even inside a running event loop.
     """
 
     def __enter__(self) -> None:
@@ -112,11 +112,11 @@ class StepsByExecutor:
 
 
 class Future(Generic[T]):
-    """A future result. It can be awaited in a coroutine that asyncio runs and in one that an executor runs.
+    """A future result, which can be awaited in coroutines of asyncio and of an executor.
 
     Args:
-        executor: runs the done callbacks (its ``create_task(callback, future)``); without one they are called at once
-            in the thread that completes the future.
+        executor: runs the done callbacks (its ``create_task(callback, future)``). Without an executor they are called
+            immediately, in the thread that completes the future.
     """
 
     def __init__(self, *, executor: Any = None) -> None:
@@ -137,19 +137,25 @@ class Future(Generic[T]):
             print(f"The following exception was never retrieved: {self._exception}", file=sys.stderr)
 
     def done(self) -> bool:
-        """Whether it has a result or an exception; one that was cancelled has not, as in rclpy."""
+        """Return whether the future has a result or an exception.
+
+        As in rclpy, a cancelled future is not done.
+        """
         return self._done
 
     def ended(self) -> bool:
-        """Whether there is nothing more to wait for: it is done or cancelled."""
+        """Return whether the future is done or cancelled."""
         return self._done or self._cancelled
 
     def cancelled(self) -> bool:
-        """Whether it was cancelled."""
+        """Return whether the future was cancelled."""
         return self._cancelled
 
     def cancel(self) -> None:
-        """Give up: callbacks are called, and no waiter waits any longer. Does nothing to a future that is done."""
+        """Cancel the future: its callbacks are called, and all waits end.
+
+        Does nothing if the future is done.
+        """
         with self._lock:
             if self._done or self._cancelled:
                 return
@@ -157,10 +163,10 @@ class Future(Generic[T]):
         self._notify()
 
     def result(self) -> T | None:
-        """The result; None while there is none.
+        """Return the result; None while there is none.
 
         Raises:
-            Exception: the one that the future ended with.
+            Exception: the exception that the future ended with.
         """
         if self._exception is not None:
             self._exception_fetched = True
@@ -168,12 +174,12 @@ class Future(Generic[T]):
         return self._result
 
     def exception(self) -> BaseException | None:
-        """The exception that the future ended with; None when there is none."""
+        """Return the exception that the future ended with; None if there is none."""
         self._exception_fetched = True
         return self._exception
 
     def set_result(self, result: T) -> None:
-        """End with a result."""
+        """Complete the future with a result."""
         with self._lock:
             self._result = result
             self._done = True
@@ -181,7 +187,7 @@ class Future(Generic[T]):
         self._notify()
 
     def set_exception(self, exception: BaseException) -> None:
-        """End with an exception."""
+        """Complete the future with an exception."""
         with self._lock:
             self._exception = exception
             self._exception_fetched = False
@@ -190,7 +196,10 @@ class Future(Generic[T]):
         self._notify()
 
     def add_done_callback(self, callback: Callable[[Any], object]) -> None:
-        """Register a callback that gets this future when it is done; it is called at once if it is."""
+        """Register a callback that receives this future when it is done.
+
+        It is called immediately if it is done already.
+        """
         with self._lock:
             if not self.ended():
                 self._callbacks.append(callback)
@@ -198,7 +207,7 @@ class Future(Generic[T]):
         self._call(callback)
 
     def remove_done_callback(self, callback: Callable[[Any], object]) -> int:
-        """Take a callback back; how many times it was there."""
+        """Unregister a callback; return how many times it was registered."""
         with self._lock:
             kept = [registered for registered in self._callbacks if registered != callback]
             removed = len(self._callbacks) - len(kept)
@@ -210,18 +219,18 @@ class Future(Generic[T]):
         self._executor = executor
 
     def hand_over(self, result: T, dispatcher: Any) -> None:
-        """End with a result, unless it has ended.
+        """Complete the future with a result, unless it has ended.
 
         Args:
             result: the result.
-            dispatcher: of the node that waits for it; has the done callbacks run, where it is an executor.
+            dispatcher: the dispatcher of the waiting node; if it is an executor, it runs the done callbacks.
         """
         if not self.ended():
             self._run_callbacks_by(dispatcher)
             self.set_result(result)
 
     def fail(self, exception: BaseException, dispatcher: Any) -> None:
-        """End with an exception, unless it has ended; see `hand_over`."""
+        """Complete the future with an exception, unless it has ended; see `hand_over`."""
         if not self.ended():
             self._run_callbacks_by(dispatcher)
             self.set_exception(exception)
@@ -231,9 +240,9 @@ class Future(Generic[T]):
             self.set_executor(dispatcher)
 
     def add_waiter(self, callback: Callable[[], object]) -> None:
-        """For what runs coroutines: call something at once, in whatever thread, when the future is done or cancelled.
+        """Register a callback that is called, in any thread, as soon as the future is done or cancelled.
 
-        A callback that is there already is not added again.
+        This is for code that runs coroutines. A callback that is registered already is not added again.
         """
         with self._lock:
             if not self.ended():
@@ -243,12 +252,12 @@ class Future(Generic[T]):
         callback()
 
     def remove_waiter(self, callback: Callable[[], object]) -> None:
-        """Take a waiter back."""
+        """Unregister a callback that was registered with `add_waiter`."""
         with self._lock, suppress(ValueError):
             self._waiters.remove(callback)
 
     def wait(self, timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until it is done or cancelled; whether it is."""
+        """Block the calling thread until the future is done or cancelled; return whether it is."""
         if self.source is not None:
             report_self_wait(self)
         event = threading.Event()

@@ -1,7 +1,10 @@
-"""A node as the graph knows it: its name, parts, callback groups and dispatcher, behind the API that users see.
+"""The internal handle of a node, behind the API that users see.
 
-rcl has such an object too (``rcl_node_t``), and rclpy's nodes give theirs as ``node.handle``. Publishers, timers and
-the other parts of a node know this, not the node: so a user's class may have any attributes and override any method.
+It has the node's name, parts, callback groups and dispatcher.
+
+rcl has such an object as well (``rcl_node_t``), which rclpy's nodes provide as ``node.handle``. Publishers, timers and
+the other parts of a node refer to the handle instead of the node, so a user's node class may have any attributes and
+override any method.
 """
 
 from __future__ import annotations
@@ -22,10 +25,12 @@ if TYPE_CHECKING:
 class CallbackGroup:
     """Decides which of its entities may run; a base class for users' own groups.
 
-    An executor asks `can_execute`, then calls `beginning_execution`, which may still refuse, and `ending_execution`. It
+    An executor calls `can_execute`, then `beginning_execution`, which may still refuse, and finally `ending_execution`.
+    It
     asks again when a callback has ended.
 
-    The class is not abstract: as in rclpy, programs may instantiate it, and a method without an override raises.
+    As in rclpy the class is not abstract: programs may instantiate it, and methods that are not overridden raise an
+    error.
     """
 
     def __init__(self) -> None:
@@ -34,43 +39,46 @@ class CallbackGroup:
         self._forget = self.entities.discard
 
     def add_entity(self, entity: Any) -> None:
-        """Make an entity of a node a member; its callbacks then run as the group allows."""
+        """Add an entity of a node to the group, which then decides when its callbacks run."""
         self.entities.add(weakref.ref(entity, self._forget))
 
     def has_entity(self, entity: Any) -> bool:
-        """Whether an entity is a member."""
+        """Return whether an entity is a member."""
         return weakref.ref(entity) in self.entities
 
     def can_execute(self, entity: Any) -> bool:
-        """Whether a member may run now."""
+        """Return whether a member may run now."""
         raise NotImplementedError
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Note that a member is about to run; False when it may not."""
+        """Note that a member is about to run; return False if it may not."""
         raise NotImplementedError
 
     def ending_execution(self, entity: Any) -> None:
-        """Note that a member has run."""
+        """Note that a member has finished running."""
         raise NotImplementedError
 
 
 class ReentrantCallbackGroup(CallbackGroup):
-    """Everything may run at any time, also one callback several times at once."""
+    """A group whose callbacks may run at any time, even one callback several times in parallel."""
 
     def can_execute(self, entity: Any) -> bool:
-        """Always."""
+        """Return True: any member may run."""
         return True
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Always."""
+        """Return True: any member may run."""
         return True
 
     def ending_execution(self, entity: Any) -> None:
-        """Nothing to record."""
+        """Do nothing: there is no state to update."""
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
-    """One member runs at a time. A coroutine counts as running until its end, also while it awaits."""
+    """A group in which one member runs at a time.
+
+    A coroutine counts as running until it ends, even while it awaits.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -78,11 +86,11 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         self._turn = [None]  # a token: the thread that pops it may run; faster than a lock
 
     def can_execute(self, entity: Any) -> bool:
-        """Whether no member runs."""
+        """Return whether no member is running."""
         return self._active is None
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Let a member run if none does."""
+        """Let a member run if no other is running; return whether it may."""
         try:
             self._turn.pop()
         except IndexError:
@@ -91,17 +99,17 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         return True
 
     def ending_execution(self, entity: Any) -> None:
-        """Let the next one run."""
+        """Let the next member run."""
         if self._active is entity:
             self._active = None
             self._turn.append(None)
 
 
 class _FreeGroup(ReentrantCallbackGroup):
-    """A group without rules that serves every node of the process, and so remembers none of its members."""
+    """A reentrant group that all nodes of the process share; it keeps no list of members."""
 
     def add_entity(self, entity: Any) -> None:
-        """Nothing to record."""
+        """Do nothing: the group keeps no members."""
 
 
 FREE_GROUP: CallbackGroup = _FreeGroup()
@@ -109,10 +117,10 @@ FREE_GROUP: CallbackGroup = _FreeGroup()
 
 
 class Handle:
-    """Entered while its owner is used (rclpy ``handle``).
+    """A context that is entered while its owner is in use (rclpy ``handle``).
 
     Args:
-        is_destroyed: whether that was destroyed.
+        is_destroyed: returns whether the owner was destroyed.
     """
 
     def __init__(self, is_destroyed: Callable[[], bool]) -> None:
@@ -121,7 +129,7 @@ class Handle:
 
     @property
     def pointer(self) -> int:
-        """A number that distinguishes it from others."""
+        """A number that distinguishes this handle from others."""
         return id(self)
 
     def __enter__(self) -> Self:
@@ -143,7 +151,10 @@ class Handled:
 
     @property
     def handle(self) -> Handle:
-        """To be entered while this is used; raises InvalidHandleError then, if it was destroyed."""
+        """The handle to enter while this object is in use.
+
+        Entering raises InvalidHandleError if the object was destroyed.
+        """
         found = _handles.get(self)
         if found is None:
             owner = weakref.ref(self)
@@ -158,47 +169,51 @@ P = TypeVar("P", bound="Part")
 
 
 class Dispatcher(AlarmSetter, Protocol):
-    """Runs the calls of entities: an event loop, or an executor. All methods may be called from any thread."""
+    """The interface of an event loop or executor that runs the calls of entities.
+
+    All methods may be called from any thread.
+    """
 
     def ready(self, entity: Any) -> None:
         """Note that an `Entity` has at least one call to be taken.
 
-        An entity announces itself when its queue was empty before, and again from within `Entity.take` while more
-        remain; so nothing piles up here when messages flood in. An entity whose ``dispatcher`` is another one by then
-        is skipped.
+        An entity announces itself when its queue was empty before, and again from within `Entity.take` while more calls
+        remain, so nothing accumulates here during a flood of messages. An entity that has another ``dispatcher`` by the
+        time of
+        its turn is skipped.
         """
 
 
 class HomeGraph(Protocol):
-    """A graph, as its nodes and their parts use it."""
+    """The interface of a graph that its nodes and their parts need."""
 
     timebase: Timebase
 
     def add(self, endpoint: Any) -> None:
-        """Bring a new endpoint together with those of its name."""
+        """Connect a new endpoint with those of the same name."""
 
     def remove(self, endpoint: Any) -> None:
-        """Take an endpoint away."""
+        """Remove an endpoint."""
 
     def forget(self, node: NodeHandle) -> None:
-        """Take a node away that is destroyed."""
+        """Remove a node that was destroyed."""
 
     def notify_change(self) -> None:
-        """Wake the waiters of `wait_until`, which check their condition again."""
+        """Wake the threads blocked in `wait_until` to check their conditions again."""
 
     def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until a condition of the graph holds; whether it does."""
+        """Block the calling thread until a condition of the graph holds; return whether it does."""
 
     def watch_lost(self) -> None:
-        """Notify subscriptions from now on of publishers of their topics that are lost."""
+        """Start to notify subscriptions of lost publishers of their topics."""
 
 
 class Part(Handled):
-    """A part of a node, such as an endpoint or a timer; at the end of a ``with`` block it is destroyed.
+    """A part of a node, such as an endpoint or a timer. Leaving its ``with`` block destroys it.
 
     Attributes:
-        node: whose it is.
-        destroyed: whether it was taken out of the node.
+        node: the node that it belongs to.
+        destroyed: whether it was removed from the node.
     """
 
     node: NodeHandle
@@ -208,21 +223,21 @@ class Part(Handled):
     """Whether it outlives the other parts of a node that is destroyed, which may use it."""
 
     def begin(self) -> None:
-        """The node has it from now on."""
+        """Start operating, after the node has added the part."""
 
     def retire(self) -> None:
-        """The node has it no longer."""
+        """Stop operating, when the node removes the part."""
         self.destroyed = True
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
         """Set the dispatcher that runs its callbacks."""
 
     def destroy(self) -> None:
-        """Take it out of the graph and the node; nothing is called back any more."""
+        """Remove the part from the graph and the node; its callbacks are not called again."""
         self.node.remove(self)
 
     def check_alive(self) -> None:
-        """Raise InvalidHandleError when it was destroyed."""
+        """Raise InvalidHandleError if the part was destroyed."""
         if self.destroyed:
             raise InvalidHandleError
 
@@ -237,19 +252,20 @@ class NodeHandle(Handle):
     """A node of a graph: its name, its parts, and the dispatcher that runs its callbacks.
 
     Args:
-        graph: the graph it lives in.
-        identity: its name.
-        remappings: its rules for names of topics and services.
-        logger: its logger.
-        dispatcher: runs its callbacks; None while nothing does.
+        graph: the graph that the node belongs to.
+        identity: the node's name.
+        remappings: the node's rules for names of topics and services.
+        logger: the node's logger.
+        dispatcher: runs the node's callbacks; None while there is none.
         copies_messages: whether its messages are copied, so that their sender may change them afterwards.
         stays_inside: whether it is hidden, with all its endpoints, from other processes.
 
     Attributes:
         timebase: the time of the graph.
-        default_callback_group: the group of entities that are in no other.
-        intake: called with each subscription of the node and each message that arrives for it, in any thread; the
-            message waits for the callback only if it returns True. None queues all messages.
+        default_callback_group: the group of entities that are in no other group.
+        intake: called with each subscription of the node and each message that arrives for it, in any thread. The
+            message
+            is queued for the callback only if it returns True. None queues all messages.
         strict_callback_groups: whether responses to its requests wait for the callback group of the client.
     """
 
@@ -281,21 +297,21 @@ class NodeHandle(Handle):
         self._cleanups: dict[Callable[[], object], None] = {}
 
     def check_alive(self) -> None:
-        """Raise InvalidHandleError when the node was destroyed."""
+        """Raise InvalidHandleError if the node was destroyed."""
         if self.is_destroyed:
             raise InvalidHandleError
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Set the dispatcher that runs the node's callbacks; None for none.
+        """Set the dispatcher that runs the node's callbacks; None for no dispatcher.
 
-        Calls that fall due while there is none wait as the quality of service says; the next one is notified of them.
+        Calls that become due while there is none wait as their QoS specifies; the next dispatcher is notified of them.
         """
         self.dispatcher = dispatcher
         for part in tuple(self._parts):
             part.set_dispatcher(dispatcher)
 
     def add(self, part: P) -> P:
-        """Take a part into the node, and give it back: its calls are run with the node's.
+        """Add a part to the node and return it; the node's dispatcher runs its callbacks.
 
         Raises:
             InvalidHandleError: the node was destroyed.
@@ -306,7 +322,7 @@ class NodeHandle(Handle):
         return part
 
     def remove(self, part: Part) -> bool:
-        """Take a part out of the node for good. Whether it was this node's."""
+        """Remove a part from the node permanently; return whether it belonged to this node."""
         if part not in self._parts:
             return False
         del self._parts[part]
@@ -314,39 +330,45 @@ class NodeHandle(Handle):
         return True
 
     def parts(self, kind: type[P]) -> tuple[P, ...]:
-        """The parts of a kind, in the order in which they were made."""
+        """Return the parts of a kind, in order of creation."""
         return tuple(part for part in tuple(self._parts) if isinstance(part, kind))
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """The absolute name of a topic as the node names it, expanded and, unless `only_expand`, remapped.
+        """Return the absolute name of a topic, expanded and, unless `only_expand` is true, remapped.
 
         Raises:
-            InvalidTopicNameError: it is not valid.
+            InvalidTopicNameError: the topic name is not valid.
         """
         name, namespace = self.identity.name, self.identity.namespace
         full_name = expand_topic_name(topic, name, namespace)
         return full_name if only_expand else self.remappings.topic(full_name, name, namespace)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """The absolute name of a service or action as the node names it, expanded and, unless `only_expand`, remapped.
+        """Return the absolute name of a service or action; see `resolve_topic_name`.
 
         Raises:
-            InvalidServiceNameError: it is not valid.
+            InvalidServiceNameError: the service name is not valid.
         """
         name, namespace = self.identity.name, self.identity.namespace
         full_name = expand_service_name(service, name, namespace)
         return full_name if only_expand else self.remappings.service(full_name, name, namespace)
 
     def add_cleanup(self, callback: Callable[[], object]) -> None:
-        """Register a callback for the end of the node, before that of its parts; the last one added is called first."""
+        """Register a callback that is called before the node's parts are destroyed.
+
+        The last one added is called first.
+        """
         self._cleanups[callback] = None
 
     def remove_cleanup(self, callback: Callable[[], object]) -> None:
-        """Undo `add_cleanup`."""
+        """Unregister a callback that was registered with `add_cleanup`."""
         self._cleanups.pop(callback, None)
 
     def destroy(self) -> bool:
-        """Take the node and all it owns out of the graph. A second call does nothing. Whether this was the first."""
+        """Remove the node and all its parts from the graph; return whether this was the first call.
+
+        A second call does nothing.
+        """
         if self.is_destroyed:
             return False
         self.is_destroyed = True

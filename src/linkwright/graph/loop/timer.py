@@ -1,4 +1,4 @@
-"""Timers, which call back at a fixed period, and rates, which block a thread for the rest of one."""
+"""Timers, which call back at a fixed period, and rates, which sleep until a timer's next tick."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class TimerInfo:
     Args:
         expected_call_time: nanoseconds, or a point in time.
         actual_call_time: nanoseconds, or a point in time.
-        clock_type: of the clock that nanoseconds are counted on.
+        clock_type: the type of the clock to which times in nanoseconds refer.
     """
 
     expected_call_time: Time
@@ -42,18 +42,19 @@ class TimerInfo:
 
 
 class Timer(Entity):
-    """Calls back at a fixed period, counted from its start: a late call does not shift the next.
+    """Calls back at a fixed period, counted from its start: a late call does not shift the next one.
 
-    Calls that were missed altogether are left out, as rcl does. The period is counted on the timer's clock: on
-    simulated time when that is a ROS clock under simulation.
+    As in rcl, calls that were missed entirely are skipped. The period is measured on the timer's clock, which may be a
+    ROS
+    clock that follows simulated time.
 
     Args:
-        node: whose it is.
-        callback: called without arguments, or with a `TimerInfo` when it takes one.
+        node: the node that owns the timer.
+        callback: called without arguments, or with a `TimerInfo` if it takes one.
         period_ns: the period; 0 calls whenever there is nothing else to do.
-        clock: the clock that counts the period.
-        callback_group: which entities may run beside it.
-        autostart: whether it runs from the start; else `reset` starts it.
+        clock: the clock that measures the period.
+        callback_group: decides which entities may run at the same time.
+        autostart: whether it runs from the start; otherwise `reset` starts it.
 
     Raises:
         ValueError: the period is negative.
@@ -85,7 +86,7 @@ class Timer(Entity):
 
     @property
     def timer_period_ns(self) -> int:
-        """The period in nanoseconds; a new one holds from the next `reset` or call on."""
+        """The period in nanoseconds; a new period takes effect with the next `reset` or call."""
         return self._period_ns
 
     @timer_period_ns.setter
@@ -107,24 +108,24 @@ class Timer(Entity):
 
     @property
     def what(self) -> str:
-        """How log messages name it."""
+        """The description of this entity in log messages."""
         return "timer callback"
 
     def is_canceled(self) -> bool:
-        """Whether the timer is stopped."""
+        """Return whether the timer is stopped."""
         return not self._running
 
     def is_ready(self) -> bool:
-        """Whether a call is due."""
+        """Return whether a call is due."""
         return self._running and self.clock.timer_ns() >= self._due_ns
 
     def cancel(self) -> None:
-        """Stop; `reset` starts it again."""
+        """Stop the timer; `reset` starts it again."""
         self._running = False
         self._disarm()
 
     def reset(self) -> None:
-        """Restart the period: the next call comes one period from now.
+        """Restart the period: the next call is due one period from now.
 
         Raises:
             InvalidHandleError: the timer was destroyed.
@@ -135,42 +136,49 @@ class Timer(Entity):
         self._running = True
         self._last_ns = self.clock.timer_ns()
         self._due_ns = self._last_ns + self._period_ns
-        # An alarm that comes too early sets itself again: a timer reset with each message sets no alarm each time.
+        # An alarm that fires too early sets itself again, so a timer that is reset with each message need not set one
+        # each time.
         if self._alarm is None or self._alarm_ns > self._due_ns:
             self._disarm_alarm()
             self._arm()
 
     def time_since_last_call(self) -> int:
-        """Nanoseconds since the last call, or since the start when there was none."""
+        """Return the nanoseconds since the last call, or since the start if there was none."""
         return self.clock.timer_ns() - self._last_ns
 
     def time_until_next_call(self) -> int | None:
-        """Nanoseconds until the next call, negative when it is late; None for a timer that is stopped."""
+        """Return the nanoseconds until the next call, negative if it is late.
+
+        The result is None if the timer is stopped.
+        """
         return self._due_ns - self.clock.timer_ns() if self._running else None
 
     def next_call_ns(self) -> int:
-        """When the next call is due, by `Clock.timer_ns` of its clock."""
+        """Return the time at which the next call is due, by `Clock.timer_ns` of the timer's clock."""
         return self._due_ns
 
     def retire(self) -> None:
-        """Never call back again."""
+        """Stop the timer permanently, and remove it from its clock."""
         super().retire()
         self.cancel()
         self.clock.remove_timer(self)
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Set the dispatcher that runs the calls; one that fell due without one is made once."""
+        """Set the dispatcher that runs the calls.
+
+        Calls that became due without a dispatcher are made once.
+        """
         self._disarm()
         super().set_dispatcher(dispatcher)
         if self._running:
             self._arm()
 
     def has_work(self) -> bool:
-        """Whether a call fell due and was not taken yet."""
+        """Return whether a call is due and has not been taken."""
         return self._due
 
     def take(self) -> Callable[[], object] | None:
-        """The call that is due."""
+        """Return the call that is due; None if there is none."""
         self._announced = False
         if not self._due:
             return None
@@ -194,19 +202,23 @@ class Timer(Entity):
         )
 
     def before_switch(self) -> None:
-        """Keep the rest of the period while the clock becomes another one."""
+        """Save the rest of the period before the clock changes its time source."""
         self._rest_ns = min(max(self._due_ns - self.clock.timer_ns(), 0), self._period_ns)
         self._disarm_alarm()
 
     def after_switch(self) -> None:
-        """Resume on the new clock with the rest of the period."""
+        """Continue with the rest of the period after the clock has changed its time source."""
         self._due_ns = self.clock.timer_ns() + self._rest_ns
         self._last_ns = self._due_ns - self._period_ns
         if self._running and not self._due:
             self._arm()
 
     def after_jump_back(self) -> None:
-        """Restart the period when the clock went back behind the last call, or else wait for the same time."""
+        """Adjust the timer after its clock has jumped back.
+
+        The period restarts if the clock is now before the last call; otherwise the next call stays due at the same
+        time.
+        """
         self._disarm_alarm()
         now_ns = self.clock.timer_ns()
         if now_ns < self._last_ns:
@@ -247,13 +259,14 @@ def _check_period(period_ns: int) -> None:
 
 
 class Rate:
-    """Lets a loop turn at a fixed rate: each `sleep` ends with the next beat of a timer.
+    """Lets a loop run at a fixed rate: each `sleep` ends with the next tick of a timer.
 
-    The timer's callbacks must be run by another thread than the one that sleeps; a coroutine waits with `wait`. A late
-    beat does not shift the beats after it.
+    The timer's callbacks must be run by another thread than the sleeping one; a coroutine calls `wait`. A late tick
+    does
+    not shift the ticks after it.
 
     Args:
-        timer: the timer that beats; the rate takes its callback.
+        timer: the timer that ticks; the rate replaces its callback.
     """
 
     def __init__(self, timer: Timer) -> None:
@@ -264,7 +277,7 @@ class Rate:
         timer.node.add_cleanup(self.wake)
 
     def sleep(self) -> None:
-        """Block the calling thread until the next beat.
+        """Block the calling thread until the next tick.
 
         Raises:
             InterruptedWaitError: the rate's node was destroyed, or its graph closed.
@@ -274,7 +287,7 @@ class Rate:
         self._end()
 
     async def wait(self) -> None:
-        """Wait for the next beat in a coroutine.
+        """Wait for the next tick in a coroutine.
 
         Raises:
             InterruptedWaitError: the rate's node was destroyed, or its graph closed.
@@ -283,12 +296,15 @@ class Rate:
         self._end()
 
     def wake(self) -> None:
-        """End all sleep, now and later."""
+        """End all current and future sleeps."""
         self._ended = True
         self._beat()
 
     def destroy(self) -> bool:
-        """End the rate; threads that sleep by it wake. Returns whether it had not been destroyed before."""
+        """Destroy the rate, and wake the threads that sleep on it.
+
+        Returns whether it existed before the call.
+        """
         self.wake()
         self.timer.node.remove_cleanup(self.wake)
         return self.timer.node.remove(self.timer)

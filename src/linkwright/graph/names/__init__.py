@@ -1,1 +1,1 @@
-"""Names in the graph: validation, expansion, remapping, and expressions that find them."""
+"""Names in the graph: validation, expansion, remapping, and regular expressions that match them."""

@@ -1,4 +1,4 @@
-"""Regular expressions from files and pages, with a limit on the time that a search takes."""
+"""Regular expressions from files and pages, with a limit on the time that a search may take."""
 
 from __future__ import annotations
 
@@ -19,26 +19,27 @@ _MOST_CHARACTERS = 2000
 
 
 class ExpressionError(ValueError):
-    """A text is not a valid regular expression; the message is the reason."""
+    """Raised when a text is not a valid regular expression; the message is the reason."""
 
 
 class TooCostlyError(ExpressionError):
-    """A search took too long."""
+    """Raised when a search takes too long."""
 
 
 class Expression:
-    """A regular expression, to be found in names (decision 0020).
+    """A regular expression for names (decision 0020).
 
     Args:
-        text: in the language of the library ``regex``: that of Python's `re`, and all that ECMAScript's has in common
-            with it.
+        text: the expression, in the syntax of the library ``regex``: that of Python's `re`, including everything that
+            it
+            has in common with ECMAScript.
 
     Raises:
-        ExpressionError: the text is not an expression.
+        ExpressionError: the text is not a valid expression.
     """
 
     def __init__(self, text: str) -> None:
-        import regex  # few files have expressions
+        import regex  # imported here: few files have expressions
 
         if len(text) > _MOST_CHARACTERS:
             raise ExpressionError(f"it has {len(text)} characters, more than {_MOST_CHARACTERS}")
@@ -48,7 +49,7 @@ class Expression:
             raise ExpressionError(str(error)) from None
 
     def matches(self, text: str) -> bool:
-        """Whether the expression matches the whole text, as with `regex_match` of C++.
+        """Return whether the expression matches the entire text, as C++'s `regex_match` does.
 
         Raises:
             TooCostlyError: the search takes too long.
@@ -59,10 +60,10 @@ class Expression:
             raise TooCostlyError("it takes too long to find") from None
 
     def among(self, names: Iterable[str]) -> set[str]:
-        """Those names in which the expression is found, as with `regex_search` of C++.
+        """Return the names in which the expression is found, as by C++'s `regex_search`.
 
         Raises:
-            TooCostlyError: the search takes too long, for all of them together.
+            TooCostlyError: the search takes too long in total.
         """
         end = time.monotonic() + _SECONDS
         try:

@@ -1,4 +1,4 @@
-"""Names in the graph: which are valid, how they are expanded, and how they are remapped.
+"""The rules for names in the graph: which are valid, and how they are expanded and remapped.
 
 The rules and the wording of the errors are those of rcl and rmw (``validate_topic_name``, ``expand_topic_name``).
 """
@@ -21,18 +21,20 @@ Problem = tuple[str, int]
 
 
 class InvalidNameError(LinkwrightError, ValueError):
-    """A node name, namespace, topic or service name that ROS does not allow (rclpy ``NameValidationException``).
+    """Raised when ROS does not allow a name (rclpy ``NameValidationException``).
+
+    The name may be a node name, a namespace, a topic name or a service name.
 
     Args:
         kind: ``node name``, ``namespace``, ``topic name`` or ``service name``.
         name: the name as it was given.
         error_msg: the mistake in it.
-        invalid_index: at which character.
+        invalid_index: the index of the invalid character.
 
     Attributes:
         name: the name as it was given.
         error_msg: the mistake in it.
-        invalid_index: at which character.
+        invalid_index: the index of the invalid character.
     """
 
     def __init__(self, kind: str, name: str, error_msg: str, invalid_index: int = 0) -> None:
@@ -49,35 +51,35 @@ class InvalidNameError(LinkwrightError, ValueError):
 
 
 class InvalidNodeNameError(InvalidNameError):
-    """The name of a node is not valid."""
+    """Raised when a node name is not valid."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
         super().__init__(phrase("node name"), name, error_msg, invalid_index)
 
 
 class InvalidNamespaceError(InvalidNameError):
-    """A namespace is not valid."""
+    """Raised when a namespace is not valid."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
         super().__init__("namespace", name, error_msg, invalid_index)
 
 
 class InvalidTopicNameError(InvalidNameError):
-    """The name of a topic is not valid."""
+    """Raised when a topic name is not valid."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
         super().__init__(phrase("topic name"), name, error_msg, invalid_index)
 
 
 class InvalidServiceNameError(InvalidNameError):
-    """The name of a service or an action is not valid."""
+    """Raised when the name of a service or an action is not valid."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
         super().__init__(phrase("service name"), name, error_msg, invalid_index)
 
 
 def node_name_problem(name: str) -> Problem | None:
-    """Why no node may bear the name; None when one may."""
+    """Return the reason why a node name is not valid; None if it is valid."""
     if not name:
         return phrase("node name must not be empty"), 0
     if odd := re.search(r"[^A-Za-z0-9_]", name):
@@ -92,14 +94,14 @@ def node_name_problem(name: str) -> Problem | None:
 
 
 def check_node_name(name: str) -> None:
-    """Raise InvalidNodeNameError unless a node may bear the name."""
+    """Raise InvalidNodeNameError if a node name is not valid."""
     problem = node_name_problem(name)
     if problem is not None:
         raise InvalidNodeNameError(name, *problem)
 
 
 def namespace_problem(namespace: str) -> Problem | None:
-    """Why an absolute namespace is not valid; None when it is."""
+    """Return the reason why an absolute namespace is not valid; None if it is valid."""
     if not namespace:
         return phrase("namespace must not be empty"), 0
     if not namespace.startswith("/"):
@@ -122,10 +124,10 @@ def namespace_problem(namespace: str) -> Problem | None:
 
 
 def absolute_namespace(namespace: str) -> str:
-    """The namespace with its leading slash, which may be left out; ``/`` for an empty one.
+    """Return a namespace with its leading slash, which may be left out; ``/`` for an empty one.
 
     Raises:
-        InvalidNamespaceError: it is not valid.
+        InvalidNamespaceError: the namespace is not valid.
     """
     absolute = namespace if namespace.startswith("/") else f"/{namespace}"
     problem = namespace_problem(absolute)
@@ -135,24 +137,27 @@ def absolute_namespace(namespace: str) -> str:
 
 
 def join(namespace: str, name: str) -> str:
-    """The full name of an entity in a namespace."""
+    """Return the full name of an entity in a namespace."""
     return f"/{name}" if namespace == "/" else f"{namespace}/{name}"
 
 
 def split(full_name: str) -> tuple[str, str]:
-    """Namespace and name of a full name."""
+    """Split a full name into namespace and name."""
     namespace, _, name = full_name.rpartition("/")
     return namespace or "/", name
 
 
 def is_hidden(name: str) -> bool:
-    """Whether tools leave a topic, service or node out unless they are asked: a part of it begins with ``_``."""
+    """Return whether a name is hidden by default, because one of its parts starts with ``_``."""
     return any(part.startswith("_") for part in name.split("/"))
 
 
 @lru_cache(maxsize=4096)
 def topic_name_problem(name: str) -> Problem | None:
-    """Why a topic or service cannot be named so, before expansion; None when it can."""
+    """Return the reason why a topic or service name is not valid before expansion.
+
+    The result is None if it is valid.
+    """
     bare = _SUBSTITUTION.sub(lambda match: "x" * len(match[0]), name) if "{" in name else name
     if not name:
         return phrase("topic name must not be empty string"), 0
@@ -181,7 +186,9 @@ def topic_name_problem(name: str) -> Problem | None:
 
 
 def expand_topic_name(name: str, node_name: str, namespace: str) -> str:
-    """The absolute name of a topic that a node names: relative, ``/absolute``, ``~/private``, ``{node}`` and ``{ns}``.
+    """Return the absolute name of a topic that a node names.
+
+    The name may be relative, ``/absolute`` or ``~/private``, and may contain ``{node}`` and ``{ns}``.
 
     Args:
         name: the name as the node's code gives it.
@@ -189,16 +196,16 @@ def expand_topic_name(name: str, node_name: str, namespace: str) -> str:
         namespace: the node's namespace, absolute.
 
     Raises:
-        InvalidTopicNameError: it is not valid.
+        InvalidTopicNameError: the name is not valid.
     """
     return _expand(name, node_name, namespace, InvalidTopicNameError)
 
 
 def expand_service_name(name: str, node_name: str, namespace: str) -> str:
-    """The absolute name of a service or action that a node names; see `expand_topic_name`.
+    """Return the absolute name of a service or action that a node names; see `expand_topic_name`.
 
     Raises:
-        InvalidServiceNameError: it is not valid.
+        InvalidServiceNameError: the name is not valid.
     """
     return _expand(name, node_name, namespace, InvalidServiceNameError)
 
@@ -238,9 +245,9 @@ class NodeIdentity:
     """A node's name in the graph.
 
     Attributes:
-        name: without namespace.
-        namespace: absolute.
-        enclave: the security enclave, ``/`` where there is none.
+        name: the name without namespace.
+        namespace: the absolute namespace.
+        enclave: the security enclave; ``/`` if there is none.
     """
 
     name: str
@@ -249,7 +256,7 @@ class NodeIdentity:
 
     @property
     def full_name(self) -> str:
-        """Namespace and name."""
+        """The namespace and name."""
         return join(self.namespace, self.name)
 
 
@@ -260,11 +267,11 @@ _NAMESPACE = "__ns"
 
 @dataclass(frozen=True, slots=True)
 class _Rule:
-    """One rule, taken apart.
+    """A parsed remapping rule.
 
     Attributes:
-        node: the only node that it is for; None for all.
-        kind: ``rostopic://`` or ``rosservice://`` for a rule of one kind of names; empty for both.
+        node: the only node that the rule applies to; None for all nodes.
+        kind: ``rostopic://`` or ``rosservice://`` for a rule for one kind of names; empty for both.
         source: the name to replace, as written.
         target: the name to use instead, as written.
     """
@@ -276,16 +283,16 @@ class _Rule:
 
 
 class Remappings:
-    """A node's remapping rules; the first that fits is taken.
+    """A node's remapping rules, the first of which that matches a name is applied.
 
-    ``__node`` (or ``__name``) and ``__ns`` rename the node itself. A rule may begin with the name of the node it is
-    for (``talker:chatter``), and with ``rostopic://`` or ``rosservice://`` for names of one kind.
+    ``__node`` (or ``__name``) and ``__ns`` rename the node itself. A rule may start with the name of the node that it
+    applies to (``talker:chatter``), and with ``rostopic://`` or ``rosservice://`` for names of one kind.
 
     Args:
-        rules: the sides of each rule, ``from`` and ``to``.
+        rules: the two sides of each rule, ``from`` and ``to``.
 
     Raises:
-        LinkwrightError: a rule has a wildcard, which rcl does not know either (GRAPH102).
+        LinkwrightError: a rule has a wildcard, which rcl does not support either (GRAPH102).
     """
 
     __slots__ = ("_rules",)
@@ -294,17 +301,19 @@ class Remappings:
         self._rules = tuple(_taken_apart(source, target) for source, target in rules)
 
     def node_name(self, name: str) -> str:
-        """The name the node is to bear instead of the one its code gives."""
+        """Return the node name to use instead of the one that the code gives."""
         return next((r.target for r in self._rules if r.source in _NODE_NAMES and r.node in (None, name)), name)
 
     def namespace(self, namespace: str, node_name: str) -> str:
-        """The namespace the node is to live in instead of the one its code gives."""
+        """Return the namespace to use instead of the one that the code gives."""
         return next(
             (r.target for r in self._rules if r.source == _NAMESPACE and r.node in (None, node_name)), namespace
         )
 
     def topic(self, full_name: str, node_name: str, namespace: str) -> str:
-        """The topic to use instead of an expanded one. Both sides of a rule are expanded as the node's own names are.
+        """Return the topic to use instead of an expanded one.
+
+        Both sides of a rule are expanded like the node's own names.
 
         Raises:
             InvalidTopicNameError: a side of a rule is not a valid topic name.
@@ -317,7 +326,7 @@ class Remappings:
         return full_name
 
     def service(self, full_name: str, node_name: str, namespace: str) -> str:
-        """The service to use instead of an expanded one.
+        """Return the service to use instead of an expanded one.
 
         Raises:
             InvalidServiceNameError: a side of a rule is not a valid name.

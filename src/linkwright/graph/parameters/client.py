@@ -1,4 +1,4 @@
-"""A client for the parameters of another node, as ``rclpy.parameter_client`` has it."""
+"""A client for the parameters of another node, as in ``rclpy.parameter_client``."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ Done = Callable[..., Any]
 class AsyncParameterClient:
     """Reads and sets the parameters of a node through its services.
 
-    Every method that asks gives a future of the service's response, and takes a callback for its arrival.
+    Each method that sends a request returns a future of the service's response, and accepts a callback for it.
 
     Args:
-        node: makes the clients.
-        remote_node_name: the name of the node, absolute or relative to the namespace of `node`.
-        qos_profile: that of the clients.
-        callback_group: that of the clients.
+        node: the node that owns the service clients.
+        remote_node_name: the name of the other node, absolute or relative to the namespace of `node`.
+        qos_profile: the QoS of the clients.
+        callback_group: the callback group of the clients.
     """
 
     def __init__(
@@ -59,17 +59,19 @@ class AsyncParameterClient:
         }
 
     def services_are_ready(self) -> bool:
-        """Whether the node offers all the services."""
+        """Return whether the node offers all parameter services."""
         return all(client.service_is_ready() for client in self._clients.values())
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until the node offers all the services; another thread need not spin.
+        """Block the calling thread until the node offers all parameter services.
+
+        No other thread needs to spin.
 
         Args:
-            timeout_sec: how long, seconds; None for as long as it takes.
+            timeout_sec: the maximum wait, in seconds; None for no limit.
 
         Returns:
-            Whether it does.
+            Whether it offers them.
         """
         end = None if timeout_sec is None else time.monotonic() + timeout_sec
         while not self.services_are_ready():
@@ -87,50 +89,50 @@ class AsyncParameterClient:
     def list_parameters(
         self, prefixes: list[str] | None = None, depth: int | None = None, callback: Done | None = None
     ) -> Future[Any]:
-        """Ask for the names of parameters; see `NodeParameters.list_parameters`."""
+        """Request the names of parameters; see `NodeParameters.list_parameters`."""
         return self._ask("list_parameters", callback, prefixes=prefixes or [], depth=depth or 0)
 
     def get_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
-        """Ask for the values of parameters."""
+        """Request the values of parameters."""
         return self._ask("get_parameters", callback, names=names)
 
     def get_parameter_types(self, names: list[str], callback: Done | None = None) -> Future[Any]:
-        """Ask for the types of parameters."""
+        """Request the types of parameters."""
         return self._ask("get_parameter_types", callback, names=names)
 
     def describe_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
-        """Ask for the descriptors of parameters."""
+        """Request the descriptors of parameters."""
         return self._ask("describe_parameters", callback, names=names)
 
     def set_parameters(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
-        """Set parameters one by one; they are `Parameter` objects or messages."""
+        """Set parameters one by one, given as `Parameter` objects or messages."""
         return self._ask("set_parameters", callback, parameters=_messages(parameters))
 
     def set_parameters_atomically(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
-        """Set all of the parameters or none."""
+        """Set either all of the parameters or none."""
         return self._ask("set_parameters_atomically", callback, parameters=_messages(parameters))
 
     def delete_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
-        """Undeclare parameters, which their node must allow by dynamic typing."""
+        """Undeclare parameters, which must have dynamic typing."""
         return self.set_parameters([Parameter(name) for name in names], callback)
 
     def load_parameter_file(
         self, parameter_file: str, use_wildcard: bool = False, callback: Done | None = None
     ) -> Future[Any]:
-        """Set the parameters of a file; see `parameter_dict_from_yaml_file`."""
+        """Set the parameters from a file; see `parameter_dict_from_yaml_file`."""
         return self.set_parameters(list(parameter_dict_from_yaml_file(parameter_file, use_wildcard).values()), callback)
 
     def load_parameter_file_atomically(
         self, parameter_file: str, use_wildcard: bool = False, callback: Done | None = None
     ) -> Future[Any]:
-        """Set all of the parameters of a file, or none."""
+        """Set either all of the parameters from a file or none."""
         parameters = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
         return self.set_parameters_atomically(list(parameters.values()), callback)
 
     def on_parameter_event(
         self, callback: Callable[..., Any], qos_profile: QoSProfile = PARAMETER_EVENTS_QOS, **options: Any
     ) -> Any:
-        """Subscribe to the changes of parameters of all nodes."""
+        """Subscribe to parameter changes of all nodes."""
         event_type = _message_type("ParameterEvent")
         return self.node.create_subscription(event_type, "/parameter_events", callback, qos_profile, **options)
 
@@ -148,17 +150,17 @@ class AsyncParameterClient:
 def parameter_dict_from_yaml_file(
     parameter_file: str, use_wildcard: bool = False, target_nodes: list[str] | None = None, namespace: str = ""
 ) -> dict[str, Any]:
-    """The parameters in a file as messages (rcl_interfaces/msg/Parameter) by name.
+    """Return the parameters in a file as messages (rcl_interfaces/msg/Parameter), by name.
 
     Args:
-        parameter_file: its path.
-        use_wildcard: whether values for any node (``/**``) count, before those for single nodes.
-        target_nodes: the nodes whose parameters are read; all in the file when left out.
-        namespace: put before each name.
+        parameter_file: the path of the file.
+        use_wildcard: whether to include values for any node (``/**``), which values for single nodes override.
+        target_nodes: the nodes whose parameters are read; by default all nodes in the file.
+        namespace: a prefix for each name.
 
     Raises:
-        LinkwrightError: the file cannot be read, or is none (GRAPH211, GRAPH212).
-        RuntimeError: it has nothing for one of the nodes, or nothing at all (rclpy).
+        LinkwrightError: the file cannot be read, or is not a parameter file (GRAPH211, GRAPH212).
+        RuntimeError: the file has no values for one of the nodes, or none at all (rclpy).
     """
     sections = dict(read_parameter_file(parameter_file))
     chosen = [ANY_NODE] if use_wildcard and ANY_NODE in sections else []

@@ -1,4 +1,4 @@
-"""Callbacks for changes of parameters, of any node, as ``rclpy.parameter_event_handler`` has them."""
+"""Callbacks for parameter changes of any node, as in ``rclpy.parameter_event_handler``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ H = TypeVar("H")
 
 @dataclass(eq=False)
 class ParameterCallbackHandle:
-    """A callback for one parameter of one node; kept in order to remove it."""
+    """The handle of a callback for one parameter of one node, needed to remove it."""
 
     parameter_name: str
     node_name: str
@@ -24,17 +24,17 @@ class ParameterCallbackHandle:
 
 @dataclass(eq=False)
 class ParameterEventCallbackHandle:
-    """A callback for all events; kept in order to remove it."""
+    """The handle of a callback for all events, needed to remove it."""
 
     callback: Callable[[Any], object]
 
 
 class _Callbacks:
-    """The callbacks of a `ParameterEventHandler`; those that were added last come first.
+    """The callbacks of a `ParameterEventHandler`, in the reverse order of their registration.
 
     Attributes:
-        parameter_callbacks: those for one parameter, by its name and its node's.
-        event_callbacks: those for all events.
+        parameter_callbacks: the callbacks for single parameters, by the names of parameter and node.
+        event_callbacks: the callbacks for all events.
     """
 
     def __init__(self) -> None:
@@ -52,7 +52,7 @@ class _Callbacks:
         return handle
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-        """Remove a callback; raises RuntimeError when it is not registered."""
+        """Remove a callback; raise RuntimeError if it is not registered."""
         key = (handle.parameter_name, handle.node_name)
         with self._lock:
             _remove(handle, self.parameter_callbacks.get(key, []))
@@ -67,12 +67,12 @@ class _Callbacks:
         return handle
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-        """Remove a callback; raises RuntimeError when it is not registered."""
+        """Remove a callback; raise RuntimeError if it is not registered."""
         with self._lock:
             _remove(handle, self.event_callbacks)
 
     def event_callback(self, event: Any) -> None:
-        """Call the callbacks that an event concerns."""
+        """Call the callbacks that an event applies to."""
         with self._lock:
             of_parameters = [handle for handles in self.parameter_callbacks.values() for handle in handles]
             of_events = list(self.event_callbacks)
@@ -91,14 +91,14 @@ def _remove(handle: H, handles: list[H]) -> None:
 
 
 class ParameterEventHandler:
-    """Subscribes to ``/parameter_events`` and calls back for single parameters, or for whole events.
+    """Calls callbacks for the events of ``/parameter_events``, or for single parameters in them.
 
     Callbacks that were added last are called first.
 
     Args:
-        node: subscribes.
-        qos_profile: that of the subscription.
-        options: further arguments of ``create_subscription`` of the node.
+        node: the node that owns the subscription.
+        qos_profile: the QoS of the subscription.
+        options: further arguments for the node's ``create_subscription``.
     """
 
     Callbacks = _Callbacks
@@ -121,11 +121,12 @@ class ParameterEventHandler:
     def add_parameter_callback(
         self, parameter_name: str, node_name: str, callback: Callable[[Any], object]
     ) -> ParameterCallbackHandle:
-        """Register a callback that gets the rcl_interfaces/msg/Parameter whenever a parameter gets a value.
+        """Register a callback that receives the rcl_interfaces/msg/Parameter whenever a parameter is set.
 
         Args:
-            parameter_name: its name.
-            node_name: the node whose it is: absolute, relative to the namespace of our node, or empty for our node.
+            parameter_name: the name of the parameter.
+            node_name: the node that has the parameter: absolute, relative to our node's namespace, or empty for our
+                node.
             callback: the callback.
         """
         return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
@@ -134,25 +135,28 @@ class ParameterEventHandler:
         """Remove a callback.
 
         Raises:
-            RuntimeError: it is not registered.
+            RuntimeError: the callback is not registered.
         """
         self._callbacks.remove_parameter_callback(handle)
 
     def add_parameter_event_callback(self, callback: Callable[[Any], object]) -> ParameterEventCallbackHandle:
-        """Register a callback that gets every rcl_interfaces/msg/ParameterEvent."""
+        """Register a callback that receives every rcl_interfaces/msg/ParameterEvent."""
         return self._callbacks.add_parameter_event_callback(callback)
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
         """Remove a callback.
 
         Raises:
-            RuntimeError: it is not registered.
+            RuntimeError: the callback is not registered.
         """
         self._callbacks.remove_parameter_event_callback(handle)
 
     @staticmethod
     def get_parameter_from_event(event: Any, parameter_name: str, node_name: str) -> Any:
-        """The new value of a parameter in an event, as rcl_interfaces/msg/Parameter; None when it is not in it."""
+        """Return the new value of a parameter in an event, as rcl_interfaces/msg/Parameter.
+
+        The result is None if the event has none.
+        """
         if event.node == node_name:
             for parameter in chain(event.new_parameters, event.changed_parameters):
                 if parameter.name == parameter_name:
@@ -161,11 +165,14 @@ class ParameterEventHandler:
 
     @staticmethod
     def get_parameters_from_event(event: Any) -> Iterator[Any]:
-        """All parameters that got a value in an event."""
+        """Iterate over all parameters that an event reports as new or changed."""
         yield from chain(event.new_parameters, event.changed_parameters)
 
     def _resolve_path(self, node_path: str = "") -> str:
-        """The full name of a node: absolute, relative to the namespace of our node, or empty for our node."""
+        """Return the full name of a node.
+
+        The path is absolute, relative to our node's namespace, or empty for our node.
+        """
         if not node_path:
             return str(self.node.get_fully_qualified_name())
         if node_path.startswith("/"):

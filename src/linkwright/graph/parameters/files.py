@@ -1,9 +1,9 @@
-"""Parameter files: YAML that names nodes, and below ``ros__parameters`` the values of their parameters.
+"""Parameter files: YAML with node names and, below ``ros__parameters``, parameter values.
 
-Read as rcl_yaml_param_parser reads it: nested names of namespaces and nodes, nested parameter names, its own idea of
-scalars (see `scalar_value`), lists of one type, no anchors. A file that it would refuse is refused here, with the
-place; only a parameter whose list has lists or mappings in it is left out, since files of real robots have such lists.
-`parameter_file_text` writes a file, as ``ros2 param dump`` does.
+Files are read as by rcl_yaml_param_parser: nested names of namespaces and nodes, nested parameter names, its rules for
+scalars (see `scalar_value`), lists of a single type, no anchors. A file that it would refuse is refused here, with the
+position of the mistake. Only a parameter whose list contains lists or mappings is left out instead, because the files
+of real robots have such lists. `parameter_file_text` writes a file, as ``ros2 param dump`` does.
 """
 
 from __future__ import annotations
@@ -65,35 +65,37 @@ def read_parameter_file(path: str | Path) -> ParameterRules:
 
 
 def parse_parameters(source: SourceText) -> ParameterRules:
-    """Read the text of a parameter file.
+    """Parse the text of a parameter file.
 
-    A parameter whose list has lists or mappings in it is left out, with a finding in `ParameterRules.left_out`.
+    A parameter whose list contains lists or mappings is left out, with a finding in `ParameterRules.left_out`.
 
     Raises:
-        LinkwrightError: GRAPH212, a mistake and its place.
+        LinkwrightError: GRAPH212, a mistake with its position.
     """
     return _Reader(source).read()
 
 
 def parse_value(text: str, name: str) -> Any:
-    """The value in a word of the command line, ``-p name:=value``: a scalar, or a list of one type.
+    """Parse a parameter value on the command line (``-p name:=value``).
+
+    It is a scalar, or a list of one type.
 
     Args:
         text: the value.
-        name: the parameter's name, for the message.
+        name: the parameter's name, for the error message.
 
     Raises:
-        LinkwrightError: GRAPH212, it is neither.
+        LinkwrightError: GRAPH212, the text is neither.
     """
     return _Reader(SourceText(f"<{name}>", text)).read_value(name)
 
 
 class _NestedListError(LinkwrightError):
-    """A list has lists or mappings in it."""
+    """Raised when a list contains lists or mappings."""
 
 
 class _Reader:
-    """Goes through the events of one text, the current one being `_event`."""
+    """Reads the YAML events of a text; `_event` is the current event."""
 
     def __init__(self, source: SourceText) -> None:
         self._source = source
@@ -142,7 +144,10 @@ class _Reader:
         return type(self._event).__name__ == f"{kind}Event"
 
     def _read_names(self, above: tuple[str, ...]) -> None:
-        """Read a mapping of namespaces, node names and ``ros__parameters``; the current event is its start."""
+        """Read a mapping of namespaces, node names and ``ros__parameters``.
+
+        The current event is its start.
+        """
         self._advance()
         while not self._is("MappingEnd"):
             key = self._read_key()
@@ -188,7 +193,10 @@ class _Reader:
             self._advance()
 
     def _take_list(self, name: str, pattern: str) -> None:
-        """Read a list and set the parameter; leave it out where there are lists or mappings in the list."""
+        """Read a list and set the parameter.
+
+        Leave the parameter out if the list contains lists or mappings.
+        """
         try:
             self._rules.set(pattern, name, self._read_list(name))
         except _NestedListError as error:
@@ -199,7 +207,7 @@ class _Reader:
             self._pass_rest_of_list()
 
     def _pass_rest_of_list(self) -> None:
-        """Advance to the end of a list; the current event is the start of a list or mapping in it."""
+        """Advance to the end of a list; the current event is the start of a nested list or mapping."""
         depth = 2
         while depth:
             self._advance()
@@ -318,10 +326,11 @@ _MIN, _MAX = -(2**63), 2**63 - 1
 
 
 def scalar_value(text: str, *, plain: bool) -> Any:
-    """The value of a YAML scalar: bool, int, float or str, by the rules of rcl_yaml_param_parser.
+    """Return the value of a YAML scalar by the rules of rcl_yaml_param_parser.
 
-    Booleans are those of YAML 1.1 with ``y`` and ``n``; numbers are what C's ``strtol`` (any base) and ``strtod`` read
-    whole; everything else, also a quoted number, is text.
+    The value is a bool, int, float or str.
+    Booleans are those of YAML 1.1, including ``y`` and ``n``. Numbers are texts that C's ``strtol`` (any base) or
+    ``strtod`` reads entirely. Everything else, including quoted numbers, is a string.
 
     Args:
         text: the scalar.
@@ -358,11 +367,11 @@ def _hexadecimal_float(text: str) -> float | str:
 
 
 def parameter_file_text(node: str, values: Mapping[str, Any]) -> str:
-    """The file, in YAML.
+    """Return the YAML text of a parameter file for one node.
 
     Args:
         node: the node's full name.
-        values: by the parameters' names, as plain Python data; see `plain_value`.
+        values: the values by parameter name, as plain Python data; see `plain_value`.
     """
     import yaml
 
@@ -373,7 +382,10 @@ def parameter_file_text(node: str, values: Mapping[str, Any]) -> str:
 
 
 def plain_value(value: Any) -> Any:
-    """A rcl_interfaces/msg/ParameterValue as plain Python data; arrays as lists, None when it is not set."""
+    """Convert an rcl_interfaces/msg/ParameterValue to plain Python data.
+
+    Arrays become lists, and a value that is not set becomes None.
+    """
     from linkwright.graph.parameters.parameter import parameter_value_to_python
 
     found = parameter_value_to_python(value)
@@ -381,7 +393,10 @@ def plain_value(value: Any) -> Any:
 
 
 def _insert(tree: dict[str, Any], path: list[str], value: Any) -> None:
-    """Put a value below the parts of its name; where a part has a value itself the name stays whole."""
+    """Insert a value below the parts of its name.
+
+    If a part has a value itself, the name is not split there.
+    """
     for at, part in enumerate(path[:-1]):
         below = tree.setdefault(part, {})
         if not isinstance(below, dict):

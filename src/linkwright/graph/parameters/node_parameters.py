@@ -1,4 +1,4 @@
-"""The parameter methods of a node, as ``rclpy.node.Node`` has them, and its services and events."""
+"""A node's parameter methods, as in ``rclpy.node.Node``, and its parameter services and events."""
 
 from __future__ import annotations
 
@@ -30,33 +30,36 @@ from linkwright.graph.time.clock import Clock
 
 
 class NodeParameters:
-    """The parameter methods of a node, a base of `Node`.
+    """The parameter methods of a node; base class of `Node`.
 
-    Descriptors, results and parameter values are accepted as our own small classes and as messages of rcl_interfaces;
-    return values are messages, as in rclpy.
+    Descriptors, results and parameter values are accepted as our own small classes and as messages of rcl_interfaces.
+    Return values are messages, as in rclpy.
     """
 
     def __init__(self, parameters: ParameterStore) -> None:
-        # The name is mangled, for users' nodes to have an attribute of this name.
+        # The name is mangled so that a user's node class may use the plain name.
         self.__parameters = parameters
 
     def declare_parameter(
         self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
     ) -> Parameter:
-        """Declare a parameter. Its value is the one given to the node from outside, else the default.
+        """Declare a parameter.
+
+        Its value is the override that the node was started with, or else the default.
 
         Args:
-            name: its name.
-            value: the default, whose type every later value must have too, or a ``Parameter.Type`` for a parameter
-                that has no value until it gets one.
+            name: the parameter's name.
+            value: the default, whose type every later value must have; or a ``Parameter.Type`` for a parameter that has
+                no
+                value at first.
             descriptor: the description of the parameter; its name and type are filled in.
-            ignore_override: whether the value from outside is ignored.
+            ignore_override: whether to ignore the override.
 
         Raises:
-            TypeError: the name is not a text, or the descriptor is not a descriptor.
-            ParameterAlreadyDeclaredException: it is declared already.
+            TypeError: the name is not a string, or the descriptor is not a descriptor.
+            ParameterAlreadyDeclaredException: the parameter is declared already.
             InvalidParameterException: the name is empty.
-            InvalidParameterTypeException: the value from outside has another type than the default.
+            InvalidParameterTypeException: the override has another type than the default.
             InvalidParameterValueException: a callback or the descriptor refuses the value.
         """
         declaration = (name,) if value is None and descriptor is None else (name, value, descriptor)
@@ -68,20 +71,23 @@ class NodeParameters:
     def declare_parameters(
         self, namespace: str, parameters: Sequence[Any], ignore_override: bool = False
     ) -> list[Parameter]:
-        """Declare several parameters, each a tuple ``(name,)``, ``(name, default or type)`` or those and a descriptor.
+        """Declare several parameters.
 
         Args:
-            namespace: put before each name with a dot, unless it is empty.
-            parameters: the tuples.
-            ignore_override: whether values from outside are left aside.
+            namespace: a prefix for each name, separated by a dot; empty for none.
+            parameters: a tuple for each parameter: ``(name,)``, ``(name, default or type)``, or these two and a
+                descriptor.
+            ignore_override: whether to ignore overrides.
 
         Raises:
             TypeError: a tuple has another form.
-            ParameterAlreadyDeclaredException: with all names that are declared already; none is declared then.
-            ParameterException: as `declare_parameter`; parameters declared up to then stay declared.
+            ParameterAlreadyDeclaredException: some parameters are declared already; names all of them, and none is
+                declared.
+            ParameterException: as for `declare_parameter`; parameters that were declared before the error stay
+                declared.
 
         Returns:
-            A parameter for each tuple. Of two tuples with one name the last one counts.
+            A parameter for each tuple. If two tuples have the same name, the last one applies.
         """
         checked = [_checked(index, declaration) for index, declaration in enumerate(parameters)]
         names = [f"{namespace}.{name}" if namespace else name for name, *_ in checked]
@@ -97,93 +103,95 @@ class NodeParameters:
         return [made[name] for name in names]
 
     def declare_parameters_from_overrides(self) -> None:
-        """Declare every parameter that was given to the node from outside and is not declared yet, with its type."""
+        """Declare every override that is not declared yet as a parameter, with the type of its value."""
         for name, value in self.__parameters.overrides.items():
             if name not in self.__parameters:
                 self.__parameters.declare(name, value, ParameterDescriptor(), ignore_override=True)
 
-    # rclpy's names; programs read them, though they begin with an underscore.
+    # These are rclpy's names; programs read them, although they start with an underscore.
 
     @property
     def _pre_set_parameters_callbacks(self) -> list[PreSetParameters]:
-        """The callbacks of `add_pre_set_parameters_callback` that are still registered, the last first."""
+        """The callbacks registered with `add_pre_set_parameters_callback`, the last one first."""
         return self.__parameters.pre_set
 
     @property
     def _on_set_parameters_callbacks(self) -> list[OnSetParameters]:
-        """The callbacks of `add_on_set_parameters_callback`, the last first."""
+        """The callbacks registered with `add_on_set_parameters_callback`, the last one first."""
         return self.__parameters.on_set
 
     _parameters_callbacks = _on_set_parameters_callbacks
 
     @property
     def _post_set_parameters_callbacks(self) -> list[PostSetParameters]:
-        """The callbacks of `add_post_set_parameters_callback`, the last first."""
+        """The callbacks registered with `add_post_set_parameters_callback`, the last one first."""
         return self.__parameters.post_set
 
     def undeclare_parameter(self, name: str) -> None:
-        """Forget a parameter. No callback is asked, and no event published.
+        """Undeclare a parameter. No callback is called, and no event is published.
 
         Raises:
-            ParameterNotDeclaredException: it is not declared.
-            ParameterImmutableException: it is read-only.
+            ParameterNotDeclaredException: the parameter is not declared.
+            ParameterImmutableException: the parameter is read-only.
         """
         self.__parameters.undeclare(name)
 
     def has_parameter(self, name: str) -> bool:
-        """Whether a parameter is declared."""
+        """Return whether a parameter is declared."""
         return name in self.__parameters
 
     def undeclared_overrides(self) -> list[str]:
-        """The names of values that it was given from outside and that no declaration has asked for, in their order."""
+        """Return the names of the overrides that no declaration has used, in order."""
         return [name for name in self.__parameters.overrides if name not in self.__parameters]
 
     def parameter_names(self) -> list[str]:
-        """Names of the declared parameters, in order of declaration."""
+        """Return the names of the declared parameters, in order of declaration."""
         return self.__parameters.names()
 
     def get_parameter(self, name: str) -> Parameter:
-        """A declared parameter; where undeclared ones are allowed, one without a value for any other.
+        """Return a declared parameter.
+
+        If undeclared parameters are allowed, the result for any other name is a parameter without a value.
 
         Raises:
-            ParameterNotDeclaredException: it is not declared.
-            ParameterUninitializedException: it was declared with a type only, and has no value yet.
+            ParameterNotDeclaredException: the parameter is not declared.
+            ParameterUninitializedException: the parameter was declared with a type only, and has no value yet.
         """
         return self.__parameters.get(name)
 
     def get_parameters(self, names: Sequence[str]) -> list[Parameter]:
-        """Several declared parameters; see `get_parameter`."""
+        """Return several declared parameters; see `get_parameter`."""
         _check_names(names)
         return [self.__parameters.get(name) for name in names]
 
     def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
-        """A parameter that has a value, else the alternative, else one without a value."""
+        """Return a parameter if it has a value, else the alternative, else a parameter without a value."""
         found = self.__parameters.value_or_none(name)
         if found is not None:
             return found
         return Parameter(name) if alternative_value is None else alternative_value
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """The parameters ``prefix.rest``, by ``rest``; all of them for an empty prefix."""
+        """Return the parameters ``prefix.rest`` by ``rest``; all parameters for an empty prefix."""
         return self.__parameters.with_prefix(prefix)
 
     def get_parameter_type(self, name: str) -> int:
-        """The number of the type of a parameter's value.
+        """Return the type number of a parameter's value.
 
         Raises:
-            ParameterNotDeclaredException: it is not declared.
+            ParameterNotDeclaredException: the parameter is not declared.
         """
         return self.__parameters.type_of(name).value
 
     def get_parameter_types(self, names: Sequence[str]) -> list[int]:
-        """The types of several parameters; see `get_parameter_type`."""
+        """Return the types of several parameters; see `get_parameter_type`."""
         _check_names(names)
         return [self.get_parameter_type(name) for name in names]
 
     def set_parameters(self, parameter_list: Sequence[Parameter]) -> list[Any]:
-        """Set parameters one by one; each is set or not, for a reason.
+        """Set parameters one by one, and return a result for each, with the reason if it was not set.
 
-        One that gets no value is undeclared, where its descriptor allows dynamic typing.
+        A parameter that is set to no value is undeclared if its descriptor allows dynamic typing.
 
         Raises:
             ParameterNotDeclaredException: a parameter is not declared; those before it stay set.
@@ -191,21 +199,21 @@ class NodeParameters:
         return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
 
     def set_parameters_atomically(self, parameter_list: Sequence[Parameter]) -> Any:
-        """Set all of the parameters or none.
+        """Set either all of the parameters or none.
 
         Raises:
-            ParameterNotDeclaredException: one is not declared; none is set.
+            ParameterNotDeclaredException: a parameter is not declared; none is set.
         """
         from linkwright.graph.parameters.parameter import result_message
 
         return result_message(self.__parameters.set_together(parameter_list))
 
     def list_parameters(self, prefixes: list[str], depth: int) -> Any:
-        """The names of parameters and their prefixes: rcl_interfaces/msg/ListParametersResult.
+        """List the names and prefixes of parameters, as rcl_interfaces/msg/ListParametersResult.
 
         Args:
-            prefixes: names are listed that are one of these or below one; all where there is none.
-            depth: how many levels below a prefix are listed; 0 for all of them.
+            prefixes: restricts the list to these names and the names below them; empty for all names.
+            depth: the number of levels below a prefix to list; 0 for all levels.
 
         Raises:
             TypeError: an argument has another type.
@@ -229,10 +237,10 @@ class NodeParameters:
         return result
 
     def describe_parameter(self, name: str) -> Any:
-        """The descriptor of a parameter: rcl_interfaces/msg/ParameterDescriptor.
+        """Return the descriptor of a parameter, as rcl_interfaces/msg/ParameterDescriptor.
 
         Raises:
-            ParameterNotDeclaredException: it is not declared.
+            ParameterNotDeclaredException: the parameter is not declared.
         """
         from linkwright.graph.parameters.parameter import descriptor_message
 
@@ -243,67 +251,74 @@ class NodeParameters:
         return message
 
     def describe_parameters(self, names: Sequence[str]) -> list[Any]:
-        """The descriptors of several parameters; see `describe_parameter`."""
+        """Return the descriptors of several parameters; see `describe_parameter`."""
         return [self.describe_parameter(name) for name in names]
 
     def set_descriptor(self, name: str, descriptor: Any, alternative_value: Any = None) -> Any:
-        """Give a parameter another descriptor.
+        """Replace the descriptor of a parameter.
 
         Args:
             name: the parameter.
-            descriptor: the new one.
-            alternative_value: an rcl_interfaces/msg/ParameterValue to set if the present value does not satisfy it.
+            descriptor: the new descriptor.
+            alternative_value: an rcl_interfaces/msg/ParameterValue to set if the current value does not satisfy the
+                descriptor.
 
         Returns:
-            The value afterwards, as such a message.
+            The resulting value, as rcl_interfaces/msg/ParameterValue.
 
         Raises:
-            ParameterNotDeclaredException: it is not declared.
-            ParameterImmutableException: it is read-only.
+            ParameterNotDeclaredException: the parameter is not declared.
+            ParameterImmutableException: the parameter is read-only.
             InvalidParameterValueException: neither value satisfies the descriptor.
         """
         parameter = self.__parameters.set_descriptor(name, descriptor, _plain(alternative_value))
         return (Parameter(name) if parameter is None else parameter).get_parameter_value()
 
     def add_pre_set_parameters_callback(self, callback: PreSetParameters) -> None:
-        """Register a callback that may change the list of parameters to be set; the one added last comes first."""
+        """Register a callback that may change the list of parameters to be set.
+
+        The last one added is called first.
+        """
         self.__parameters.pre_set.insert(0, callback)
 
     def add_on_set_parameters_callback(self, callback: OnSetParameters) -> None:
-        """Register a callback for before parameters are declared or set; it may refuse with a reason."""
+        """Register a callback that is called before parameters are declared or set.
+
+        It may refuse the change with a reason.
+        """
         self.__parameters.on_set.insert(0, callback)
 
     def add_post_set_parameters_callback(self, callback: PostSetParameters) -> None:
-        """Register a callback for after parameters were declared or set."""
+        """Register a callback that is called after parameters were declared or set."""
         self.__parameters.post_set.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: PreSetParameters) -> None:
-        """Take a callback away.
+        """Unregister a callback.
 
         Raises:
-            ValueError: it was not added.
+            ValueError: the callback is not registered.
         """
         self.__parameters.pre_set.remove(callback)
 
     def remove_on_set_parameters_callback(self, callback: OnSetParameters) -> None:
-        """Take a callback away.
+        """Unregister a callback.
 
         Raises:
-            ValueError: it was not added.
+            ValueError: the callback is not registered.
         """
         self.__parameters.on_set.remove(callback)
 
     def remove_post_set_parameters_callback(self, callback: PostSetParameters) -> None:
-        """Take a callback away.
+        """Unregister a callback.
 
         Raises:
-            ValueError: it was not added.
+            ValueError: the callback is not registered.
         """
         self.__parameters.post_set.remove(callback)
 
 
 def _plain(value: Any) -> Any:
-    """A default that is given as an rcl_interfaces/msg/ParameterValue, as a Python value."""
+    """Convert a default that is given as rcl_interfaces/msg/ParameterValue to a Python value."""
     if getattr(value, "TYPE_NAME", None) == "rcl_interfaces/msg/ParameterValue":
         return parameter_value_to_python(value)
     return value
@@ -348,15 +363,16 @@ EVENTS_TOPIC = "/parameter_events"
 
 
 class ParameterServices:
-    """The six services, named after the node: ``~/describe_parameters`` and so on.
+    """A node's six parameter services: ``~/describe_parameters`` and so on.
 
-    Their types are built when the first request comes. Answers are those of rclpy: where one of several names asked
-    for is not declared, the answer is empty.
+    Their types are created with the first request. Responses are those of rclpy: if one of several requested names is
+    not
+    declared, the response is empty.
 
     Args:
-        node: whose parameters they are.
-        node_name: its name.
-        create_service: its `Node.create_service`.
+        node: the node whose parameters the services access.
+        node_name: the node's name.
+        create_service: the node's `Node.create_service`.
     """
 
     def __init__(self, node: NodeParameters, node_name: str, create_service: Callable[..., object]) -> None:
@@ -415,7 +431,7 @@ class ParameterEvents:
     """Publishes the changes of a node's parameters.
 
     Args:
-        publisher: of ``/parameter_events``.
+        publisher: the publisher of ``/parameter_events``.
         clock: stamps the events.
         node_name: the full name of the node.
     """
@@ -426,7 +442,7 @@ class ParameterEvents:
         self._node_name = node_name
 
     def publish(self, change: ParameterChange) -> None:
-        """Publish a change, if a subscription matches: the topic keeps nothing for late joiners."""
+        """Publish a change if a subscription matches; the topic keeps no messages for late joiners."""
         if not self._publisher.get_subscription_count():
             return
         event: Any = self._publisher.msg_type()

@@ -1,4 +1,4 @@
-"""Parameters: types, values and exceptions, by the names and texts of ``rclpy.parameter``; values by node."""
+"""The types, values and exceptions of ``rclpy.parameter``, and parameter values by node name."""
 
 from __future__ import annotations
 
@@ -19,8 +19,9 @@ ANY_NODE = "/**"
 class ParameterRules:
     """Parameter values by node name pattern.
 
-    A pattern is a node's full name, in which ``*`` matches one part and ``**`` any number of parts. As in rcl the
-    patterns count in the order in which they appear first, and for a node the later of two that match it wins.
+    A pattern is a node's full name, in which ``*`` matches one part and ``**`` any number of parts. As in rcl, patterns
+    are
+    ordered by their first appearance, and if two patterns match a node, the later one wins.
 
     Attributes:
         files: the paths of the files that they were read from.
@@ -36,19 +37,22 @@ class ParameterRules:
         return bool(self._values)
 
     def __iter__(self) -> Iterator[tuple[str, Mapping[str, Any]]]:
-        """Patterns with their values by parameter name."""
+        """Iterate over the patterns with their values by parameter name."""
         return iter(self._values.items())
 
     def set(self, pattern: str, name: str, value: Any) -> None:
-        """Give a parameter a value, instead of the one that the same pattern gave it before."""
+        """Set the value of a parameter for a pattern, replacing an earlier value for the same pattern."""
         self.section(pattern)[name] = value
 
     def section(self, pattern: str) -> dict[str, Any]:
-        """The values of a pattern, to which may be added; a missing leading slash is added."""
+        """Return the values of a pattern, as a dictionary to which values may be added.
+
+        A missing leading slash is added.
+        """
         return self._values.setdefault(pattern if pattern.startswith("/") else f"/{pattern}", {})
 
     def add(self, other: ParameterRules) -> None:
-        """Add rules that come after these."""
+        """Append other rules after these."""
         for pattern, values in other:
             self.section(pattern).update(values)
         self.files += other.files
@@ -56,23 +60,23 @@ class ParameterRules:
 
     @property
     def patterns(self) -> list[str]:
-        """The patterns, in their order."""
+        """The patterns, in order."""
         return list(self._values)
 
     def fit(self, full_name: str) -> bool:
-        """Whether any pattern is for a node."""
+        """Return whether any pattern matches a node."""
         return any(_expression(pattern).fullmatch(full_name) for pattern in self._values)
 
     def without_node(self, full_names: Iterable[str]) -> list[str]:
-        """The patterns that fit none of some nodes."""
+        """Return the patterns that match none of the given nodes."""
         names = list(full_names)
         return [value for value in self._values if not any(map(_expression(value).fullmatch, names))]
 
     def for_node(self, full_name: str) -> dict[str, Any]:
-        """The values for a node, by parameter name.
+        """Return the values for a node, by parameter name.
 
         Args:
-            full_name: its namespace and name, such as ``/robot/talker``.
+            full_name: the node's namespace and name, such as ``/robot/talker``.
         """
         found: dict[str, Any] = {}
         for pattern, values in self._values.items():
@@ -81,13 +85,13 @@ class ParameterRules:
         return found
 
     def left_out_for(self, full_name: str) -> list[Diagnostic]:
-        """The findings about parameters that were left out for a node."""
+        """Return the findings about parameters that were left out for a node."""
         return [finding for pattern, finding in self.left_out if _expression(pattern).fullmatch(full_name)]
 
 
 @lru_cache(maxsize=256)
 def _expression(pattern: str) -> re.Pattern[str]:
-    while "/**/**" in pattern:  # is no more than one of them, and many of them take forever
+    while "/**/**" in pattern:  # equivalent to a single ``/**``, but many of them take forever to match
         pattern = pattern.replace("/**/**", "/**")
     escaped = re.escape(pattern).replace(r"/\*\*", r"(/\w+)*").replace(r"/\*", r"(/\w+)")
     return re.compile(escaped)
@@ -98,7 +102,7 @@ class ParameterException(LinkwrightError):  # noqa: N818  # rclpy's name, which 
 
     Args:
         error_msg: the mistake.
-        parameters: the name, or the names, of the parameters concerned.
+        parameters: the name or names of the parameters concerned.
         code: the diagnostic's code.
         hint: how to fix it.
     """
@@ -112,11 +116,11 @@ class ParameterException(LinkwrightError):  # noqa: N818  # rclpy's name, which 
 
 
 class ParameterNotDeclaredException(ParameterException):
-    """A parameter is used that the node has not declared.
+    """Raised when a parameter is used that the node has not declared.
 
     Args:
-        parameters: its name, or the names of several.
-        declared: the names that there are, for the hint.
+        parameters: the name of the parameter, or several names.
+        declared: the declared names, for the hint.
     """
 
     def __init__(self, parameters: str | list[str], declared: Iterable[str] = ()) -> None:
@@ -126,25 +130,25 @@ class ParameterNotDeclaredException(ParameterException):
 
 
 class ParameterAlreadyDeclaredException(ParameterException):
-    """A parameter is declared twice."""
+    """Raised when a parameter is declared twice."""
 
     def __init__(self, parameters: str | list[str]) -> None:
         super().__init__(phrase("Parameter(s) already declared"), parameters, code="GRAPH203")
 
 
 class InvalidParameterException(ParameterException):
-    """A parameter is declared under a name that is not valid."""
+    """Raised when a parameter is declared with a name that is not valid."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__(phrase("Invalid parameter name"), parameter_name, code="GRAPH205")
 
 
 class InvalidParameterTypeException(ParameterException):
-    """A parameter is given a value of another type than it is declared with.
+    """Raised when a parameter is set to a value of another type than it was declared with.
 
     Args:
         desired_parameter: the parameter with the value.
-        expected_type: the name of the type it is declared with.
+        expected_type: the name of the declared type.
     """
 
     def __init__(self, desired_parameter: Parameter, expected_type: object) -> None:
@@ -166,10 +170,10 @@ class InvalidParameterTypeException(ParameterException):
 
 
 class InvalidParameterValueException(ParameterException):
-    """A parameter is given a value that a callback or its descriptor refuses.
+    """Raised when a callback or the descriptor refuses a parameter's value.
 
     Args:
-        parameter: its name.
+        parameter: the parameter's name.
         value: the value.
         reason: why it is refused.
     """
@@ -186,14 +190,14 @@ class InvalidParameterValueException(ParameterException):
 
 
 class ParameterImmutableException(ParameterException):
-    """A read-only parameter is to be changed."""
+    """Raised when a read-only parameter would be changed."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__(phrase("Attempted to modify read-only parameter"), parameter_name, code="GRAPH206")
 
 
 class ParameterUninitializedException(ParameterException):
-    """A parameter is read that was declared with a type and has no value yet."""
+    """Raised when a parameter is read that was declared with a type and has no value yet."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__(
@@ -205,14 +209,14 @@ class ParameterUninitializedException(ParameterException):
 
 
 class ParameterFileNotFoundError(LinkwrightError, FileNotFoundError):
-    """There is no parameter file at a path."""
+    """Raised when a parameter file does not exist."""
 
 
 PARAMETER_SEPARATOR_STRING = "."
 
 
 class ParameterType(Enum):
-    """The types that a parameter can have; numbers as in rcl_interfaces/msg/ParameterType."""
+    """The types that a parameter can have, with the numbers of rcl_interfaces/msg/ParameterType."""
 
     NOT_SET = 0
     BOOL = 1
@@ -227,7 +231,7 @@ class ParameterType(Enum):
 
     @classmethod
     def from_parameter_value(cls, parameter_value: Any) -> ParameterType:
-        """The type of a Python value; an empty list counts as one of bytes, as in rclpy.
+        """Return the type of a Python value; an empty list counts as a byte array, as in rclpy.
 
         Raises:
             TypeError: a parameter cannot have that value.
@@ -255,7 +259,10 @@ class ParameterType(Enum):
         )
 
     def check(self, parameter_value: Any) -> bool:
-        """Whether a parameter of this type can have a value. Every array type takes an empty list."""
+        """Return whether a parameter of this type can have a value.
+
+        Every array type accepts an empty list.
+        """
         if self is ParameterType.NOT_SET:
             return parameter_value is None
         for kind, classes in _SCALARS:
@@ -272,7 +279,7 @@ class ParameterType(Enum):
         return self.value >= ParameterType.BYTE_ARRAY.value
 
     def __str__(self) -> str:
-        # The text of rclpy's nested class, which the reasons of refusals contain.
+        # The text of rclpy's nested class, which appears in the reasons of refusals.
         return f"Type.{self.name}"
 
 
@@ -305,16 +312,16 @@ FIELDS = {
 
 
 class Parameter:
-    """A name and a value.
+    """A parameter with its name, type and value.
 
     Args:
         name: the parameter's name; dots separate levels.
-        type_: its type; worked out from the value when left out.
-        value: bool, int, float, str, bytes, a list of one of these, or None for one that is not set.
+        type_: its type; by default derived from the value.
+        value: bool, int, float, str, bytes, a list of one of these, or None for a parameter that is not set.
 
     Raises:
         TypeError: a parameter cannot have that value.
-        ValueError: type and value do not agree.
+        ValueError: type and value do not match.
     """
 
     Type = ParameterType
@@ -336,27 +343,27 @@ class Parameter:
 
     @classmethod
     def from_parameter_msg(cls, param_msg: Any) -> Parameter:
-        """The parameter in an rcl_interfaces/msg/Parameter; lists as Python lists."""
+        """Convert an rcl_interfaces/msg/Parameter to a parameter, with arrays as Python lists."""
         type_ = ParameterType(param_msg.value.type)
         return cls(param_msg.name, type_, parameter_value_to_python(param_msg.value))
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """The parameter's name."""
         return self._name
 
     @property
     def type_(self) -> ParameterType:
-        """Its type."""
+        """The parameter's type."""
         return self._type_
 
     @property
     def value(self) -> Any:
-        """Its value; None when it is not set."""
+        """The parameter's value; None if it is not set."""
         return self._value
 
     def get_parameter_value(self) -> Any:
-        """The value as an rcl_interfaces/msg/ParameterValue."""
+        """Return the value as an rcl_interfaces/msg/ParameterValue."""
         from linkwright.messages import get_message
 
         message = get_message("rcl_interfaces/msg/ParameterValue")()
@@ -366,7 +373,7 @@ class Parameter:
         return message
 
     def to_parameter_msg(self) -> Any:
-        """The parameter as an rcl_interfaces/msg/Parameter."""
+        """Convert the parameter to an rcl_interfaces/msg/Parameter."""
         from linkwright.messages import get_message
 
         return get_message("rcl_interfaces/msg/Parameter")(name=self._name, value=self.get_parameter_value())
@@ -388,10 +395,10 @@ class Parameter:
 
 
 def parameter_value_to_python(parameter_value: Any) -> Any:
-    """The Python value of an rcl_interfaces/msg/ParameterValue; None when it is not set.
+    """Return the Python value of an rcl_interfaces/msg/ParameterValue; None if it is not set.
 
     Raises:
-        RuntimeError: its ``type`` is none of the known ones (rclpy).
+        RuntimeError: its ``type`` is not known (rclpy).
     """
     try:
         type_ = ParameterType(parameter_value.type)
@@ -405,7 +412,7 @@ def parameter_value_to_python(parameter_value: Any) -> Any:
 
 @dataclass(slots=True)
 class Range:
-    """Which numbers a parameter may have: from `from_value` to `to_value`, in steps unless `step` is 0."""
+    """The range of a numeric parameter: from `from_value` to `to_value`, in steps unless `step` is 0."""
 
     from_value: float
     to_value: float
@@ -414,15 +421,18 @@ class Range:
 
 @dataclass(slots=True)
 class ParameterDescriptor:
-    """The description of a parameter; a rcl_interfaces/msg/ParameterDescriptor may take its place.
+    """The description of a parameter.
+
+    An rcl_interfaces/msg/ParameterDescriptor may be used instead.
 
     Attributes:
         name: the parameter's name; filled in when it is declared.
-        type: number of its type; filled in from the default value, which shows it, except for an empty list.
+        type: the number of its type; filled in from the default value, except for an empty list, which does not show
+            it.
         description: what the parameter is for.
-        additional_constraints: in plain words, further constraints on its values.
+        additional_constraints: further constraints on its values, in plain words.
         read_only: whether it keeps the value that it was declared with.
-        dynamic_typing: values of any type may be set, and it may be undeclared by setting nothing.
+        dynamic_typing: whether values of any type may be set, and setting no value undeclares it.
         floating_point_range: at most one `Range`, for DOUBLE.
         integer_range: at most one `Range`, for INTEGER.
     """
@@ -443,30 +453,39 @@ class ParameterDescriptor:
 
 @dataclass(frozen=True, slots=True)
 class SetParametersResult:
-    """Whether parameters were set, and why not; a rcl_interfaces/msg/SetParametersResult may take its place."""
+    """The result of setting parameters, with the reason for a refusal.
+
+    An rcl_interfaces/msg/SetParametersResult may be used instead.
+    """
 
     successful: bool
     reason: str = ""
 
 
-# --- messages of rcl_interfaces, whose classes are made when they are first used ---------------------------------
+# --- messages of rcl_interfaces, whose classes are created on first use ------------------------------------------
 
 
 @cache
 def service_type(service: str) -> str:
-    """The type of one of a node's parameter services: ``rcl_interfaces/srv/GetParameters`` of ``get_parameters``."""
+    """Return the type of a parameter service.
+
+    For ``get_parameters`` this is ``rcl_interfaces/srv/GetParameters``.
+    """
     return "rcl_interfaces/srv/" + "".join(word.capitalize() for word in service.split("_"))
 
 
 def interface(name: str) -> Any:
-    """A message class of rcl_interfaces."""
+    """Return a message class of rcl_interfaces."""
     from linkwright.messages import get_message
 
     return get_message(f"rcl_interfaces/msg/{name}")
 
 
 def descriptor_message(descriptor: Any) -> Any:
-    """A descriptor as an rcl_interfaces/msg/ParameterDescriptor; one that is such a message stays itself."""
+    """Convert a descriptor to an rcl_interfaces/msg/ParameterDescriptor.
+
+    Such a message is returned unchanged.
+    """
     message_class = interface("ParameterDescriptor")
     if isinstance(descriptor, message_class):
         return descriptor
@@ -486,7 +505,10 @@ def descriptor_message(descriptor: Any) -> Any:
 
 
 def result_message(verdict: Any) -> Any:
-    """A result as an rcl_interfaces/msg/SetParametersResult; one that is such a message stays itself."""
+    """Convert a result to an rcl_interfaces/msg/SetParametersResult.
+
+    Such a message is returned unchanged.
+    """
     message_class = interface("SetParametersResult")
     if isinstance(verdict, message_class):
         return verdict

@@ -1,4 +1,7 @@
-"""Quality of service from parameters: ``qos_overrides./topic.publisher.depth``, as ``rclpy.qos_overriding_options``."""
+"""QoS overrides by parameters, as in ``rclpy.qos_overriding_options``.
+
+An example of such a parameter is ``qos_overrides./topic.publisher.depth``.
+"""
 
 from __future__ import annotations
 
@@ -29,19 +32,20 @@ _DURATIONS = (QoSPolicyKind.DEADLINE, QoSPolicyKind.LIFESPAN, QoSPolicyKind.LIVE
 
 
 class InvalidQosOverridesError(LinkwrightError):
-    """Parameters override a quality of service with invalid values, or with some that the node refuses."""
+    """Raised when QoS parameters have invalid values, or values that the node refuses."""
 
     def __init__(self, message: Phrase, hint: Phrase | None = None) -> None:
         super().__init__(Diagnostic("GRAPH208", message, hint=hint))
 
 
 class QoSOverridingOptions:
-    """Which policies of a publisher or subscription parameters may override.
+    """The policies of a publisher or subscription that parameters may override.
 
     Args:
         policy_kinds: the policies.
-        callback: decides whether the resulting profile is valid: a result as of a callback for parameters, or a bool.
-        entity_id: distinguishes several publishers or subscriptions of a node on one topic.
+        callback: decides whether the resulting profile is valid; returns a result, as a parameter callback does, or a
+            bool.
+        entity_id: distinguishes several publishers or subscriptions of a node on the same topic.
     """
 
     def __init__(
@@ -59,7 +63,7 @@ class QoSOverridingOptions:
     def with_default_policies(
         cls, *, callback: Callable[[QoSProfile], Any] | None = None, entity_id: str | None = None
     ) -> QoSOverridingOptions:
-        """History, depth and reliability."""
+        """Return options that allow overriding history, depth and reliability."""
         kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
         return cls(kinds, callback=callback, entity_id=entity_id)
 
@@ -71,17 +75,17 @@ def override_qos(
     qos: QoSProfile,
     options: QoSOverridingOptions | None,
 ) -> QoSProfile:
-    """Declare the parameters of a publisher or subscription that is to be made, and give the profile they make.
+    """Declare the QoS parameters of a new endpoint, and return the resulting profile.
 
     Args:
-        node: declares them, read-only.
-        entity: which of the two.
+        node: the node that declares them as read-only.
+        entity: ``publisher`` or ``subscription``.
         topic: the absolute name of its topic.
-        qos: the profile that its code gives it.
+        qos: the profile that its code specifies.
         options: the policies that may be overridden; None for none.
 
     Raises:
-        InvalidQosOverridesError: GRAPH208, the profile is refused, or a value is none that its policy has.
+        InvalidQosOverridesError: GRAPH208, the profile is refused, or a value is not one of its policy's values.
     """
     if options is None:
         return qos

@@ -1,4 +1,4 @@
-"""The parameters of one node: declared, read, and changed with the node's consent, by rclpy's rules."""
+"""The parameters of one node, which are declared, read and changed by rclpy's rules."""
 
 from __future__ import annotations
 
@@ -32,13 +32,15 @@ WRONG_TYPE = "Wrong parameter type"
 
 
 def objection(parameter: Parameter, descriptor: Any, *, declared: bool, check_read_only: bool) -> str | None:
-    """Why a parameter cannot be set, or None. Fills in the descriptor's name, and its type where that is dynamic.
+    """Return the reason why a parameter cannot be set, or None if it can.
+
+    Fills in the descriptor's name, and its type if the parameter has dynamic typing.
 
     Args:
         parameter: the name and the new value.
-        descriptor: a `ParameterDescriptor` or the message of that name.
+        descriptor: a `ParameterDescriptor`, or the rcl_interfaces message of the same name.
         declared: whether the parameter is declared already.
-        check_read_only: whether a read-only parameter is left alone; not so while it is declared.
+        check_read_only: whether to refuse a change of a read-only parameter; False while it is being declared.
     """
     descriptor.name = parameter.name
     if check_read_only and descriptor.read_only:
@@ -133,7 +135,7 @@ _ONLY_A_NAME = (
 
 @dataclass(slots=True)
 class ParameterChange:
-    """The outcome of setting parameters: those that are new, changed or deleted."""
+    """The parameters that a successful call has added, changed or deleted."""
 
     new: list[Parameter] = field(default_factory=list)
     changed: list[Parameter] = field(default_factory=list)
@@ -144,13 +146,13 @@ class ParameterStore:
     """The parameters of one node.
 
     Args:
-        overrides: values that take the place of defaults when parameters of these names are declared. Mappings in it
-            represent names with dots: ``{"zeros": {"j": 1.0}}`` gives ``zeros.j``.
+        overrides: values that replace the defaults when parameters with these names are declared. Nested mappings
+            represent dotted names: ``{"zeros": {"j": 1.0}}`` sets ``zeros.j``.
         allow_undeclared: whether undeclared parameters may be set and read.
         on_change: receives each successful change, before the callbacks in `post_set`.
 
     Attributes:
-        pre_set, on_set, post_set: the node's callbacks, the one added last first.
+        pre_set, on_set, post_set: the node's callbacks, the last one added first.
     """
 
     def __init__(
@@ -173,16 +175,19 @@ class ParameterStore:
         return name in self._parameters
 
     def names(self) -> list[str]:
-        """Names of all declared parameters, in order of declaration."""
+        """Return the names of all declared parameters, in order of declaration."""
         return list(self._parameters)
 
     def declare(
         self, name: str, default: Any, descriptor: Any, *, only_name: bool = False, ignore_override: bool = False
     ) -> Parameter:
-        """Create a parameter with its override or else the default given; see ``Node.declare_parameter``."""
+        """Declare a parameter with its override, or else the given default.
+
+        See ``Node.declare_parameter``.
+        """
         if not name:
             raise InvalidParameterException(name)
-        descriptor = copy.copy(descriptor)  # one may be given for several parameters, and gets a name and type here
+        descriptor = copy.copy(descriptor)  # may be given for several parameters
         if only_name:
             warnings.warn(_ONLY_A_NAME.format(name), stacklevel=4)
             descriptor.dynamic_typing = True
@@ -200,7 +205,7 @@ class ParameterStore:
         return self._parameters[name]
 
     def undeclare(self, name: str) -> None:
-        """Forget a parameter; see ``Node.undeclare_parameter``."""
+        """Undeclare a parameter; see ``Node.undeclare_parameter``."""
         if name not in self._parameters:
             raise ParameterNotDeclaredException(name, self._parameters)
         if self._descriptors[name].read_only:
@@ -208,7 +213,7 @@ class ParameterStore:
         del self._parameters[name], self._descriptors[name]
 
     def get(self, name: str) -> Parameter:
-        """A parameter; see ``Node.get_parameter``."""
+        """Return a parameter; see ``Node.get_parameter``."""
         parameter = self._parameters.get(name)
         if parameter is not None:
             if parameter.type_ is ParameterType.NOT_SET and not self._descriptors[name].dynamic_typing:
@@ -219,12 +224,12 @@ class ParameterStore:
         raise ParameterNotDeclaredException(name, self._parameters)
 
     def value_or_none(self, name: str) -> Parameter | None:
-        """A parameter that has a value, or None."""
+        """Return a parameter if it has a value, otherwise None."""
         parameter = self._parameters.get(name)
         return None if parameter is None or parameter.type_ is ParameterType.NOT_SET else parameter
 
     def type_of(self, name: str) -> ParameterType:
-        """The type of the value that a parameter has."""
+        """Return the type of a parameter's value."""
         if name in self._parameters:
             return self._parameters[name].type_
         if self.allow_undeclared:
@@ -232,12 +237,15 @@ class ParameterStore:
         raise ParameterNotDeclaredException(name, self._parameters)
 
     def with_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """The parameters below a prefix, by the rest of their names after its dot; all of them for an empty one."""
+        """Return the parameters below a prefix, by the rest of their names.
+
+        For an empty prefix the result contains all parameters.
+        """
         start = f"{prefix}." if prefix else ""
         return {name[len(start) :]: parameter for name, parameter in self._parameters.items() if name.startswith(start)}
 
     def descriptor(self, name: str) -> Any:
-        """The descriptor of a parameter: a copy of the declared one, or of the one that replaced it."""
+        """Return the descriptor of a parameter, which is a copy of the declared or replaced one."""
         if name in self._descriptors:
             return self._descriptors[name]
         if self.allow_undeclared:
@@ -245,11 +253,11 @@ class ParameterStore:
         raise ParameterNotDeclaredException(name, self._parameters)
 
     def keep_descriptor(self, name: str, descriptor: Any) -> None:
-        """Store another object with the same content as the descriptor so far."""
+        """Store a descriptor object in place of another one with the same content."""
         self._descriptors[name] = descriptor
 
     def set_descriptor(self, name: str, descriptor: Any, alternative: Any) -> Parameter | None:
-        """Give a parameter another descriptor; see ``Node.set_descriptor``."""
+        """Replace the descriptor of a parameter; see ``Node.set_descriptor``."""
         if name not in self._parameters:
             if self.allow_undeclared:
                 return None
@@ -268,7 +276,7 @@ class ParameterStore:
         raise InvalidParameterValueException(name, fallback.value, reason or "")
 
     def set_together(self, parameters: Sequence[Parameter]) -> Any:
-        """Set all of them or, if one cannot be set, none; see ``Node.set_parameters_atomically``."""
+        """Set either all parameters or none; see ``Node.set_parameters_atomically``."""
         chosen = list(parameters)
         if self.pre_set:
             chosen = [parameter for callback in tuple(self.pre_set) for parameter in callback(list(parameters))]
@@ -282,7 +290,10 @@ class ParameterStore:
         return self._set([self._as_declared(parameter) for parameter in chosen])
 
     def _as_declared(self, parameter: Parameter) -> Parameter:
-        """An empty list in the array type that is declared: which of them it is cannot be seen from it."""
+        """Return a parameter, with its declared array type if its value is an empty list.
+
+        An empty list does not show its type.
+        """
         descriptor = self._descriptors.get(parameter.name)
         if descriptor is None or descriptor.dynamic_typing or not _is_empty_list(parameter.value):
             return parameter
@@ -290,7 +301,7 @@ class ParameterStore:
         return Parameter(parameter.name, declared, []) if declared.is_array else parameter
 
     def _settle_type(self, name: str, default: Any, descriptor: Any) -> Any:
-        """Fill in the descriptor's type; gives the default value, None where only a type is given."""
+        """Fill in the descriptor's type, and return the default value, or None if only a type is given."""
         if isinstance(default, ParameterType):
             if default is ParameterType.NOT_SET:
                 raise ValueError(f"Cannot declare parameter {{{name}}} as statically typed of type NOT_SET")
@@ -315,7 +326,12 @@ class ParameterStore:
     def _set(
         self, parameters: list[Parameter], *, descriptors: Mapping[str, Any] | None = None, keep_unset: bool = False
     ) -> Any:
-        """Set all or none. With descriptors the parameters are being declared; unset ones go unless they are kept."""
+        """Set all parameters or none.
+
+        If `descriptors` is given, the parameters are being declared. Parameters that are set to no value are
+        undeclared, unless
+        `keep_unset` is true.
+        """
         applied = self._descriptors if descriptors is None else descriptors
         for parameter in parameters:
             descriptor = applied.get(parameter.name)
@@ -363,7 +379,10 @@ def _is_empty_list(value: Any) -> bool:
 
 
 def _parameter(name: str, value: Any, descriptor: Any) -> Parameter:
-    """A parameter to be declared. A value that no parameter can have came from the user."""
+    """Return a parameter to be declared.
+
+    Report a value that no parameter can have as a mistake of the user.
+    """
     if isinstance(value, Parameter):
         value = value.value
     declared = ParameterType(descriptor.type)

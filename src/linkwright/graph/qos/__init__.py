@@ -1,1 +1,1 @@
-"""Quality of service (QoS): profiles, whether they are compatible, and one that fits the publishers of a topic."""
+"""Quality of service (QoS): profiles, their compatibility, and how to fit a topic's publishers."""

@@ -1,6 +1,6 @@
-"""Whether an offered quality of service satisfies a requested one (DDS "requested versus offered").
+"""Compatibility of offered and requested QoS profiles (DDS "requested versus offered").
 
-`fit` chooses one that all publishers of a topic satisfy, as ros2cli does.
+`fit` chooses a profile that all publishers of a topic satisfy, as ros2cli does.
 """
 
 from __future__ import annotations
@@ -36,13 +36,16 @@ class QoSCompatibility(IntEnum):
 
 
 def limit_ns(duration: Duration) -> int | None:
-    """A deadline, lifespan or lease in nanoseconds; None where it sets no limit."""
+    """Return a deadline, lifespan or lease in nanoseconds; None if it sets no limit."""
     nanoseconds = duration.nanoseconds
     return None if nanoseconds <= 0 or nanoseconds >= BEST_AVAILABLE_DURATION.nanoseconds else nanoseconds
 
 
 def resolved(qos: QoSProfile) -> QoSProfile:
-    """The profile with Cyclone DDS's choices for policies left to the middleware; no limit is infinite."""
+    """Return a profile in which Cyclone DDS's choices replace the policies left to the middleware.
+
+    Durations without a limit become infinite.
+    """
     return QoSProfile(
         depth=max(qos.depth, 1),
         history=_known(qos.history, HistoryPolicy.KEEP_LAST),
@@ -65,10 +68,13 @@ def _or_infinite(duration: Duration) -> Duration:
 
 
 def incompatible_policies(offered: QoSProfile, requested: QoSProfile) -> list[QoSPolicyKind]:
-    """The policies in which a subscription requests more than a publisher offers; empty when they are compatible.
+    """Return the policies in which a subscription requests more than a publisher offers.
 
-    A reliable subscription needs a reliable publisher, a transient local one a transient local publisher, one with
-    a deadline a publisher that promises one as short, and so on.
+    The result is empty if they are compatible.
+
+    A reliable subscription needs a reliable publisher, a transient local subscription needs a transient local
+    publisher,
+    a subscription with a deadline needs a publisher that offers at most that deadline, and so on.
     """
     policies = []
     if requested.reliability is ReliabilityPolicy.RELIABLE and offered.reliability is ReliabilityPolicy.BEST_EFFORT:
@@ -94,12 +100,14 @@ def _is_stricter(requested: Duration, offered: Duration) -> bool:
 
 
 def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: bool) -> QoSProfile:
-    """A profile with its BEST_AVAILABLE values chosen so that it matches the endpoints known now (rmw_dds_common).
+    """Return a profile whose BEST_AVAILABLE values are resolved (rmw_dds_common).
+
+    They are resolved to match the endpoints that are known now.
 
     Args:
-        qos: the profile; returned as it is when nothing in it is BEST_AVAILABLE.
-        others: the profiles of the topic's subscriptions for a publisher, of its publishers for a subscription.
-        publisher: whether the profile is for a publisher, which offers all it can.
+        qos: the profile; returned unchanged if it has no BEST_AVAILABLE value.
+        others: for a publisher, the profiles of the topic's subscriptions; for a subscription, those of its publishers.
+        publisher: whether the profile is for a publisher, which offers as much as it can.
     """
     if not _leaves_a_choice(qos):
         return qos
@@ -149,10 +157,10 @@ def _leaves_a_choice(qos: QoSProfile) -> bool:
 
 
 def qos_check_compatible(publisher_qos: QoSProfile, subscription_qos: QoSProfile) -> tuple[QoSCompatibility, str]:
-    """Whether a publisher and a subscription with these profiles are compatible, and the reasons why not.
+    """Return whether two profiles are compatible, and the reasons if they are not.
 
-    Where a profile leaves a policy to the middleware the answer may be a warning (rmw
-    ``rmw_qos_profile_check_compatible``, whose reasons these are).
+    If a profile leaves a policy to the middleware, the result may be a warning. The reasons are those of rmw's
+    ``rmw_qos_profile_check_compatible``.
     """
     errors = "".join(f"ERROR: {reason};" for reason in _errors(publisher_qos, subscription_qos))
     if errors:
@@ -221,12 +229,12 @@ def _word(value: QoSPolicyEnum) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Fitting:
-    """A profile that fits publishers.
+    """A profile that fits the publishers of a topic.
 
     Attributes:
         profile: the profile to subscribe with.
-        mixed: the policies in which the publishers differ, so that the weaker was taken: ``(offered by some, taken)``,
-            named as rclpy's enumerations.
+        mixed: the policies in which the publishers differ, so that the weaker value was chosen: ``(offered by some,
+            chosen)``, with the names of rclpy's enumerations.
     """
 
     profile: QoSProfile
@@ -234,10 +242,10 @@ class Fitting:
 
 
 def fit(wanted: QoSProfile, offers: Sequence[QoSProfile]) -> Fitting:
-    """The strongest reliability and durability that all publishers offer, so that each of them matches.
+    """Return a profile with the strongest reliability and durability that all publishers offer.
 
     Args:
-        wanted: the rest of the profile, and all of it where there are no publishers.
+        wanted: the rest of the profile, and the complete profile if there are no publishers.
         offers: the profiles that the publishers of the topic offer.
     """
     chosen = copy(wanted)

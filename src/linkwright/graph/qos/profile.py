@@ -1,4 +1,4 @@
-"""QoS policies and profiles: what publishers offer and subscriptions request. Names and values are rclpy's."""
+"""QoS policies and profiles, with rclpy's names and values."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ P = TypeVar("P", bound="QoSPolicyEnum")
 
 
 class QoSPolicyKind(IntEnum):
-    """The policies, as events number them (rmw ``rmw_qos_policy_kind_t``)."""
+    """The policies, with the numbers that events use (rmw ``rmw_qos_policy_kind_t``)."""
 
     INVALID = 1
     DURABILITY = 2
@@ -27,37 +27,37 @@ class QoSPolicyKind(IntEnum):
 
 
 def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
-    """The name of a policy."""
+    """Return the name of a policy."""
     return QoSPolicyKind(policy_kind).name
 
 
 class InvalidQoSProfileError(Exception):
-    """A profile lacks history or depth (rclpy ``InvalidQoSProfileException``)."""
+    """Raised when a profile lacks history or depth (rclpy ``InvalidQoSProfileException``)."""
 
     def __init__(self, *reasons: object) -> None:
         super().__init__("Invalid QoSProfile", *reasons)
 
 
 class QoSPolicyEnum(IntEnum):
-    """Base class of the values of a policy (rclpy ``QoSPolicyEnum``)."""
+    """The base class of policy values (rclpy ``QoSPolicyEnum``)."""
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        """The values' names as command lines spell them."""
+        """Return the names of the values as used on command lines."""
         return [name.lower() for name in cls.__members__]
 
     @classmethod
     def get_from_short_key(cls, name: str) -> int:
-        """The number of a value by its name, in any case.
+        """Return the number of the value with a name, in upper or lower case.
 
         Raises:
-            KeyError: there is none of that name.
+            KeyError: there is no value with this name.
         """
         return cls[name.upper()].value
 
     @property
     def short_key(self) -> str:
-        """The name as command lines spell it."""
+        """The name as used on command lines."""
         return self.name.lower()
 
     def __str__(self) -> str:
@@ -116,19 +116,20 @@ class QoSProfile:
     """The policies of a publisher, subscription, service or client (rclpy ``QoSProfile``).
 
     Args:
-        depth: how many messages wait for a callback, and how many a transient local publisher keeps for late joiners.
-            It means nothing with KEEP_ALL.
+        depth: how many messages may wait for a callback, and how many a transient local publisher keeps for late
+            joiners.
+            It has no effect with KEEP_ALL.
         reliability: RELIABLE or BEST_EFFORT.
         durability: TRANSIENT_LOCAL or VOLATILE.
         history: KEEP_LAST or KEEP_ALL.
         lifespan: how long after publication a message is still delivered.
-        deadline: the longest time that may pass between two messages.
+        deadline: the maximum time between two messages.
         liveliness: how the publisher asserts that it is alive.
-        liveliness_lease_duration: how long it counts as alive after it last did so.
-        avoid_ros_namespace_conventions: whether the topic has its name on the wire without ROS's prefix.
+        liveliness_lease_duration: how long the publisher counts as alive after its last assertion.
+        avoid_ros_namespace_conventions: whether the topic is named on the wire without ROS's prefix.
 
     Raises:
-        InvalidQoSProfileError: neither history nor depth is given, or KEEP_LAST without depth.
+        InvalidQoSProfileError: neither history nor depth is given, or KEEP_LAST is given without depth.
     """
 
     __slots__ = (
@@ -174,11 +175,11 @@ class QoSProfile:
 
     @classmethod
     def of(cls, qos: QoSProfile | int) -> QoSProfile:
-        """A profile as it is; a number means the default profile with that depth, as in rclpy.
+        """Return a profile unchanged, or for a number the default profile with that depth, as in rclpy.
 
         Raises:
             ValueError: the number is negative.
-            TypeError: it is neither.
+            TypeError: `qos` is neither a profile nor a number.
         """
         if isinstance(qos, QoSProfile):
             return qos
@@ -188,7 +189,10 @@ class QoSProfile:
 
     @property
     def queue_length(self) -> int | None:
-        """How many messages a queue holds; None for any number. A depth of 0 counts as 1, as in Cyclone DDS."""
+        """The maximum number of messages in a queue; None for no limit.
+
+        A depth of 0 counts as 1, as in Cyclone DDS.
+        """
         return None if self._history is HistoryPolicy.KEEP_ALL else max(self._depth, 1)
 
     @property
@@ -248,7 +252,7 @@ class QoSProfile:
 
     @property
     def deadline(self) -> Duration:
-        """The longest time that may pass between two messages."""
+        """The maximum time between two messages."""
         return self._deadline
 
     @deadline.setter
@@ -267,7 +271,7 @@ class QoSProfile:
 
     @property
     def liveliness_lease_duration(self) -> Duration:
-        """How long the publisher counts as alive after it last asserted that it is."""
+        """How long the publisher counts as alive after its last assertion."""
         return self._liveliness_lease_duration
 
     @liveliness_lease_duration.setter
@@ -277,7 +281,7 @@ class QoSProfile:
 
     @property
     def avoid_ros_namespace_conventions(self) -> bool:
-        """Whether the topic has its name on the wire without ROS's prefix."""
+        """Whether the topic is named on the wire without ROS's prefix."""
         return self._avoid_ros_namespace_conventions
 
     @avoid_ros_namespace_conventions.setter
@@ -286,7 +290,7 @@ class QoSProfile:
         self._avoid_ros_namespace_conventions: bool = value
 
     def policies(self) -> dict[str, Any]:
-        """The policies by name, in rclpy's order."""
+        """Return the policies by name, in rclpy's order."""
         return {name: getattr(self, name) for name in _ORDER}
 
     def __eq__(self, other: object) -> bool:
@@ -383,7 +387,7 @@ DESCRIPTION_QOS = LATCHED_QOS
 
 
 class QoSPresetProfiles(Enum):
-    """rclpy's profiles by name."""
+    """The preset profiles of rclpy, by name."""
 
     UNKNOWN = UNKNOWN_QOS
     DEFAULT = DEFAULT_QOS
@@ -397,14 +401,14 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        """The names as command lines spell them."""
+        """Return the names of the profiles as used on command lines."""
         return [name.lower() for name in cls.__members__]
 
     @classmethod
     def get_from_short_key(cls, name: str) -> QoSProfile:
-        """A profile by its name, in any case.
+        """Return the profile with a name, in upper or lower case.
 
         Raises:
-            KeyError: there is none of that name.
+            KeyError: there is no profile with this name.
         """
         return cls[name.upper()].value

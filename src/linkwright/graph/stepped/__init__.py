@@ -1,1 +1,1 @@
-"""Nodes whose callbacks run on a thread of their own, between the steps of a simulation or of a control loop."""
+"""Nodes whose callbacks run between the steps of a simulation or control loop, on its thread."""

@@ -1,4 +1,7 @@
-"""The one way in which a simulation or a control loop calls the code of a part: an exception ends that part alone."""
+"""Calls from a simulation or control loop to the code of its parts.
+
+An exception ends only the part that raised it.
+"""
 
 from __future__ import annotations
 
@@ -17,9 +20,9 @@ class Calls:
         failed: called with the exception of a function; it may `close` these calls.
 
     Attributes:
-        number: the number of the current call, from 1; 0 between two calls. A state that may change at any time,
-            such as the subscriptions of a topic, is read once in a call (`Output.is_wanted`).
-        is_closed: whether nothing is called any more.
+        number: the number of the current call, from 1; 0 between calls. State that may change at any time, such as the
+            subscriptions of a topic, is read once per call (`Output.is_wanted`).
+        is_closed: whether further calls are ignored.
     """
 
     __slots__ = ("_count", "_failed", "is_closed", "number")
@@ -31,7 +34,7 @@ class Calls:
         self._failed = failed
 
     def make(self, function: Callable[[], object]) -> None:
-        """Call a function; `failed` receives its exception."""
+        """Call a function; `failed` receives an exception that it raises."""
         if self.is_closed:
             return
         outer, self._count = self.number, self._count + 1
@@ -44,12 +47,15 @@ class Calls:
             self.number = outer
 
     def fail(self, error: Exception) -> None:
-        """Report an error from elsewhere, in the simulation's thread."""
+        """Report an error that occurred elsewhere; to be called in the simulation's thread."""
         if not self.is_closed:
             self._failed(error)
 
     def close(self, function: Callable[[], object], on_error: Failure) -> None:
-        """Call a last function, and no other one afterwards; its exception is only logged."""
+        """Call a final function, and ignore all further calls.
+
+        `on_error` receives an exception that it raises.
+        """
         if self.is_closed:
             return
         self.is_closed = True
@@ -60,5 +66,5 @@ class Calls:
 
 
 def logged_calls(logger: Logger, name: str) -> Calls:
-    """Return calls that log an error of a function; everything else continues."""
+    """Return calls that log exceptions, after which everything continues."""
     return Calls(partial(log_failure, logger, f"a callback of '{name}'"))

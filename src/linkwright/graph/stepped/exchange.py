@@ -19,7 +19,7 @@ class Outlet(Protocol):
     """A destination of messages: a publisher, or a function that is called on the event loop."""
 
     def publish(self, message: Any) -> object:
-        """Publish a message, or hand it to the function."""
+        """Publish a message, or pass it to the function."""
 
 
 _BATCHES = 4
@@ -29,11 +29,12 @@ _BATCHES = 4
 class Exchange:
     """Carries messages out of the simulation's thread, and commands into it.
 
-    Messages are collected and handed over together: to the event loop of the graph where the simulation has a thread of
-    its own, or at once. Commands come from any thread and are done by the simulation between two chunks of time.
+    Messages are collected and delivered in batches: to the event loop of the graph if the simulation has its own
+    thread,
+    otherwise directly. Commands come from any thread, and the simulation executes them between two chunks of time.
 
     Attributes:
-        come: set while commands wait.
+        come: set while commands are queued.
     """
 
     def __init__(self) -> None:
@@ -49,10 +50,10 @@ class Exchange:
         self._out.append((publisher, message))
 
     def deliver(self, dispatcher: LoopDispatcher | None = None) -> None:
-        """Publish the sent messages.
+        """Publish the messages that were sent.
 
         Args:
-            dispatcher: the dispatcher of the event loop that publishes; None to publish here and now.
+            dispatcher: the dispatcher of the event loop that publishes; None to publish in this call.
         """
         if not self._out:
             return
@@ -77,7 +78,7 @@ class Exchange:
             self._in.popleft()()
 
     def close(self) -> None:
-        """Stop delivering, and let a simulation that waits for `deliver` continue."""
+        """Stop delivering, and release a simulation that waits in `deliver`."""
         self._closed = True
         self._in.clear()
         self._make_room()
@@ -98,4 +99,4 @@ def _publish(batch: list[tuple[Outlet, Any]]) -> None:
         try:
             publisher.publish(message)
         except InvalidHandleError:  # noqa: PERF203 - `suppress` for each takes longer than to publish
-            continue  # its model is gone
+            continue  # its model was removed

@@ -1,4 +1,4 @@
-"""A node whose callbacks run on the thread of a simulation or of a control loop, between two of its steps."""
+"""A node whose callbacks run between two steps of a simulation or control loop, on its thread."""
 
 from __future__ import annotations
 
@@ -25,11 +25,13 @@ _WARN_SECONDS = 1.0
 
 
 class _Outlet:
-    """The publishers of a topic, to which the exchange hands messages; an error ends only their plugin.
+    """The publishers of a topic, to which the exchange passes messages.
+
+    An error ends only their plugin.
 
     Args:
         output: the topic.
-        make: makes a message of the values that are sent; None where messages themselves are.
+        make: creates a message from the values that are sent; None if messages themselves are sent.
     """
 
     __slots__ = ("_make", "_output")
@@ -39,14 +41,14 @@ class _Outlet:
         self._make = make
 
     def publish(self, message: Any) -> None:
-        """Publish a message, or the one that is made of values."""
+        """Publish a message, or the message created from the values."""
         output, make = self._output, self._make
         try:
             made = message if make is None else make(*message)
             for publisher in output.publishers:
                 publisher.publish(made)
         except InvalidHandleError:
-            raise  # its model is gone
+            raise  # its model was removed
         except Exception as error:  # noqa: BLE001 - of a message that a plugin made
             output.exchange.post(partial(output.calls.fail, error))
 
@@ -55,9 +57,9 @@ class Output:
     """A topic that a plugin publishes, under one name or two.
 
     Args:
-        exchange: that of the simulation.
-        publishers: one for each name.
-        calls: those of the plugin.
+        exchange: the exchange of the simulation.
+        publishers: one publisher for each name.
+        calls: the calls of the plugin.
     """
 
     def __init__(self, exchange: Exchange, publishers: list[Publisher[Any]], calls: Calls) -> None:
@@ -69,9 +71,9 @@ class Output:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether a subscriber exists; otherwise a costly message need not be made.
+        """Whether a subscription exists; without one, a plugin need not create a costly message.
 
-        Subscriptions change at any time, on another thread; within one call of a plugin the answer stays the same.
+        Subscriptions may change at any time, on another thread; within one call of a plugin the value stays the same.
         """
         number = self.calls.number
         if not number:
@@ -91,12 +93,12 @@ class Output:
         self.exchange.send(self._outlet, message)
 
     def making(self, make: Callable[..., Any]) -> Callable[..., None]:
-        """Return a function that publishes the message which `make` makes of its arguments.
+        """Return a function that publishes the message that `make` creates from its arguments.
 
-        The message is made where it is published: a simulation with a thread of its own computes on meanwhile.
+        The message is created where it is published, so a simulation with its own thread need not wait for it.
 
         Args:
-            make: makes a message of values that do not change afterwards.
+            make: creates a message from values that do not change afterwards.
         """
         outlet = _Outlet(self, make)
 
@@ -107,14 +109,14 @@ class Output:
 
 
 class SteppedNode:
-    """Publishers, subscriptions, services and parameters whose callbacks run between two steps.
+    """A node's endpoints and parameters, whose callbacks run between two steps.
 
     Args:
         node: the node.
-        exchange: that of the simulation or of the control loop.
-        owned: whether the node ends with this object.
-        now_ns: returns the time of the steps, in nanoseconds; by default that of the node's clock.
-        calls: calls the callbacks; by default an error of one is logged.
+        exchange: the exchange of the simulation or the control loop.
+        owned: whether closing this object destroys the node.
+        now_ns: returns the time of the steps, in nanoseconds; by default the time of the node's clock.
+        calls: calls the callbacks; by default errors are logged.
 
     Attributes:
         calls: calls the callbacks.
@@ -143,7 +145,7 @@ class SteppedNode:
 
     @property
     def graph_node(self) -> Node:
-        """The node itself, for features such as actions: its callbacks run on the event loop."""
+        """The node itself, for features such as actions, whose callbacks run on the event loop."""
         return self._node
 
     @property
@@ -157,12 +159,12 @@ class SteppedNode:
         return self._node.get_fully_qualified_name()
 
     def publisher(self, msg_type: Any, topic: str, qos: QoSProfile | int = 10) -> Output:
-        """A topic to publish.
+        """Create a publisher, and return its output.
 
         Args:
-            msg_type: the class of its messages, or the name of the type.
+            msg_type: the message class, or the name of the type.
             topic: relative, absolute or private name.
-            qos: the quality of service; a number is a depth.
+            qos: the QoS; a number is a depth.
         """
         return self._publish_as(msg_type, [topic], qos)
 
@@ -178,19 +180,23 @@ class SteppedNode:
     ) -> None:
         """Subscribe to a topic.
 
-        The arguments are those of `publisher`; for commands that hold until the next one, ``commander`` is one that
-        the method of this name gave. ``rest`` is called in place of the callback where a message has NaN or an infinite
-        number, which is logged: the world would be unstable with it.
+        The arguments are those of `publisher`. For commands that hold until the next one, ``commander`` is an object
+        returned
+        by the method of that name. If a message contains NaN or an infinite number, which would make the world
+        unstable,
+        ``rest`` is called instead of the callback, and a warning is logged.
         """
         self._subscribe_to(msg_type, [topic], self._received_by(topic, callback, rest, commander), qos, commander)
 
     def commander(self, rest: Callable[[], bool]) -> Commander:
-        """A watcher of topics whose commands hold until the next one: a lost publisher's command is withdrawn.
+        """Return an object that withdraws the command of a lost publisher.
 
-        It also warns where several nodes command at the same time.
+        It is for commands that hold until the next one.
+
+        It also warns if several nodes send commands at the same time.
 
         Args:
-            rest: stops the motion of the last command; returns whether there was one, which is logged.
+            rest: stops the motion of the last command; returns whether there was any, which is logged.
         """
 
         def lost(publisher: EndpointInfo) -> None:
@@ -199,7 +205,10 @@ class SteppedNode:
         return Commander(lost, DriverWatch(self.logger, self._node.graph, self._now_ns))
 
     def service(self, srv_type: str, name: str, callback: Callable[[Any, Any], Any]) -> None:
-        """Offer a service, whose callback gets the request and an empty response, and returns the response."""
+        """Offer a service.
+
+        Its callback receives the request and an empty response, and returns the response.
+        """
         response = get_service(srv_type).Response
 
         def asked(request: Any, reply: Callable[[Any], None]) -> None:
@@ -208,17 +217,17 @@ class SteppedNode:
         self._endpoints.append(self._node.create_service(srv_type, name, asked, replying=True))
 
     def post(self, command: Callable[[], object]) -> None:
-        """Queue a function to be called between two steps; from any thread."""
+        """Queue a function to be called between two steps; callable from any thread."""
         self._exchange.post(partial(self.calls.make, command))
 
     def parameter(self, name: str, default: Any) -> Any:
-        """The value of a parameter of the node, which is declared with a default."""
+        """Return the value of a parameter of the node, after declaring it with a default if necessary."""
         if not self._node.has_parameter(name):
             self._node.declare_parameter(name, default)
         return self._node.get_parameter(name).value
 
     def close(self) -> None:
-        """Remove everything that was made from the graph."""
+        """Destroy the node if it is owned, otherwise the endpoints that were created."""
         if self._owned:
             self._node.destroy_node()
         else:
@@ -239,7 +248,7 @@ class SteppedNode:
         rest: Callable[[], object] | None,
         commander: Commander | None,
     ) -> Callable[..., object]:
-        """Return the callback of a subscription, which hands messages to that of the steps."""
+        """Return the callback of a subscription, which passes messages to the callback between the steps."""
         if rest is not None:
             callback = partial(self._sound, callback, rest, topic)
         received: Callable[..., object] = partial(self._received, callback)
@@ -266,11 +275,11 @@ class SteppedNode:
             self._listen(self._node.handle.resolve_topic_name(name), listen)
 
     def _listen(self, topic: str, listen: Callable[[str], Endpoint]) -> None:
-        """Subscribe to a topic of a full name."""
+        """Subscribe to a topic, given by its full name."""
         listen(topic)
 
     def _profile(self, topic: str, side: str, qos: QoSProfile | int) -> QoSProfile:
-        """Return the quality of service of a topic, for a ``publisher`` or a ``subscriber``."""
+        """Return the QoS profile of a topic, for a ``publisher`` or a ``subscriber``."""
         return QoSProfile.of(qos)
 
     def _rest(self, rest: Callable[[], bool], publisher: EndpointInfo) -> None:
@@ -278,7 +287,10 @@ class SteppedNode:
             self.logger.warning(phrase("{who}: the motion stops", who=describe_lost_publisher(publisher)))
 
     def _sound(self, callback: Callable[[Any], object], rest: Callable[[], object], topic: str, message: Any) -> None:
-        """Pass a command on if its numbers are finite; stop otherwise."""
+        """Pass a command on if all its numbers are finite.
+
+        Otherwise stop the motion and log a warning.
+        """
         if _is_finite(message):
             callback(message)
             return

@@ -1,1 +1,1 @@
-"""Time: points and durations, clocks, and alarms."""
+"""Time: points in time and durations, clocks, and alarms."""

@@ -1,4 +1,4 @@
-"""Clocks of nodes: system, steady and ROS time, and jumps of time; and the timebase of a graph, which sets alarms."""
+"""Clocks of nodes (system, steady and ROS time), time jumps, and the timebase of a graph."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _SHORT_NS = 20_000_000
 
 
 class Alarm(Protocol):
-    """A call that is scheduled for a time."""
+    """A call that is scheduled for a certain time."""
 
     def cancel(self) -> None:
         """Cancel the call."""
@@ -39,44 +39,52 @@ class AlarmSetter(Protocol):
     """Schedules calls."""
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a call for a steady time of the graph, in nanoseconds; from any thread.
+        """Schedule a call for a steady time of the graph, in nanoseconds; callable from any thread.
 
-        It is never made before this returns. The callback marks entities as ready: it is short, and not a user's code.
+        The call is never made before this method returns. The callback marks entities as ready: it is short, and never
+        a
+        user's code.
         """
 
 
 class Settling(Protocol):
-    """Runs the callbacks of a graph, and can be waited for."""
+    """Runs the callbacks of a graph, and allows waiting until they are done."""
 
     async def settle(self) -> None:
-        """Wait until nothing is ready any more, including the calls that other calls make ready."""
+        """Wait until no work is ready, including calls that other calls make ready."""
 
 
 class Timebase(ABC):
-    """The two times of a graph: system time, which stamps messages and may jump, and steady time, which timers use."""
+    """The two times of a graph: system time and steady time.
+
+    System time stamps messages and may jump; timers use steady time.
+    """
 
     @abstractmethod
     def now_ns(self) -> int:
-        """Nanoseconds since the epoch."""
+        """Return the system time, in nanoseconds since the epoch."""
 
     @abstractmethod
     def steady_ns(self) -> int:
-        """Steady time, nanoseconds from an arbitrary start."""
+        """Return the steady time, in nanoseconds since an arbitrary start."""
 
     @abstractmethod
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a call on an event loop for a steady time, in nanoseconds; called in the loop's thread."""
+        """Schedule a call on an event loop for a steady time, in nanoseconds.
+
+        It must be called in the loop's thread.
+        """
 
     def now(self) -> Time:
-        """The present as a point in time."""
+        """Return the current system time."""
         return Time(nanoseconds=self.now_ns(), clock_type=ClockType.SYSTEM_TIME)
 
     def attach(self, dispatcher: Settling) -> None:  # noqa: B027  # most need not know
-        """Note the dispatcher of a graph that uses this timebase."""
+        """Attach the dispatcher of a graph that uses this timebase."""
 
 
 class SystemClock(Timebase):
-    """The computer's clocks: system time, and monotonic time, which event loops use too; asked thousands of times."""
+    """The computer's clocks: system time, and the monotonic time that event loops use, too."""
 
     now_ns = staticmethod(time.time_ns)
     steady_ns = staticmethod(time.monotonic_ns)
@@ -91,10 +99,10 @@ class SystemClock(Timebase):
 
 
 class JumpClock(Timebase):
-    """Time that moves only when a test advances it, so that an hour of timers takes milliseconds.
+    """A clock that moves only when a test advances it, so that an hour of timers takes milliseconds.
 
     Args:
-        start_ns: what `now_ns` gives at first, nanoseconds since the epoch.
+        start_ns: the initial value of `now_ns`, in nanoseconds since the epoch.
     """
 
     def __init__(self, start_ns: int = 1_700_000_000 * NANOSECONDS_PER_SECOND) -> None:
@@ -105,15 +113,15 @@ class JumpClock(Timebase):
         self._dispatchers: list[Settling] = []
 
     def now_ns(self) -> int:
-        """Nanoseconds since the epoch, as moved so far."""
+        """Return the simulated system time, in nanoseconds since the epoch."""
         return self._now_ns
 
     def steady_ns(self) -> int:
-        """Nanoseconds advanced so far."""
+        """Return how far the clock was advanced, in nanoseconds."""
         return self._steady_ns
 
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a callback for when the clock is advanced that far."""
+        """Schedule a callback for the moment when the clock is advanced to a steady time."""
         alarm = ScheduledAlarm(steady_ns, next(self._numbers), callback)
         heapq.heappush(self._alarms, alarm)
         return alarm
@@ -123,11 +131,13 @@ class JumpClock(Timebase):
         self._dispatchers.append(dispatcher)
 
     async def advance(self, seconds: float, *, is_settled: bool = False) -> None:
-        """Advance the time; each timer is called when it falls due, and its effects are done before the next.
+        """Advance the time.
+
+        Each timer is called when it becomes due, and its effects are completed before the next one.
 
         Args:
-            seconds: how much.
-            is_settled: whether all ready work is done, so that there is nothing to wait for.
+            seconds: how far to advance, in seconds.
+            is_settled: whether all ready work is done already, so that there is nothing to wait for.
         """
         end = self._steady_ns + round(seconds * NANOSECONDS_PER_SECOND)
         if not is_settled:
@@ -141,7 +151,9 @@ class JumpClock(Timebase):
         self._move_to(end)
 
     def jump(self, seconds: float) -> None:
-        """Set the time of stamps forward or back, as a corrected system clock or a restarted recording does.
+        """Move the time of stamps forward or back.
+
+        This is what happens when the system clock is corrected or a recording restarts.
 
         Timers are not called.
         """
@@ -162,7 +174,7 @@ _LONGEST_WAIT_S = 0.1
 
 
 class ClockChange(IntEnum):
-    """The cause of a time jump; numbers as in rcl."""
+    """The causes of a time jump, with the numbers of rcl."""
 
     ROS_TIME_NO_CHANGE = 1
     ROS_TIME_ACTIVATED = 2
@@ -171,15 +183,15 @@ class ClockChange(IntEnum):
 
 
 class JumpThreshold:
-    """Which time jumps of a clock a callback is called for (rclpy ``JumpThreshold``).
+    """The time jumps of a clock that a callback is called for (rclpy ``JumpThreshold``).
 
     Args:
-        min_forward: the least jump forward, more than zero; None for no jump forward.
-        min_backward: the least jump backward, less than zero; None for no jump backward.
-        on_clock_change: whether it is called when ROS time switches to simulated time, or back.
+        min_forward: the minimum jump forward, more than zero; None to ignore jumps forward.
+        min_backward: the minimum jump backward, less than zero; None to ignore jumps backward.
+        on_clock_change: whether the callback is called when ROS time switches to simulated time or back.
 
     Raises:
-        ValueError: a threshold has the wrong sign, or there is none.
+        ValueError: a threshold has the wrong sign, or none is given.
     """
 
     def __init__(
@@ -196,7 +208,7 @@ class JumpThreshold:
         self.on_clock_change = on_clock_change
 
     def is_exceeded(self, jump: TimeJump) -> bool:
-        """Whether callbacks are called for a jump."""
+        """Return whether callbacks are called for a jump."""
         if jump.clock_change in (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED):
             return self.on_clock_change
         forward, backward = self.min_forward, self.min_backward
@@ -205,14 +217,17 @@ class JumpThreshold:
 
 @dataclass(frozen=True, slots=True)
 class TimeJump:
-    """A time jump of a clock: its cause, and how far time went forward, or back where `delta` is negative."""
+    """A time jump of a clock: its cause, and its size `delta`, negative for a jump backward."""
 
     clock_change: ClockChange
     delta: Duration
 
 
 class JumpHandle:
-    """Callbacks for the time jumps of a clock; made by `Clock.create_jump_callback`."""
+    """The handle of callbacks for the time jumps of a clock.
+
+    `Clock.create_jump_callback` creates it.
+    """
 
     def __init__(
         self,
@@ -234,7 +249,7 @@ class JumpHandle:
         self._clock: Clock | None = clock
 
     def unregister(self) -> None:
-        """Call the callbacks no more."""
+        """Unregister the callbacks."""
         if self._clock is not None:
             self._clock.forget_jump_callback(self)
             self._clock = None
@@ -247,18 +262,18 @@ class JumpHandle:
 
 
 class Clock:
-    """A clock (rclpy ``Clock``). One of type ROS_TIME is a `ROSClock`.
+    """A clock (rclpy ``Clock``); a clock of type ROS_TIME is a `ROSClock`.
 
     Args:
         clock_type: system, steady or ROS time.
-        timebase: where the time comes from; the computer's clocks when left out.
+        timebase: the source of the time; the computer's clocks by default.
 
     Raises:
         TypeError: `clock_type` is not a ClockType.
     """
 
     def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME, timebase: Timebase | None = None) -> Self:  # noqa: ARG004
-        """A clock of the class that fits its type."""
+        """Create a clock of the class that fits its type."""
         if not isinstance(clock_type, ClockType):
             raise TypeError("Clock type must be a ClockType enum")
         wanted: Any = ROSClock if cls is Clock and clock_type is ClockType.ROS_TIME else cls
@@ -278,11 +293,11 @@ class Clock:
         return f"Clock(clock_type={self.clock_type.name})"
 
     def now(self) -> Time:
-        """The present as a point in time."""
+        """Return the current time."""
         return Time(nanoseconds=self.now_ns(), clock_type=self.clock_type)
 
     def now_ns(self) -> int:
-        """Nanoseconds since the clock's epoch."""
+        """Return the current time, in nanoseconds since the clock's epoch."""
         return self.timebase.steady_ns() if self.clock_type is ClockType.STEADY_TIME else self.timebase.now_ns()
 
     def create_jump_callback(
@@ -292,10 +307,12 @@ class Clock:
         pre_callback: Callable[[], object] | None = None,
         post_callback: Callable[[TimeJump], object] | None = None,
     ) -> JumpHandle:
-        """Register callbacks for before and after time jumps of this clock; only ROS time jumps.
+        """Register callbacks that are called before and after time jumps of this clock.
+
+        Only ROS time jumps.
 
         Raises:
-            ValueError: neither callback is given, or one cannot be called.
+            ValueError: neither callback is given, or one is not callable.
         """
         handle = JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=post_callback)
         with self._changed:
@@ -311,18 +328,21 @@ class Clock:
     # --- timers ------------------------------------------------------------------------------------------------
 
     def timer_ns(self) -> int:
-        """The time that timers on this clock use, nanoseconds: steady time, or simulated time where that is active."""
+        """Return the time that timers on this clock use, in nanoseconds.
+
+        This is simulated time while it is active, otherwise steady time.
+        """
         return self.timebase.steady_ns()
 
     def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a call for a value of `timer_ns`; the callback is short."""
+        """Schedule a call for a value of `timer_ns`; the callback must be short."""
         return dispatcher.call_at(timer_ns, callback)
 
     def add_timer(self, timer: FollowsClock) -> None:
-        """Notify a timer when its time switches to simulated time or back, or jumps back."""
+        """Register a timer that is notified when the clock switches its time source or jumps back."""
 
     def remove_timer(self, timer: FollowsClock) -> None:
-        """Notify it no more."""
+        """Unregister a timer."""
 
     # --- sleeping ----------------------------------------------------------------------------------------------
 
@@ -330,17 +350,18 @@ class Clock:
         """Block the calling thread until a point in time.
 
         Args:
-            until: when, by a clock of this type.
-            context: an object with ``ok()``; the sleep ends early when that is no longer true. The clock's own when
-                None.
+            until: the point in time, of this clock's type.
+            context: an object with ``ok()``; the sleep ends early when that is no longer true. None for the clock's own
+                context.
 
         Returns:
-            Whether the time has come; False when the sleep ended early, because of the context or because the clock
-            became simulated or ceased to be.
+            Whether the time was reached. False if the sleep ended early, because of the context or because the clock
+            switched
+            to simulated time or back.
 
         Raises:
-            ValueError: the point belongs to another type of clock.
-            NotInitializedError: the context is not ok to begin with.
+            ValueError: the point in time belongs to another type of clock.
+            NotInitializedError: the context is not ok at the start.
         """
         context = self.context if context is None else context
         if context is not None and not context.ok():
@@ -358,7 +379,7 @@ class Clock:
         return True
 
     def sleep_for(self, rel_time: Duration, context: Any = None) -> bool:
-        """Block the calling thread for a span of time by this clock; see `sleep_until`."""
+        """Block the calling thread for a duration of this clock; see `sleep_until`."""
         return self.sleep_until(self.now() + rel_time, context)
 
     def _longest_wait_s(self, left_ns: int) -> float:
@@ -379,16 +400,16 @@ class Clock:
 
 
 class FollowsClock(Protocol):
-    """A timer, as its clock knows it."""
+    """The interface of a timer that its clock needs."""
 
     def before_switch(self) -> None:
-        """The clock is about to switch to simulated time, or back."""
+        """Prepare for a switch of the clock to simulated time or back."""
 
     def after_switch(self) -> None:
-        """The clock has switched."""
+        """Continue after the clock has switched."""
 
     def after_jump_back(self) -> None:
-        """Simulated time has jumped back."""
+        """Handle a jump back of simulated time."""
 
 
 @dataclass(slots=True, order=True)
@@ -403,11 +424,13 @@ class _SimulatedAlarm:
 
 
 class ROSClock(Clock):
-    """ROS time: the system's until a simulation takes over (rclpy ``ROSClock``).
+    """ROS time, which is the system's time until a simulation takes over (rclpy ``ROSClock``).
 
-    While it is simulated (`ros_time_is_active`), only `set_ros_time_override` moves it, forward or back. Timers on it
-    keep the rest of their period when it becomes simulated or ceases to be, and restart their period when it jumps
-    back (rcl ``rcl_timer``).
+    While simulated time is active (`ros_time_is_active`), only `set_ros_time_override` moves the clock, forward or
+    back.
+    Timers keep the rest of their period when the clock switches to simulated time or back, and restart their period
+    when it
+    jumps back (rcl ``rcl_timer``).
     """
 
     def __init__(self, *, clock_type: ClockType = ClockType.ROS_TIME, timebase: Timebase | None = None) -> None:
@@ -421,20 +444,23 @@ class ROSClock(Clock):
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether time is simulated."""
+        """Whether simulated time is active."""
         return self._active
 
     def now_ns(self) -> int:
-        """Nanoseconds since the epoch; 0 while simulated time has not begun."""
+        """Return the current time, in nanoseconds since the epoch.
+
+        The result is 0 while simulated time has not begun.
+        """
         return self._override_ns if self._active else self.timebase.now_ns()
 
     def timer_ns(self) -> int:
-        """Simulated time, or steady time."""
+        """Return simulated time while it is active, else steady time, in nanoseconds."""
         return self._override_ns if self._active else self.timebase.steady_ns()
 
     def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a call for a value of `timer_ns`."""
-        with self._lock:  # that of the condition, which enters it in Python: timers come here with each beat
+        with self._lock:  # the lock itself is faster than the condition, and timers come here often
             if not self._active:
                 return dispatcher.call_at(timer_ns, callback)
             alarm = _SimulatedAlarm(timer_ns, next(self._numbers), callback)
@@ -444,15 +470,15 @@ class ROSClock(Clock):
         return dispatcher.call_at(self.timebase.steady_ns(), callback)
 
     def add_timer(self, timer: FollowsClock) -> None:
-        """Notify a timer of switches, and of jumps back."""
+        """Register a timer that is notified of switches, and of jumps back."""
         self._timers[timer] = None
 
     def remove_timer(self, timer: FollowsClock) -> None:
-        """Notify it no more."""
+        """Unregister a timer."""
         self._timers.pop(timer, None)
 
     def set_ros_time_is_active(self, enabled: bool) -> None:
-        """Begin or end simulated time."""
+        """Activate or deactivate simulated time."""
         with self._changed:
             if enabled == self._active:
                 return
@@ -475,7 +501,7 @@ class ROSClock(Clock):
     """As rclpy names it."""
 
     def set_ros_time_override(self, time: Time) -> None:
-        """Set simulated time; it counts once simulated time is active.
+        """Set simulated time, which takes effect once simulated time is active.
 
         Raises:
             TypeError: `time` is not a Time.
@@ -485,14 +511,14 @@ class ROSClock(Clock):
         self.override(time.nanoseconds)
 
     def override(self, now_ns: int) -> None:
-        """Set simulated time, nanoseconds since the epoch."""
+        """Set simulated time, in nanoseconds since the epoch."""
         with self._changed:
             if not self._active:
                 self._override_ns = now_ns
                 return
             if self._jump_handles or now_ns < self._override_ns:
                 self._jump_to(now_ns)
-            else:  # as nearly always
+            else:  # the usual case
                 self._override_ns = now_ns
             self._changed.notify_all()
             due = []
@@ -503,7 +529,10 @@ class ROSClock(Clock):
                 alarm.callback()
 
     def _jump_to(self, now_ns: int) -> None:
-        """Set simulated time, and call the jump callbacks that it exceeds, and timers if it goes back."""
+        """Set simulated time, and call the jump callbacks whose threshold it exceeds.
+
+        Timers are notified if the time jumps back.
+        """
         jump = TimeJump(ClockChange.ROS_TIME_NO_CHANGE, Duration(nanoseconds=now_ns - self._override_ns))
         handles = [handle for handle in self._jump_handles if handle.threshold.is_exceeded(jump)]
         self._notify_before(handles)
@@ -515,7 +544,7 @@ class ROSClock(Clock):
         self._notify_after(handles, jump)
 
     def interrupt(self) -> None:
-        """Let sleepers look at their contexts."""
+        """Wake sleeping threads to check their contexts."""
         with self._changed:
             self._changed.notify_all()
 

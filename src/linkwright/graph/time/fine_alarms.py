@@ -1,8 +1,8 @@
-"""Alarms of an event loop to some microseconds, where the loop itself waits for whole milliseconds.
+"""Alarms of an event loop with microsecond precision, for loops that wait for whole milliseconds.
 
-asyncio waits with ``epoll_wait`` on Linux, whose time-out is counted in milliseconds and rounded up: a beat of 1 kHz
-would come late each time, and each seventh be missed. A timer of the kernel that the loop watches as a file
-(``timerfd``) wakes it in time. The event loops of other systems need none.
+On Linux, asyncio waits with ``epoll_wait``, whose timeout is counted in milliseconds and rounded up: each tick at 1 kHz
+would be late, and every seventh would be missed. A kernel timer that the loop watches as a file (``timerfd``) wakes it
+in time. The event loops of other systems do not need one.
 """
 
 from __future__ import annotations
@@ -29,9 +29,12 @@ _ABSOLUTE = 1
 
 
 def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
-    """The fine alarms of an event loop, asked for in its thread; None where its own alarms must do."""
+    """Return the fine alarms of an event loop; None if the loop's own alarms must suffice.
+
+    It must be called in the loop's thread.
+    """
     try:
-        return _of_loops[id(loop)]  # no weak dictionary, which is Python: timers look here with each beat
+        return _of_loops[id(loop)]  # a weak dictionary runs Python code, and timers come here with each tick
     except KeyError:
         found = _of_loops[id(loop)] = _made(loop)
         weakref.finalize(loop, _of_loops.pop, id(loop), None)
@@ -41,15 +44,15 @@ def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
 def _made(loop: AbstractEventLoop) -> FineAlarms | None:
     if sys.platform != "linux":
         return None
-    import ctypes  # here, as most programs have no use for it: it takes longer than all of this file
+    import ctypes  # imported here: most programs do not need it, and it takes longer than the rest
 
-    if ctypes.sizeof(ctypes.c_long) != 8:  # the layout of times is another one there
+    if ctypes.sizeof(ctypes.c_long) != 8:  # times have another layout there
         return None
-    libc = ctypes.PyDLL(None)  # its calls are short: the interpreter's lock is kept meanwhile
+    libc = ctypes.PyDLL(None)  # its calls are short, so the interpreter's lock is not released
     file = libc.timerfd_create(_CLOCK_MONOTONIC, os.O_NONBLOCK | os.O_CLOEXEC)
     if file < 0:
         return None
-    period_and_next = (ctypes.c_long * 4)()  # each in seconds and nanoseconds
+    period_and_next = (ctypes.c_long * 4)()  # both in seconds and nanoseconds
     alarms = FineAlarms(partial(libc.timerfd_settime, file, _ABSOLUTE, period_and_next, None), period_and_next)
     try:
         loop.add_reader(file, alarms.run)
@@ -62,13 +65,13 @@ def _made(loop: AbstractEventLoop) -> FineAlarms | None:
 
 @dataclass(slots=True, order=True)
 class ScheduledAlarm:
-    """A call among those that are scheduled, which are in the order of their times.
+    """A scheduled call; alarms are ordered by their times.
 
     Attributes:
-        steady_ns: when it is due.
-        number: its place among alarms that are due at the same time; the least comes first.
+        steady_ns: when the call is due.
+        number: decides the order of alarms that are due at the same time; the lowest number comes first.
         callback: the callback.
-        cancelled: whether it is not called any more.
+        cancelled: whether the call is cancelled.
     """
 
     steady_ns: int
@@ -82,14 +85,16 @@ class ScheduledAlarm:
 
 
 class FineAlarms:
-    """Calls that are scheduled on one event loop, in the order in which they are due.
+    """The calls that are scheduled on an event loop, in the order in which they are due.
 
-    The timer is set again after each time it rings, which also makes its file unreadable again: no read is needed.
+    The timer is set again each time it expires. This also makes its file unreadable again, so the file need not be
+    read.
 
     Args:
-        set_timer: gives the kernel the setting.
-        setting: of the timer, by monotonic time: the seconds and nanoseconds of its period, which has none, and of when
-            it rings next.
+        set_timer: passes the setting to the kernel.
+        setting: the timer's setting in monotonic time: the seconds and nanoseconds of its period, which is 0 for none,
+            and
+            of its next expiry.
     """
 
     def __init__(self, set_timer: Callable[[], int], setting: Array[c_long]) -> None:
@@ -100,7 +105,10 @@ class FineAlarms:
         self._is_running = False
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledAlarm:
-        """Schedule a call for a count of ``time.monotonic_ns``; it is never made before this returns."""
+        """Schedule a call for a value of ``time.monotonic_ns``.
+
+        It is never made before this method returns.
+        """
         alarm = ScheduledAlarm(steady_ns, next(self._numbers), callback)
         heapq.heappush(self._alarms, alarm)
         if not self._is_running and self._alarms[0] is alarm:
@@ -108,7 +116,10 @@ class FineAlarms:
         return alarm
 
     def run(self) -> None:
-        """Make the calls that are due. Those that they schedule come in another turn of the loop."""
+        """Make the calls that are due.
+
+        Calls that they schedule are made in a later iteration of the loop.
+        """
         alarms, due = self._alarms, []
         now_ns = time.monotonic_ns()
         while alarms and alarms[0].steady_ns <= now_ns:
@@ -127,7 +138,8 @@ class FineAlarms:
 
     def _set(self) -> None:
         setting = self._setting
-        # A time of 0 would stop it, as no alarm has; a time that has passed rings at once.
+        # A time of 0 stops the timer, which is right if there are no alarms; with a time in the past it expires
+        # immediately.
         setting[2], setting[3] = divmod(self._alarms[0].steady_ns, NANOSECONDS_PER_SECOND) if self._alarms else (0, 0)
         self._set_timer()
 

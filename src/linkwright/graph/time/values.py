@@ -16,7 +16,7 @@ _LIMIT = 2**63
 
 
 class ClockType(IntEnum):
-    """The types of clocks; numbers as in rcl."""
+    """The types of clocks, with the numbers of rcl."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1
@@ -25,14 +25,14 @@ class ClockType(IntEnum):
 
 
 class Duration:
-    """A span of time in nanoseconds, an integer of 64 bits (rclpy ``Duration``).
+    """A duration in nanoseconds, as a 64-bit integer (rclpy ``Duration``).
 
     Args:
-        seconds: seconds, a fraction counts.
-        nanoseconds: nanoseconds on top of them; a fraction of one is dropped.
+        seconds: seconds, which may have a fraction.
+        nanoseconds: nanoseconds to add; a fraction is dropped.
 
     Raises:
-        OverflowError: it does not fit into 64 bits.
+        OverflowError: the duration does not fit into 64 bits.
     """
 
     __slots__ = ("nanoseconds",)
@@ -89,7 +89,7 @@ class Duration:
         raise ValueError("Can't multiply duration with nan")
 
     def to_msg(self) -> messages.Duration:
-        """The span as a message."""
+        """Convert the duration to a message."""
         from linkwright import messages
 
         seconds, nanoseconds = divmod(self.nanoseconds, NANOSECONDS_PER_SECOND)
@@ -97,10 +97,10 @@ class Duration:
 
     @classmethod
     def from_msg(cls, msg: messages.Duration) -> Duration:
-        """The span in a message.
+        """Convert a message to a duration.
 
         Raises:
-            TypeError: it is not a ``builtin_interfaces/msg/Duration``.
+            TypeError: `msg` is not a ``builtin_interfaces/msg/Duration``.
         """
         if getattr(msg, "TYPE_NAME", None) != "builtin_interfaces/msg/Duration":
             raise TypeError("Must pass a builtin_interfaces.msg.Duration object")
@@ -112,19 +112,19 @@ INFINITE = Duration(nanoseconds=_LIMIT - 1)
 
 
 class Time:
-    """A point in time of one type of clock (rclpy ``Time``): nanoseconds since the clock's epoch.
+    """A point in time of one type of clock, in nanoseconds since the clock's epoch (rclpy ``Time``).
 
-    Points of different types of clocks are not compared or subtracted.
+    Points in time of different types of clocks cannot be compared or subtracted.
 
     Args:
-        seconds: seconds since the epoch, a fraction counts.
-        nanoseconds: nanoseconds on top of them; a fraction of one is dropped.
+        seconds: seconds since the epoch, which may have a fraction.
+        nanoseconds: nanoseconds to add; a fraction is dropped.
         clock_type: the type of clock.
 
     Raises:
-        TypeError: `clock_type` is none.
-        ValueError: it is before the epoch.
-        OverflowError: it does not fit into 64 bits.
+        TypeError: `clock_type` is not a ClockType.
+        ValueError: the time is before the epoch.
+        OverflowError: the time does not fit into 64 bits.
     """
 
     __slots__ = ("clock_type", "nanoseconds")
@@ -145,7 +145,7 @@ class Time:
         self.clock_type = clock_type
 
     def seconds_nanoseconds(self) -> tuple[int, int]:
-        """The seconds as an integer, and the nanoseconds on top of them."""
+        """Return the seconds as an integer, and the remaining nanoseconds."""
         return divmod(self.nanoseconds, NANOSECONDS_PER_SECOND)
 
     def __repr__(self) -> str:
@@ -198,14 +198,14 @@ class Time:
         return self.nanoseconds >= other._of_same(self) if isinstance(other, Time) else NotImplemented
 
     def to_msg(self) -> messages.Time:
-        """The point as a message."""
+        """Convert the point in time to a message."""
         from linkwright import messages
 
         seconds, nanoseconds = divmod(self.nanoseconds, NANOSECONDS_PER_SECOND)
         return messages.Time(sec=seconds, nanosec=nanoseconds)
 
     def to_datetime(self) -> datetime:
-        """The point as a local date and time.
+        """Convert the point in time to a local date and time.
 
         Raises:
             TypeError: the clock has no calendar.
@@ -216,10 +216,10 @@ class Time:
 
     @classmethod
     def from_msg(cls, msg: Any, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
-        """The point in a message.
+        """Convert a message to a point in time.
 
         Raises:
-            TypeError: it is not a ``builtin_interfaces/msg/Time``.
+            TypeError: `msg` is not a ``builtin_interfaces/msg/Time``.
         """
         if getattr(msg, "TYPE_NAME", None) != "builtin_interfaces/msg/Time":
             raise TypeError("Must pass a builtin_interfaces.msg.Time object")
@@ -232,10 +232,14 @@ class Time:
 
 
 def _differs(kind: str, other: object) -> bool:
-    """Whether something that is neither equals: not implemented, but in Humble an error, which finds ``duration == 5``.
+    """Return NotImplemented for a comparison with an object of another type.
+
+    Raise an error in Humble.
+
+    The error finds mistakes such as ``duration == 5``.
 
     Raises:
-        TypeError: ``ROS_DISTRO`` is Humble or an earlier one.
+        TypeError: ``ROS_DISTRO`` is Humble or an earlier distribution.
     """
     from linkwright.messages.distribution import is_before_iron
 

@@ -1,1 +1,1 @@
-"""tf2: transforms over time, their broadcasters and their users."""
+"""tf2: transforms over time, with broadcasters, listeners and buffers."""

@@ -1,4 +1,4 @@
-"""Transform broadcasters: publish to ``/tf`` and ``/tf_static``, as those of ``tf2_ros``."""
+"""Transform broadcasters, which publish to ``/tf`` and ``/tf_static``, as in ``tf2_ros``."""
 
 from __future__ import annotations
 
@@ -13,24 +13,26 @@ class TransformBroadcaster:
     """Publishes transforms that change.
 
     Args:
-        node: publishes.
-        qos: that of the publisher.
+        node: the node that publishes.
+        qos: the QoS of the publisher.
     """
 
     def __init__(self, node: Any, qos: QoSProfile | int = TF_QOS) -> None:
         self.pub_tf = node.create_publisher(TFMessage, "/tf", qos)
 
     def sendTransform(self, transform: TransformStamped | Sequence[TransformStamped]) -> None:  # noqa: N802
-        """Publish one transform, or several in one message."""
+        """Publish one transform, or several in a single message."""
         self.pub_tf.publish(TFMessage(transforms=_listed(transform)))
 
 
 class StaticTransformBroadcaster:
-    """Publishes transforms that do not change: each message has all transforms sent so far, for late joiners.
+    """Publishes transforms that do not change.
+
+    Each message contains all transforms sent so far, for late joiners.
 
     Args:
-        node: publishes.
-        qos: that of the publisher.
+        node: the node that publishes.
+        qos: the QoS of the publisher.
     """
 
     def __init__(self, node: Any, qos: QoSProfile | int = STATIC_TF_PUBLISHER_QOS) -> None:
@@ -38,7 +40,10 @@ class StaticTransformBroadcaster:
         self._sent: dict[str, TransformStamped] = {}
 
     def sendTransform(self, transform: TransformStamped | Sequence[TransformStamped]) -> None:  # noqa: N802
-        """Publish transforms; one that was sent before for the same child frame is replaced."""
+        """Publish transforms.
+
+        Each replaces the transform that was sent before for the same child frame.
+        """
         for transform_stamped in _listed(transform):
             self._sent[transform_stamped.child_frame_id] = transform_stamped
         self.pub_tf.publish(TFMessage(transforms=list(self._sent.values())))

@@ -1,8 +1,8 @@
-"""The tf buffer without history: the latest transform of each frame, and all poses in any one frame.
+"""A tf buffer without history, which keeps only the latest transform of each frame.
 
-A robot may be one chain of hundreds of links, so composing poses level by level would mean hundreds of small steps.
-Instead each round composes every frame with the frame that its pose is given in so far, which doubles the stretch it
-covers: a chain of 500 takes nine rounds, a usual robot three or four.
+A robot may be a chain of hundreds of links, so composing poses level by level would take hundreds of small steps.
+Instead, each round composes the pose of every frame with the pose of the frame that it is expressed in so far. This
+doubles the distance covered: a chain of 500 links takes nine rounds, a typical robot three or four.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ Poses = NDArray[np.float64]
 
 
 class FrameTree:
-    """The tree of n frames, prepared so that `poses_in_roots` needs few operations on arrays.
+    """The tree of n frames, prepared so that `poses_in_roots` needs few array operations.
 
     Args:
-        parents: array, shape (n,), of each frame's parent; -1 for frames without one.
+        parents: array, shape (n,), of each frame's parent; -1 for frames without a parent.
 
     Attributes:
-        roots: array, shape (n,), of the frame at the top of each one's tree; -1 where parents go round in a loop.
+        roots: array, shape (n,), of the root of each frame's tree; -1 for frames whose parents form a loop.
     """
 
     def __init__(self, parents: Rows) -> None:
@@ -43,16 +43,18 @@ class FrameTree:
         self.roots: Rows = np.where(ends, above, -1)
         self._is_root = parents < 0
         self._rounds: list[tuple[Rows, Rows]] = []
-        # A frame whose parent is a root has its final pose from the start.
+        # The pose of a frame whose parent is a root is final from the start.
         reference = np.where(ends & ~self._is_root & ~self._is_root[parents], parents, -1)
         while (active := np.flatnonzero(reference >= 0)).size:
             self._rounds.append((active, reference[active]))
             reference[active] = reference[reference[active]]
 
     def poses_in_roots(self, local: Poses) -> Poses:
-        """Poses of all frames in the roots of their trees, shape (n, 7), from their poses in their parents.
+        """Return the poses of all frames in the roots of their trees, shape (n, 7).
 
-        The rows of roots are the identity; those of frames in a loop mean nothing.
+        They are computed from `local`, the poses of all frames in their parents.
+
+        The rows of roots are the identity; the rows of frames in a loop are meaningless.
         """
         poses: Poses = local.copy()
         poses[self._is_root] = IDENTITY
@@ -70,14 +72,14 @@ _PLANS_KEPT = 64
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrameSnapshot:
-    """All frames at one moment, seen from one of them.
+    """The poses of all frames at one moment, in a fixed frame.
 
     Attributes:
         revision: changes whenever `names` or `parents` do, and only then.
-        names: the n frames.
-        parents: for each frame the index of its parent, -1 for frames without one.
-        poses: array, shape (n, 7), of x y z (metres) and qx qy qz qw: each frame in the fixed frame; rows of NaN for
-            frames that no transforms connect with it.
+        names: the names of the n frames.
+        parents: for each frame the index of its parent, -1 for frames without a parent.
+        poses: array, shape (n, 7), of x y z (metres) and qx qy qz qw: each frame in the fixed frame. The rows of frames
+            that no transforms connect with it are NaN.
         ages: array, shape (n,), of the seconds since each frame's transform was last received; 0 for static ones.
     """
 
@@ -90,7 +92,10 @@ class FrameSnapshot:
 
 @dataclass(slots=True)
 class _Plan:
-    """Where the transforms of one list of frames go. `revision` is that at which the parents were last looked at."""
+    """The rows that the transforms of a list of frames are stored in.
+
+    `revision` is the revision at which the parents were last checked.
+    """
 
     taken: Rows
     rows: Rows
@@ -101,8 +106,9 @@ class _Plan:
 class TransformBuffer:
     """Keeps the latest transform of each frame, as a display needs it.
 
-    As in tf2 a frame has one parent, and the transform received last holds, whoever sent it; so a transform with
-    another parent moves the frame there. Unlike tf2 there is no history: stamps are ignored.
+    As in tf2 a frame has one parent, and the transform received last applies, regardless of its sender. A transform
+    with
+    another parent therefore moves the frame there. Unlike tf2 there is no history: stamps are ignored.
 
     Args:
         on_problem: called once, with tf2's words, for each kind of bad transform of each frame.
@@ -122,15 +128,16 @@ class TransformBuffer:
         self._structure_changed()
 
     def update(self, message: TFMessage, *, static: bool, now_ns: int) -> None:
-        """Take in a message.
+        """Store the transforms of a message.
 
-        Transforms with an empty frame name, of a frame in itself, with NaN, or with a quaternion that is not of unit
-        length are left out, as in tf2; so is a slash at the beginning of a name.
+        Transforms with an empty frame name, with equal parent and child frames, with NaN, or with a quaternion that is
+        not of
+        unit length are ignored, as in tf2. A leading slash of a name is dropped.
 
         Args:
             message: the transforms.
-            static: whether they came on ``/tf_static``.
-            now_ns: the present, nanoseconds since the epoch; ages count from it.
+            static: whether they were received on ``/tf_static``.
+            now_ns: the current time, in nanoseconds since the epoch, from which ages are counted.
         """
         batch = message.batch
         plan = self._plan_for(batch)
@@ -155,25 +162,27 @@ class TransformBuffer:
         self._in_roots = None
 
     def snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
-        """The poses of all frames in a fixed frame.
+        """Return the poses of all frames in a fixed frame.
 
         Args:
-            fixed_frame: its name; when there is no such frame, all poses are NaN.
-            now_ns: the present, nanoseconds since the epoch.
+            fixed_frame: the frame's name; if there is no such frame, all poses are NaN.
+            now_ns: the current time, in nanoseconds since the epoch.
         """
         ages = np.where(self._static | (self._parents < 0), 0.0, (now_ns - self._received_ns) / 1e9)
         np.maximum(ages, 0.0, out=ages)
         return FrameSnapshot(self._revision, self._names, self._parent_tuple, self._poses_in(fixed_frame), ages)
 
     def lookup(self, target: str, source: str) -> Poses:
-        """The pose of the source frame in the target frame: array, shape (7,), of x y z and qx qy qz qw.
+        """Return the pose of the source frame in the target frame.
 
-        It takes points given in the source frame to the target frame, as tf2's ``lookupTransform`` does.
+        The pose is an array, shape (7,), of x y z and qx qy qz qw.
+
+        The pose transforms points from the source frame to the target frame, as tf2's ``lookupTransform`` does.
 
         Raises:
-            LookupException: one of the frames is not known, or its parents go round in a loop.
-            ConnectivityException: no transforms lead from one to the other.
-            InvalidArgumentException: a name is empty or begins with a slash.
+            LookupException: one of the frames is not known, or its parents form a loop.
+            ConnectivityException: no transforms connect the two frames.
+            InvalidArgumentException: a name is empty or starts with a slash.
         """
         target_row, source_row = self._row("target_frame", target), self._row("source_frame", source)
         roots = self._tree.roots
@@ -186,24 +195,24 @@ class TransformBuffer:
         return compose(invert(poses[target_row]), poses[source_row])
 
     def knows(self, frame: str) -> bool:
-        """Whether there is a frame of that name."""
+        """Return whether a frame with this name exists."""
         return frame in self._rows
 
     def frames(self) -> tuple[str, ...]:
-        """The names of all frames, in the order in which they were first seen."""
+        """Return the names of all frames, in the order in which they were first seen."""
         return self._names
 
     def remove(self, names: Iterable[str]) -> None:
-        """Forget the transforms of some frames, such as those of a robot that was replaced.
+        """Remove the transforms of some frames, such as those of a robot that was replaced.
 
-        A frame that others are attached to stays, without a parent; the others among them vanish.
+        A frame that is the parent of others stays, without a parent; the other frames disappear.
         """
         for row in (self._rows[name] for name in names if name in self._rows):
             self._parents[row] = -1
         in_use = self._parents >= 0
         in_use[self._parents[in_use]] = True
         kept = np.flatnonzero(in_use)
-        moved = np.full(len(in_use) + 1, -1, dtype=np.intp)  # one more, so that parent -1 stays -1
+        moved = np.full(len(in_use) + 1, -1, dtype=np.intp)  # one element more, so that parent -1 stays -1
         moved[kept] = np.arange(kept.size)
         self._rows = {name: int(moved[row]) for name, row in self._rows.items() if in_use[row]}
         self._parents = moved[self._parents[kept]]
@@ -213,7 +222,7 @@ class TransformBuffer:
         self._structure_changed()
 
     def clear(self) -> None:
-        """Forget all transforms except the static ones, as when time starts again."""
+        """Remove all transforms except the static ones, as when time restarts."""
         moving = (self._parents >= 0) & ~self._static
         self.remove([name for name, row in self._rows.items() if moving[row]])
 

@@ -1,4 +1,4 @@
-"""The history of one frame in the tf buffer: its transforms of the last seconds, or a static one."""
+"""The history of a frame in the tf buffer: its recent transforms, or a static transform."""
 
 from __future__ import annotations
 
@@ -20,25 +20,28 @@ _COMPACT_FROM = 256
 
 
 class Sample(NamedTuple):
-    """A transform of a frame: its number of the parent, and the row of an array of poses, or a pose itself."""
+    """A transform of a frame: the number of its parent, and a row in an array or a pose itself."""
 
     parent: int
     poses: NDArray | Transform  # type: ignore[type-arg]  # rows of floats
     row: int = -1
 
     def pose(self) -> Transform:
-        """The pose in the parent."""
+        """Return the pose in the parent frame."""
         if self.row < 0:
             return cast("Transform", self.poses)
         return cast("Transform", tuple(cast("NDArray", self.poses)[self.row].tolist()))  # type: ignore[type-arg]  # rows of floats
 
 
 class NoDataError(Exception):
-    """There is no transform for a time; the text names those that exist, in tf2's words. Empty when there are none."""
+    """Raised when there is no transform for a time.
+
+    The text names the times that exist, in tf2's words; it is empty if there are none.
+    """
 
 
 def shown_time(stamp_ns: int) -> str:
-    """A time as tf2 writes it: seconds with six digits."""
+    """Format a time as tf2 does: in seconds with six decimal places."""
     return f"{stamp_ns / NANOSECONDS_PER_SECOND:.6f}"
 
 
@@ -47,42 +50,48 @@ class FrameCache(ABC):
 
     @abstractmethod
     def add(self, stamp_ns: int, sample: Sample) -> bool:
-        """Take in a transform; False when it is too old."""
+        """Store a transform; return False if it is too old."""
 
     @abstractmethod
     def at(self, time_ns: int) -> tuple[int, Transform]:
-        """Number of the parent and pose at a time; 0 for the latest.
+        """Return the number of the parent and the pose at a time; 0 for the latest.
 
         Raises:
-            NoDataError: there is none for that time.
+            NoDataError: there is no transform for that time.
         """
 
     @abstractmethod
     def parent_at(self, time_ns: int) -> int:
-        """Number of the parent at a time; 0 for the latest.
+        """Return the number of the parent at a time; 0 for the latest.
 
         Raises:
-            NoDataError: there is none for that time.
+            NoDataError: there is no transform for that time.
         """
 
     @abstractmethod
     def latest(self) -> tuple[int, int] | None:
-        """Stamp of the latest transform (0 for a static one) and number of its parent; None if there is none."""
+        """Return the stamp of the latest transform (0 if static) and the number of its parent.
+
+        The result is None if there is none.
+        """
 
     @abstractmethod
     def oldest_ns(self) -> int:
-        """Stamp of the oldest transform, in nanoseconds; 0 without any, or for a static one."""
+        """Return the stamp of the oldest transform, in nanoseconds.
+
+        The result is 0 if there is none, or if it is static.
+        """
 
     @abstractmethod
     def __len__(self) -> int: ...
 
     @abstractmethod
     def clear(self) -> None:
-        """Forget them."""
+        """Remove all transforms."""
 
 
 class StaticCache(FrameCache):
-    """The one transform of a frame that does not move."""
+    """The single transform of a frame that does not move."""
 
     __slots__ = ("_sample",)
 
@@ -90,40 +99,40 @@ class StaticCache(FrameCache):
         self._sample: Sample | None = None
 
     def add(self, stamp_ns: int, sample: Sample) -> bool:
-        """Take in a transform, instead of the one so far."""
+        """Store a transform in place of the previous one."""
         self._sample = sample
         return True
 
     def at(self, time_ns: int) -> tuple[int, Transform]:
-        """Number of the parent and pose, the same at all times."""
+        """Return the number of the parent and the pose, which are the same at all times."""
         return self.parent_at(time_ns), cast("Sample", self._sample).pose()
 
     def parent_at(self, time_ns: int) -> int:
-        """Number of the parent, the same at all times."""
+        """Return the number of the parent, which is the same at all times."""
         if self._sample is None:
             raise NoDataError
         return self._sample.parent
 
     def latest(self) -> tuple[int, int] | None:
-        """Stamp 0, and number of the parent."""
+        """Return the stamp 0 and the number of the parent; None if there is no transform."""
         return None if self._sample is None else (0, self._sample.parent)
 
     def oldest_ns(self) -> int:
-        """Always 0."""
+        """Return 0."""
         return 0
 
     def __len__(self) -> int:
         return 1
 
     def clear(self) -> None:
-        """Does nothing: static transforms stay, as in tf2."""
+        """Do nothing: static transforms stay, as in tf2."""
 
 
 class MovingCache(FrameCache):
     """The transforms of a frame over time.
 
     Args:
-        span_ns: how far back they go from the latest, nanoseconds.
+        span_ns: how long transforms are kept, counted back from the latest one, in nanoseconds.
     """
 
     __slots__ = ("_first", "_samples", "_span_ns", "_stamps")
@@ -135,7 +144,7 @@ class MovingCache(FrameCache):
         self._first = 0
 
     def add(self, stamp_ns: int, sample: Sample) -> bool:
-        """Insert a transform by its stamp; one that is there already is not kept twice."""
+        """Insert a transform by its stamp, unless it is stored already; return False if it is too old."""
         stamps = self._stamps
         if len(stamps) == self._first:
             stamps.append(stamp_ns)
@@ -161,7 +170,10 @@ class MovingCache(FrameCache):
         return True
 
     def at(self, time_ns: int) -> tuple[int, Transform]:
-        """Number of the parent and pose at a time, interpolated between the transforms around it."""
+        """Return the number of the parent and the pose at a time.
+
+        The pose is interpolated between the neighbouring transforms.
+        """
         place = self._place(time_ns)
         sample = self._samples[place]
         if time_ns in (0, self._stamps[place]):
@@ -173,28 +185,28 @@ class MovingCache(FrameCache):
         return sample.parent, interpolate(sample.pose(), later.pose(), (time_ns - start) / (end - start))
 
     def parent_at(self, time_ns: int) -> int:
-        """Number of the parent at a time."""
+        """Return the number of the parent at a time."""
         return self._samples[self._place(time_ns)].parent
 
     def latest(self) -> tuple[int, int] | None:
-        """Stamp and number of the parent of the latest transform."""
+        """Return the stamp and the parent's number of the latest transform; None if there is none."""
         if len(self._stamps) == self._first:
             return None
         return self._stamps[-1], self._samples[-1].parent
 
     def oldest_ns(self) -> int:
-        """Stamp of the oldest transform."""
+        """Return the stamp of the oldest transform."""
         return self._stamps[self._first] if len(self) else 0
 
     def __len__(self) -> int:
         return len(self._stamps) - self._first
 
     def clear(self) -> None:
-        """Forget them all."""
+        """Remove all transforms."""
         self._stamps, self._samples, self._first = [], [], 0
 
     def _place(self, time_ns: int) -> int:
-        """Where the transform stands that is the last one at a time."""
+        """Return the index of the last transform at or before a time."""
         stamps: Sequence[int] = self._stamps
         if len(stamps) == self._first:
             raise NoDataError

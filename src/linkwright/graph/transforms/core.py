@@ -1,7 +1,7 @@
-"""The tf buffer with a memory: transforms of the last seconds, and lookups at any time among them.
+"""The tf buffer with history: transforms of the last seconds, and lookups at any time among them.
 
-The methods are those of ``tf2_py.BufferCore``, the behaviour and the texts those of tf2. `TransformBuffer` is for
-displays, which need the present pose of all frames.
+The methods are those of ``tf2_py.BufferCore``; behaviour and messages are those of tf2. `TransformBuffer` is for
+displays, which need the current poses of all frames.
 """
 
 from __future__ import annotations
@@ -46,13 +46,13 @@ _NOT_DEFINED = "Source or target frame is not yet defined"
 
 
 class BufferCore:
-    """Keeps transforms for a while. It may be used from several threads.
+    """Keeps transforms for a limited time. It may be used from several threads.
 
-    Times are ``Time`` objects, or messages of builtin_interfaces; zero requests the latest.
+    Times are ``Time`` objects or messages of builtin_interfaces; zero requests the latest transform.
 
     Args:
-        cache_time: how far back transforms are kept, from the latest one of each frame.
-        logger: reports refused transforms; one called ``tf2`` when left out.
+        cache_time: how long transforms are kept, counted back from the latest one of each frame.
+        logger: reports refused transforms; a logger named ``tf2`` by default.
     """
 
     def __init__(self, cache_time: Any = None, *, logger: Logger | None = None) -> None:
@@ -67,7 +67,9 @@ class BufferCore:
         self._walker = Walker(self._caches, self._names, self.all_frames_as_string)
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Store a geometry_msgs/msg/TransformStamped. One that tf2 would refuse is dropped, and the reason logged.
+        """Store a geometry_msgs/msg/TransformStamped.
+
+        A transform that tf2 would refuse is dropped, and the reason logged.
 
         Args:
             transform: the message.
@@ -76,16 +78,16 @@ class BufferCore:
         self._set_message(transform, authority, static=False)
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Take in a static transform; see `set_transform`."""
+        """Store a static transform; see `set_transform`."""
         self._set_message(transform, authority, static=True)
 
     def update(self, message: Any, *, static: bool, now_ns: int = 0, authority: str = "default_authority") -> None:
-        """Take in a tf2_msgs/msg/TFMessage.
+        """Store the transforms of a tf2_msgs/msg/TFMessage.
 
         Args:
             message: the transforms.
-            static: whether they came on ``/tf_static``.
-            now_ns: the present; it does not matter here, and does for a `TransformBuffer`.
+            static: whether they were received on ``/tf_static``.
+            now_ns: not used here; `TransformBuffer` needs the current time.
             authority: the sender, for reports.
         """
         columns = message.columns()
@@ -106,20 +108,20 @@ class BufferCore:
                     self._set(parents[row], children[row], stamp_ns, pose, authority, static=static)
 
     def lookup_transform_core(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """The pose of the source frame in the target frame, as a geometry_msgs/msg/TransformStamped.
+        """Return the pose of the source frame in the target frame, as a TransformStamped message.
 
-        It takes points given in the source frame to the target frame.
+        The pose transforms points from the source frame to the target frame.
 
         Args:
             target_frame: the frame to transform to.
             source_frame: the frame to transform from.
-            time: when; zero for the latest time that all frames between the two have.
+            time: the time; zero for the latest time that all frames between the two have in common.
 
         Raises:
             LookupException: a frame is not known.
-            ConnectivityException: no transforms lead from one to the other.
-            ExtrapolationException: there are none for that time.
-            InvalidArgumentException: a name is empty or begins with a slash.
+            ConnectivityException: no transforms connect the two frames.
+            ExtrapolationException: there are no transforms for that time.
+            InvalidArgumentException: a name is empty or starts with a slash.
         """
         pose, time_ns = self.lookup(target_frame, source_frame, nanoseconds_of(time))
         return _message(target_frame, source_frame, time_ns, pose)
@@ -127,10 +129,12 @@ class BufferCore:
     def lookup_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Any:
-        """The pose of the source frame at one time in the target frame at another, the fixed frame not moving.
+        """Return the pose of the source frame at one time in the target frame at another time.
+
+        The fixed frame is assumed not to move between the two times.
 
         Raises:
-            TransformException: as `lookup_transform_core`.
+            TransformException: as for `lookup_transform_core`.
         """
         with self._lock:
             for argument, frame in (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame)):
@@ -140,10 +144,10 @@ class BufferCore:
         return _message(target_frame, source_frame, time_ns, compose(fixed_in_target, source_in_fixed))
 
     def lookup(self, target: str, source: str, time_ns: int) -> tuple[Transform, int]:
-        """The pose of the source frame in the target frame, and the time that it holds at, in nanoseconds.
+        """Return the pose of the source frame in the target frame, and its time in nanoseconds.
 
         Raises:
-            TransformException: as `lookup_transform_core`.
+            TransformException: as for `lookup_transform_core`.
         """
         with self._lock:
             if target == source:
@@ -156,7 +160,7 @@ class BufferCore:
             return way.pose(), way.time_ns
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[bool, str]:
-        """Whether a lookup would give a transform; and why not, in tf2's words."""
+        """Return whether a lookup would succeed, and the reason if not, in tf2's words."""
         if target_frame == source_frame:
             return True, ""
         with self._lock:
@@ -169,7 +173,7 @@ class BufferCore:
     def can_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> tuple[bool, str]:
-        """Whether a lookup with a fixed frame would give a transform; and why not."""
+        """Return whether a lookup with a fixed frame would succeed, and the reason if not."""
         frames = (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame))
         with self._lock:
             for argument, frame in frames:
@@ -180,11 +184,13 @@ class BufferCore:
             return self._can(fixed_frame, source_frame, nanoseconds_of(source_time)) if verdict[0] else verdict
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
-        """The latest time that all moving frames between two have; zero when none of them moves.
+        """Return the latest time that all moving frames between two frames have in common.
+
+        The result is zero if none of them moves.
 
         Raises:
             LookupException: a frame is not known.
-            ConnectivityException: no transforms lead from one to the other.
+            ConnectivityException: no transforms connect the two frames.
         """
         with self._lock:
             target = self._number("getLatestCommonTime argument target_frame", target_frame)
@@ -207,10 +213,10 @@ class BufferCore:
         time: Any,
         averaging_interval: Any,
     ) -> tuple[Vector3, Vector3]:
-        """Linear and angular velocity of a frame; see `velocity`.
+        """Return the linear and angular velocity of a frame; see `velocity`.
 
         Raises:
-            TransformException: as `lookup_transform_core`.
+            TransformException: as for `lookup_transform_core`.
         """
         with self._lock:
             latest_ns = self.get_latest_common_time(observation_frame, tracking_frame).nanoseconds
@@ -223,34 +229,37 @@ class BufferCore:
             )
 
     def clear(self) -> None:
-        """Forget all transforms but the static ones."""
+        """Remove all transforms except the static ones."""
         with self._lock:
             for cache in self._caches:
                 if cache is not None:
                     cache.clear()
 
     def all_frames_as_yaml(self, time: Any = None) -> str:
-        """All frames with their parents, rates and times, as YAML; with delays where a time is given."""
+        """Return all frames with their parents, rates and times, as YAML.
+
+        The text includes delays if a time is given.
+        """
         with self._lock:
             return frames_as_yaml(self._facts(), nanoseconds_of(time) if time is not None else 0)
 
     def all_frames_as_string(self) -> str:
-        """All frames with their parents, a line each."""
+        """Return all frames with their parents, one per line."""
         with self._lock:
             return frames_as_text(self._facts(with_empty=True))
 
     def frame_names(self) -> list[str]:
-        """The names of all frames, in the order in which they were first seen."""
+        """Return the names of all frames, in the order in which they were first seen."""
         with self._lock:
             return self._names[1:]
 
     def chain(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> list[str]:
-        """The frames between two, from the source over the fixed frame to the target.
+        """Return the frames between two frames, from the source through the fixed frame to the target.
 
         Raises:
-            TransformException: as `lookup_transform_core`.
+            TransformException: as for `lookup_transform_core`.
         """
         with self._lock:
             names = [
@@ -264,11 +273,11 @@ class BufferCore:
         return kept
 
     def all_frames_as_dot(self, time: Any = None) -> str:
-        """All frames as a graph for Graphviz; with ages where a time is given."""
+        """Return all frames as a Graphviz graph; with ages if a time is given."""
         with self._lock:
             return frames_as_dot(self._facts(), nanoseconds_of(time) if time is not None else 0)
 
-    # The names that tf2_py has for them.
+    # tf2_py's names for these methods.
     _chain = chain
     _getFrameStrings = frame_names  # noqa: N815
     _frameYAML = all_frames_as_yaml  # noqa: N815
@@ -279,7 +288,7 @@ class BufferCore:
     def lookupVelocityCore(  # noqa: N802
         self, tracking_frame: str, observation_frame: str, time: Any, averaging_interval: Any
     ) -> tuple[Vector3, Vector3]:
-        """Velocity of the origin of a frame, given in the frame in which it is seen."""
+        """Return the velocity of the origin of a frame, expressed in the frame that observes it."""
         reference = (observation_frame, (0.0, 0.0, 0.0), tracking_frame)
         return self.lookup_velocity(tracking_frame, observation_frame, *reference, time, averaging_interval)
 
@@ -313,9 +322,11 @@ class BufferCore:
         )
 
     def _plan(self, parents: tuple[str, ...], children: tuple[str, ...], authority: str, static: bool) -> _Plan:
-        """The caches for the transforms of a message with these frames, worked out once for all such messages.
+        """Return the caches for the transforms of a message with these frames.
 
-        The cache is None for transforms that the log must report.
+        Computed once for all such messages.
+
+        The cache is None for transforms that must be reported in the log.
         """
         key = (parents, children, authority, static)
         plan = self._plans.get(key)
@@ -335,7 +346,7 @@ class BufferCore:
         return plan
 
     def _cache(self, number: int, static: bool) -> FrameCache:
-        """The cache of a frame; a new one when the frame changes between static and moving."""
+        """Return the cache of a frame; a new cache if the frame changes between static and moving."""
         cache = self._caches[number]
         if cache is None or isinstance(cache, StaticCache) is not static:
             cache = self._caches[number] = StaticCache() if static else MovingCache(self._span_ns)
@@ -408,17 +419,17 @@ class BufferCore:
 
 
 def _all_usable(poses: NDArray[np.float64]) -> bool:
-    """Whether tf2 takes all of these poses: no NaN, and quaternions of unit length."""
+    """Return whether tf2 accepts all of these poses: no NaN, and quaternions of unit length."""
     rotations = poses[:, 3:]
     squared_lengths = np.einsum("ni,ni->n", rotations, rotations)
     return bool((np.abs(squared_lengths - 1.0) < _QUATERNION_TOLERANCE).all() and not np.isnan(poses[:, :3]).any())
 
 
 def nanoseconds_of(time: Any) -> int:
-    """The nanoseconds of a ``Time`` or ``Duration``, or of a message of builtin_interfaces.
+    """Return the nanoseconds of a ``Time`` or ``Duration``, or of a message of builtin_interfaces.
 
     Raises:
-        TypeError: it is none of these; the text is tf2's.
+        TypeError: `time` is none of these; the message is tf2's.
     """
     if hasattr(time, "nanosec"):
         return int(time.sec) * NANOSECONDS_PER_SECOND + int(time.nanosec)
@@ -428,9 +439,9 @@ def nanoseconds_of(time: Any) -> int:
 
 
 def _problem(parent: str, child: str, pose: Transform, authority: str) -> str | None:
-    """Why a transform is not taken, in tf2's words."""
+    """Return the reason why a transform is refused, in tf2's words; None if it is accepted."""
     x, y, z, w = pose[3:]
-    # A NaN fails the comparison, and infinite numbers do; so one test tells the usual case.
+    # The comparison fails for NaN and for infinite numbers as well, so this single test covers the usual case.
     unit = abs(x * x + y * y + z * z + w * w - 1.0) < _QUATERNION_TOLERANCE
     if unit and parent and child and parent != child and not any(map(isnan, pose[:3])):
         return None

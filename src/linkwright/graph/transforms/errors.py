@@ -1,4 +1,4 @@
-"""Why a transform cannot be given: tf2's exceptions, by its names and in its words."""
+"""The reasons why a transform is not available: tf2's exceptions, with its names and messages."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_
 
 
 class TransformException(LinkwrightError):  # noqa: N818  # tf2's name, which users' code catches
-    """A transform cannot be given.
+    """Raised when a transform is not available.
 
     Args:
-        text: why.
+        text: the reason.
         hint: how to fix it.
         code: the diagnostic's code.
     """
@@ -21,55 +21,55 @@ class TransformException(LinkwrightError):  # noqa: N818  # tf2's name, which us
 
 
 class LookupException(TransformException):
-    """A frame is not known, or the tree has a loop."""
+    """Raised when a frame is not known, or the tree has a loop."""
 
     def __init__(self, text: str = "", *, hint: Phrase | None = None, code: str = "GRAPH301") -> None:
         super().__init__(text, hint=hint, code=code)
 
 
 class ConnectivityException(TransformException):
-    """Two frames are in different trees."""
+    """Raised when two frames are in different trees."""
 
     def __init__(self, text: str = "") -> None:
         super().__init__(text, code="GRAPH302")
 
 
 class InvalidArgumentException(TransformException):
-    """A text is not valid as the name of a frame."""
+    """Raised when a frame name is not valid."""
 
     def __init__(self, text: str = "") -> None:
         super().__init__(text, code="GRAPH304")
 
 
 class ExtrapolationException(TransformException):
-    """A transform is asked for at a time for which there is no data."""
+    """Raised when a transform is requested for a time for which there is no data."""
 
     def __init__(self, text: str = "") -> None:
         super().__init__(text, code="GRAPH305")
 
 
 class TimeoutException(TransformException):
-    """A transform did not become available in time."""
+    """Raised when a transform did not become available in time."""
 
     def __init__(self, text: str = "") -> None:
         super().__init__(text, code="GRAPH306")
 
 
 def loop(which: str) -> LookupException:
-    """The error for parents that form a loop; `which` names the place."""
+    """Return the error for parents that form a loop; `which` names the place."""
     return LookupException(
         phrase("The tf tree is invalid because it contains a loop.{which}", which=which), code="GRAPH303"
     )
 
 
 def unknown_frame(argument: str, frame: str, known: Iterable[str]) -> LookupException:
-    """The error for a frame that does not exist."""
+    """Return the error for a frame that does not exist."""
     text = phrase('"{frame}" passed to {argument} does not exist. ', frame=frame, argument=argument)
     return LookupException(text, hint=did_you_mean(frame, known))
 
 
 def bad_frame_name(argument: str, frame: str) -> InvalidArgumentException | None:
-    """The error for a name that is not valid for a frame; None when it is valid."""
+    """Return the error for a frame name that is not valid; None if the name is valid."""
     reason = bad_frame_reason(frame)
     if reason is None:
         return None
@@ -81,7 +81,7 @@ def bad_frame_name(argument: str, frame: str) -> InvalidArgumentException | None
 
 
 def bad_frame_reason(frame: str) -> Phrase | None:
-    """Why a name is not valid for a frame; None when it is valid."""
+    """Return the reason why a frame name is not valid; None if it is valid."""
     if not frame:
         return phrase("in tf2 frame_ids cannot be empty")
     if frame.startswith("/"):
@@ -90,7 +90,7 @@ def bad_frame_reason(frame: str) -> Phrase | None:
 
 
 def not_connected(target: str, source: str) -> ConnectivityException:
-    """The error for frames of different trees."""
+    """Return the error for frames in different trees."""
     return ConnectivityException(
         phrase(
             "Could not find a connection between '{target}' and '{source}' because they are not part"

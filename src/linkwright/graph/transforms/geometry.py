@@ -1,7 +1,7 @@
-"""Messages of geometry_msgs taken from one frame to another: the mathematics of ``tf2_geometry_msgs``.
+"""Transformation of geometry_msgs messages between frames, as in ``tf2_geometry_msgs``.
 
-Each function takes a message and a geometry_msgs/msg/TransformStamped, as a lookup gives it, and gives a new message
-with that transform's header. None of the arguments is changed.
+Each function takes a message and a geometry_msgs/msg/TransformStamped, as returned by a lookup, and returns a new
+message with that transform's header. None of the arguments is changed.
 """
 
 from __future__ import annotations
@@ -19,26 +19,29 @@ _NO_ROTATION = float(np.finfo(np.float64).eps)
 
 
 def transform_pose_of(transform: Any) -> Transform:
-    """The pose in a geometry_msgs/msg/TransformStamped."""
+    """Return the pose in a geometry_msgs/msg/TransformStamped."""
     return _transform(transform.transform.translation, transform.transform.rotation)
 
 
 def do_transform_point(point: Any, transform: Any) -> Any:
-    """A PointStamped in the target frame."""
+    """Return a PointStamped in the target frame."""
     result = _new("PointStamped", transform)
     _set_vector(result.point, _applied(transform, (point.point.x, point.point.y, point.point.z)))
     return result
 
 
 def do_transform_vector3(vector3: Any, transform: Any) -> Any:
-    """A Vector3Stamped in the target frame: it is turned, not shifted."""
+    """Return a Vector3Stamped in the target frame, rotated but not translated."""
     result = _new("Vector3Stamped", transform)
     _set_vector(result.vector, _turned(transform, vector3.vector))
     return result
 
 
 def do_transform_pose(pose: Any, transform: Any) -> Any:
-    """A Pose in the target frame. A PoseStamped gives a PoseStamped, as in older releases."""
+    """Return a Pose in the target frame.
+
+    For a PoseStamped the result is a PoseStamped, as in older releases.
+    """
     if hasattr(pose, "header"):
         return do_transform_pose_stamped(pose, transform)
     from linkwright.messages import get_message
@@ -53,14 +56,14 @@ def do_transform_pose(pose: Any, transform: Any) -> Any:
 
 
 def do_transform_pose_stamped(pose: Any, transform: Any) -> Any:
-    """A PoseStamped in the target frame."""
+    """Return a PoseStamped in the target frame."""
     result = _new("PoseStamped", transform)
     result.pose = do_transform_pose(pose.pose, transform)
     return result
 
 
 def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
-    """A PoseWithCovarianceStamped in the target frame; the covariance is turned with it."""
+    """Return a PoseWithCovarianceStamped in the target frame; the covariance is rotated as well."""
     result = _new("PoseWithCovarianceStamped", transform)
     result.pose.pose = do_transform_pose(pose.pose.pose, transform)
     result.pose.covariance = transform_covariance(pose.pose.covariance, transform)
@@ -68,7 +71,7 @@ def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
 
 
 def do_transform_wrench(wrench: Any, transform: Any) -> Any:
-    """A WrenchStamped in the target frame: force and torque are turned."""
+    """Return a WrenchStamped in the target frame, with force and torque rotated."""
     result = _new("WrenchStamped", transform)
     _set_vector(result.wrench.force, _turned(transform, wrench.wrench.force))
     _set_vector(result.wrench.torque, _turned(transform, wrench.wrench.torque))
@@ -76,7 +79,7 @@ def do_transform_wrench(wrench: Any, transform: Any) -> Any:
 
 
 def do_transform_polygon_stamped(polygon: Any, transform: Any) -> Any:
-    """A PolygonStamped in the target frame."""
+    """Return a PolygonStamped in the target frame."""
     from linkwright.messages import get_message
 
     point_class = get_message("geometry_msgs/msg/Point32")
@@ -91,11 +94,11 @@ def do_transform_polygon_stamped(polygon: Any, transform: Any) -> Any:
 
 
 def transform_covariance(cov_in: Any, transform: Any) -> NDArray[np.float64]:
-    """A covariance of a pose in the target frame.
+    """Return the covariance of a pose in the target frame.
 
     Args:
-        cov_in: 36 numbers, the rows of a matrix of x y z and turns about these axes.
-        transform: the transform; only its rotation counts.
+        cov_in: 36 numbers, the rows of the covariance matrix of x y z and the rotations about these axes.
+        transform: the transform; only its rotation is used.
 
     Returns:
         Array, shape (36,).

@@ -1,4 +1,4 @@
-"""Transform listeners: fill a tf buffer from ``/tf`` and ``/tf_static``."""
+"""Transform listeners, which fill a tf buffer from ``/tf`` and ``/tf_static``."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ class FillableBuffer(Protocol):
     """A buffer that a listener fills."""
 
     def update(self, message: TFMessage, *, static: bool, now_ns: int) -> None:
-        """Take in a message."""
+        """Store the transforms of a message."""
 
 
 class TransformListener:
     """Subscribes a node to ``/tf`` and ``/tf_static`` for a buffer.
 
-    The topic names are absolute, as in tf2_ros: namespaces do not divide the transforms, remappings can.
+    The topic names are absolute, as in tf2_ros: namespaces do not separate the transforms, but remappings can.
 
     Args:
         buffer: receives the transforms.
-        node: subscribes.
-        qos: for ``/tf``.
-        static_qos: for ``/tf_static``.
-        static_only: whether only ``/tf_static`` is listened to.
-        tf_topic: instead of ``/tf``.
-        tf_static_topic: instead of ``/tf_static``.
+        node: the node that subscribes.
+        qos: the QoS for ``/tf``.
+        static_qos: the QoS for ``/tf_static``.
+        static_only: whether to subscribe only to ``/tf_static``.
+        tf_topic: the topic to use instead of ``/tf``.
+        tf_static_topic: the topic to use instead of ``/tf_static``.
     """
 
     def __init__(
@@ -69,9 +69,9 @@ class TransformListener:
         self._subscriptions = []
 
     def callback(self, data: TFMessage) -> None:
-        """Take in a message of ``/tf``."""
+        """Store a message of ``/tf`` in the buffer."""
         self.buffer.update(data, static=False, now_ns=self._clock.now().nanoseconds)
 
     def static_callback(self, data: TFMessage) -> None:
-        """Take in a message of ``/tf_static``."""
+        """Store a message of ``/tf_static`` in the buffer."""
         self.buffer.update(data, static=True, now_ns=self._clock.now().nanoseconds)

@@ -1,4 +1,4 @@
-"""Reports of the tf buffer's frames: as text, as YAML and as a Graphviz graph, in the formats of tf2."""
+"""Reports of the tf buffer's frames in tf2's formats: text, YAML and Graphviz."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ _SHORTEST_SPAN_NS = 100_000
 
 @dataclass(frozen=True, slots=True)
 class FrameFacts:
-    """One frame in the reports.
+    """The data of one frame in the reports.
 
     Attributes:
-        name: the frame.
-        parent: its parent.
+        name: the name of the frame.
+        parent: the name of its parent.
         authority: the sender of the transform.
-        count: how many transforms are kept of it.
-        latest_ns: stamp of the latest; 0 for one that always holds.
-        oldest_ns: stamp of the oldest.
+        count: how many transforms of the frame are stored.
+        latest_ns: the stamp of the latest transform, in nanoseconds; 0 for a static transform.
+        oldest_ns: the stamp of the oldest transform, in nanoseconds.
     """
 
     name: str
@@ -34,23 +34,23 @@ class FrameFacts:
 
     @property
     def rate(self) -> float:
-        """Transforms a second."""
+        """The number of transforms per second."""
         span_ns = max(self.latest_ns - self.oldest_ns, _SHORTEST_SPAN_NS)
         return self.count * 1e9 / span_ns
 
     @property
     def length_s(self) -> float:
-        """Seconds between the oldest and the latest."""
+        """The time between the oldest and the latest transform, in seconds."""
         return (self.latest_ns - self.oldest_ns) / NANOSECONDS_PER_SECOND
 
 
 def frames_as_text(frames: Sequence[FrameFacts]) -> str:
-    """A line for each frame."""
+    """Return a text with one line for each frame."""
     return "".join(f"Frame {frame.name} exists with parent {frame.parent}.\n" for frame in frames)
 
 
 def frames_as_yaml(frames: Sequence[FrameFacts], now_ns: int) -> str:
-    """The frames as a YAML mapping; with delays unless `now_ns` is 0."""
+    """Return the frames as a YAML mapping; with delays unless `now_ns` is 0."""
     if not frames:
         return "[]"
     lines = []
@@ -70,7 +70,7 @@ def frames_as_yaml(frames: Sequence[FrameFacts], now_ns: int) -> str:
 
 
 def frames_as_dot(frames: Sequence[FrameFacts], now_ns: int) -> str:
-    """The frames as a graph for Graphviz."""
+    """Return the frames as a Graphviz graph."""
     lines = ["digraph G {"]
     if not frames:
         lines.append('"no tf data recieved"')  # tf2's spelling

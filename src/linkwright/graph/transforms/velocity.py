@@ -1,7 +1,7 @@
-"""The velocity of a frame, from its poses at two times. The formulas are those of tf2's ``lookupVelocity``.
+"""The velocity of a frame, computed with the formulas of tf2's ``lookupVelocity``.
 
-They are the same as there, so that programs get the numbers that they get from tf2, also where the reference
-frame rotates against the others and other formulas would be right.
+The formulas are identical, so that programs get the same numbers as from tf2, even when the reference frame rotates
+against the others and other formulas would be correct.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ _EARLIEST_S = 0.00001
 
 
 class PoseSource(Protocol):
-    """Gives the poses of frames in other frames."""
+    """A source of the poses of frames in other frames."""
 
     def lookup(self, target: str, source: str, time_ns: int) -> tuple[Transform, int]:
-        """The pose of the source frame in the target frame, and its time."""
+        """Return the pose of the source frame in the target frame, and its time."""
 
 
 def velocity(
@@ -38,14 +38,15 @@ def velocity(
     reference: tuple[str, Vector3, str],
     times_ns: tuple[int, int, int],
 ) -> tuple[Vector3, Vector3]:
-    """Linear and angular velocity of a frame, in metres and radians a second.
+    """Return the linear and angular velocity of a frame, in metres and radians per second.
 
     Args:
-        buffer: gives the poses.
+        buffer: provides the poses.
         tracking_frame: the frame that moves.
-        observation_frame: the frame in which its movement is seen.
-        reference: the frame in which the velocity is given, a point for which it is given, and that point's frame.
-        times_ns: the time, the latest time that both frames have, and the interval over which it is averaged, in
+        observation_frame: the frame in which the movement is observed.
+        reference: the frame in which the velocity is expressed, the point to which it refers, and the frame of that
+            point.
+        times_ns: the time, the latest time that both frames have in common, and the interval over which to average, in
             nanoseconds.
 
     Raises:

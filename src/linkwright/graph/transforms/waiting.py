@@ -1,4 +1,7 @@
-"""The tf buffer as nodes use it: lookups that wait, by blocking or as futures. The methods are ``tf2_ros.Buffer``'s."""
+"""The tf buffer that nodes use, with lookups that wait by blocking or as futures.
+
+The methods are those of ``tf2_ros.Buffer``.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +25,10 @@ class Buffer(BufferCore):
     """Keeps transforms, and waits for them.
 
     Args:
-        cache_time: how far back transforms are kept; 10 seconds when left out.
-        node: where given, it offers the service ``tf2_frames`` that reports all frames, its clock empties the buffer
-            when it jumps back, and its logger reports refused transforms.
+        cache_time: how long transforms are kept; 10 seconds by default.
+        node: if given, the node offers the service ``tf2_frames``, which reports all frames; the buffer is cleared when
+            the
+            node's clock jumps back; and the node's logger reports refused transforms.
     """
 
     def __init__(self, cache_time: Any = None, node: Any = None) -> None:
@@ -41,37 +45,45 @@ class Buffer(BufferCore):
             )
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Take in a transform; see `BufferCore`. Pending lookups that it satisfies end."""
+        """Store a transform, and complete the pending lookups that it satisfies; see `BufferCore`."""
         super().set_transform(transform, authority)
         self._call_new_data_callbacks()
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Take in a static transform; see `BufferCore`. Pending lookups that it satisfies end."""
+        """Store a static transform, and complete the pending lookups that it satisfies.
+
+        See `BufferCore`.
+        """
         super().set_transform_static(transform, authority)
         self._call_new_data_callbacks()
 
     def update(self, message: Any, *, static: bool, now_ns: int = 0, authority: str = "default_authority") -> None:
-        """Take in a message; see `BufferCore`. Pending lookups that it satisfies end."""
+        """Store the transforms of a message, and complete the pending lookups that they satisfy.
+
+        See `BufferCore`.
+        """
         super().update(message, static=static, now_ns=now_ns, authority=authority)
         self._call_new_data_callbacks()
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_TIME) -> Any:
-        """The pose of the source frame in the target frame; see `BufferCore.lookup_transform_core`.
+        """Return the pose of the source frame in the target frame.
+
+        See `BufferCore.lookup_transform_core`.
 
         Args:
             target_frame: the frame to transform to.
             source_frame: the frame to transform from.
-            time: when; zero for the latest.
-            timeout: how long to wait for it. Another thread must spin the node meanwhile.
+            time: the time; zero for the latest.
+            timeout: how long to wait for the transform. Another thread must spin the node in the meantime.
 
         Raises:
-            TransformException: it does not arrive in time; the class names the reason.
+            TransformException: the transform is not available in time; the class indicates the reason.
         """
         self.can_transform(target_frame, source_frame, time, timeout)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
     async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """The same, for a coroutine, as soon as it is available."""
+        """Wait in a coroutine until the transform is available, and return it; see `lookup_transform`."""
         await self.wait_for_transform_async(target_frame, source_frame, time)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
@@ -84,14 +96,20 @@ class Buffer(BufferCore):
         fixed_frame: str,
         timeout: Any = NO_TIME,
     ) -> Any:
-        """The pose of the source at one time in the target at another; see `BufferCore.lookup_transform_full_core`."""
+        """Return the pose of the source at one time in the target at another.
+
+        See `BufferCore.lookup_transform_full_core`.
+        """
         self.can_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
         return self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
 
     async def lookup_transform_full_async(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Any:
-        """The same, for a coroutine, as soon as it is available."""
+        """Wait in a coroutine until the transform is available, and return it.
+
+        See `lookup_transform_full`.
+        """
         await self.wait_for_transform_full_async(target_frame, target_time, source_frame, source_time, fixed_frame)
         return self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
 
@@ -103,7 +121,7 @@ class Buffer(BufferCore):
         timeout: Any = NO_TIME,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Whether a lookup gives a transform, within the timeout; with a reason if a tuple is asked for."""
+        """Return whether a lookup succeeds within the timeout, or a tuple of that and the reason."""
         verdict = self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
         return verdict if return_debug_tuple else verdict[0]
 
@@ -117,7 +135,7 @@ class Buffer(BufferCore):
         timeout: Any = NO_TIME,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Whether a lookup with a fixed frame gives a transform, within the timeout."""
+        """Return whether a lookup with a fixed frame succeeds within the timeout."""
         verdict = self._wait(
             lambda: self.can_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame),
             timeout,
@@ -125,7 +143,7 @@ class Buffer(BufferCore):
         return verdict if return_debug_tuple else verdict[0]
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Future[Any]:
-        """A future that has the transform as its result as soon as it is available."""
+        """Return a future that gets the transform as soon as it is available."""
         return self._future(
             lambda: self.can_transform_core(target_frame, source_frame, time)[0],
             lambda: self.lookup_transform_core(target_frame, source_frame, time),
@@ -134,7 +152,7 @@ class Buffer(BufferCore):
     def wait_for_transform_full_async(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Future[Any]:
-        """A future that has the transform by way of a fixed frame as its result as soon as it is available."""
+        """Return a future that gets the transform through a fixed frame as soon as it is available."""
         question = (target_frame, target_time, source_frame, source_time, fixed_frame)
         return self._future(
             lambda: self.can_transform_full_core(*question)[0], lambda: self.lookup_transform_full_core(*question)

@@ -1,4 +1,7 @@
-"""Ways through the tree of frames at a time, by tf2's rules: from the source up, and from the target up to meet it."""
+"""Paths through the tree of frames at a time, by tf2's rules.
+
+A search climbs from the source, and then from the target until it meets the first path.
+"""
 
 from __future__ import annotations
 
@@ -17,15 +20,15 @@ MAX_DEPTH = 1000
 
 @dataclass(slots=True)
 class Way:
-    """A way from a source frame to a target frame.
+    """A path from a source frame to a target frame.
 
     Attributes:
-        time_ns: the time it holds at.
-        up: numbers of the frames from the source upwards, without the last one.
-        down: numbers of the frames from the target upwards, without the last one, which is that of `up`.
-        top: the last one.
-        source_pose: pose of the source in the last frame.
-        target_pose: pose of the target in it.
+        time_ns: the time of the path's transforms.
+        up: the numbers of the frames from the source upwards, without the top frame.
+        down: the numbers of the frames from the target upwards, without the top frame, in which both meet.
+        top: the number of the top frame.
+        source_pose: the pose of the source in the top frame.
+        target_pose: the pose of the target in the top frame.
     """
 
     time_ns: int
@@ -36,17 +39,17 @@ class Way:
     target_pose: Transform = IDENTITY
 
     def pose(self) -> Transform:
-        """The pose of the source in the target."""
+        """Return the pose of the source frame in the target frame."""
         if not self.down:
             return self.source_pose
         inverse = invert(self.target_pose)
         return compose(inverse, self.source_pose) if self.up else inverse
 
     def chain(self) -> list[int]:
-        """Numbers of the frames from the source to the target, both included."""
+        """Return the numbers of the frames from the source to the target, including both."""
         up, down = list(self.up), list(self.down)
         top = self.top
-        # Both may have gone up beyond the frame where they meet.
+        # Both climbs may have continued beyond the frame in which they meet.
         while up and down and up[-1] == down[-1]:
             top = up.pop()
             down.pop()
@@ -54,12 +57,12 @@ class Way:
 
 
 class Walker:
-    """Finds ways among frames.
+    """Finds paths between frames.
 
     Args:
-        caches: the transforms of each frame, by number; None for frames without a parent. It may grow.
-        names: of the frames, by number.
-        shape: gives the text that shows all frames, for messages.
+        caches: the transforms of each frame, by number; None for frames without a parent. The list may grow.
+        names: the names of the frames, by number.
+        shape: returns a text that shows all frames, for messages.
     """
 
     def __init__(self, caches: list[FrameCache | None], names: list[str], shape: Callable[[], str]) -> None:
@@ -68,18 +71,18 @@ class Walker:
         self._shape = shape
 
     def way(self, target: int, source: int, time_ns: int, *, poses: bool = True) -> Way:
-        """The way from a source to a target.
+        """Find the path from a source frame to a target frame.
 
         Args:
-            target: number of the target frame.
-            source: number of the source frame, another one.
-            time_ns: the time, 0 for the latest that all frames on the way have.
+            target: the number of the target frame.
+            source: the number of the source frame, which must be another frame.
+            time_ns: the time, or 0 for the latest time that all frames on the path have in common.
             poses: whether to compute the poses.
 
         Raises:
-            ConnectivityException: there is none.
-            ExtrapolationException: there is none at that time.
-            LookupException: parents go round in a loop.
+            ConnectivityException: there is no path.
+            ExtrapolationException: there is no path at that time.
+            LookupException: the frames' parents form a loop.
         """
         if time_ns == 0:
             time_ns = self.latest_common_time(target, source)
@@ -91,11 +94,13 @@ class Walker:
         return way
 
     def latest_common_time(self, target: int, source: int) -> int:
-        """The latest time that all moving frames between two have; 0 when none of them moves.
+        """Return the latest time that all moving frames between two frames have in common.
+
+        The result is 0 if none of them moves.
 
         Raises:
-            ConnectivityException: no way leads from one to the other.
-            LookupException: parents go round in a loop.
+            ConnectivityException: no path connects the two frames.
+            LookupException: the frames' parents form a loop.
         """
         seen: list[tuple[int, int]] = []
         times: list[int] = []
@@ -127,7 +132,7 @@ class Walker:
         raise self._loop()
 
     def _climb_from_source(self, way: Way, source: int, target: int, poses: bool) -> str | None:
-        """Climb until the target or the top; gives the reason for a stop, where that was a lack of data."""
+        """Climb to the target or the root; return the reason if missing data ended the climb early."""
         frame, pose = source, IDENTITY
         trouble = None
         for depth in range(MAX_DEPTH + 2):
