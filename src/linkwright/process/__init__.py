@@ -1,1 +1,1 @@
-"""The process: its arguments, standard streams, Ctrl-C, event loop, processors and the unit of its clocks."""
+"""Process-wide matters: arguments, standard streams, Ctrl-C, event loop, processors, clock unit."""

@@ -1,4 +1,4 @@
-"""Words of the form ``name:=value``, as ROS 2 commands take them."""
+"""Command-line arguments of the form ``name:=value``, as ROS 2 commands use them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 
-# Not compiled here: few commands have a word that needs it.
+# Not compiled here: few commands need it.
 _SINGLE_SIGN = r"^-*([A-Za-z_][\w-]*)(=|:)(?!=)(.*)$"
 
 
@@ -19,14 +19,16 @@ def _malformed(word: str, hint: Phrase) -> Diagnostic:
 def parse_assignments(
     words: Iterable[str], malformed: Callable[[str, Phrase], Diagnostic] = _malformed
 ) -> dict[str, str]:
-    """Names and values of ``name:=value`` words; a later word of a name wins.
+    """Return the names and values of ``name:=value`` arguments.
+
+    If a name is repeated, the last one wins.
 
     Args:
-        words: the words.
-        malformed: makes the error for a word that has another form, of the word and a hint.
+        words: the arguments.
+        malformed: creates the error for an argument of another form, from the argument and a hint.
 
     Raises:
-        LinkwrightError: CLI101 by default, for every word that is not of this form.
+        LinkwrightError: CLI101 by default, with every argument that does not have this form.
     """
     values: dict[str, str] = {}
     wrong = []

@@ -1,8 +1,10 @@
-"""Running a coroutine as ``asyncio.run`` does since Python 3.11, with a moment between making the loop and its work.
+"""Running a coroutine as ``asyncio.run`` does since Python 3.11.
 
-Interrupted while it is being made, a loop complains of itself on standard error. Ctrl-C cancels the coroutine: raised
-anywhere instead, KeyboardInterrupt could end an import halfway, and on Python 3.10 its lock would stay taken for the
-threads that import the same.
+In addition, a hook is called between the creation of the loop and its work.
+
+If a loop is interrupted while it is being created, it prints a complaint on standard error. Ctrl-C cancels the
+coroutine: raised anywhere else, KeyboardInterrupt could abort an import halfway, and on Python 3.10 the import lock
+would stay locked for other threads that import the same module.
 """
 
 from __future__ import annotations
@@ -18,14 +20,14 @@ T = TypeVar("T")
 
 
 def run_coroutine(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[], object]) -> T:
-    """Run a coroutine on a loop of its own and return its result.
+    """Run a coroutine on a new event loop and return its result.
 
     Args:
-        make: gives the coroutine.
+        make: returns the coroutine.
         ready: called when the loop exists and nothing runs on it yet; from then on KeyboardInterrupt may be raised.
 
     Raises:
-        KeyboardInterrupt: Ctrl-C was pressed, and the coroutine let itself be cancelled.
+        KeyboardInterrupt: Ctrl-C was pressed, and the coroutine was cancelled.
     """
     if sys.version_info >= (3, 11):
         with asyncio.Runner() as runner:
@@ -62,9 +64,9 @@ def _run(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[], object]
 
 
 class _Interruptions:
-    """While this is entered, the first Ctrl-C cancels a task and the next ones raise KeyboardInterrupt.
+    """A context in which the first Ctrl-C cancels a task, and later ones raise KeyboardInterrupt.
 
-    It changes nothing if another handler takes care of Ctrl-C, or in a thread other than the main one.
+    It has no effect if another handler handles Ctrl-C, or in a thread other than the main thread.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, main: asyncio.Task[Any]) -> None:
@@ -89,7 +91,7 @@ class _Interruptions:
         if self.count > 1 or self._main.done():
             raise KeyboardInterrupt
         self._main.cancel()
-        self._loop.call_soon_threadsafe(lambda: None)  # the loop may be waiting for files only
+        self._loop.call_soon_threadsafe(lambda: None)  # wakes the loop, which may be waiting for files only
 
 
 def _cancel_the_rest(loop: asyncio.AbstractEventLoop) -> None:

@@ -1,6 +1,7 @@
-"""Ctrl-C while a program of ours is only being loaded, when no ``except KeyboardInterrupt`` is in force yet, and later.
+"""Handling of Ctrl-C, including the time while a program is still being loaded.
 
-It imports next to nothing itself, so that little time passes before it works.
+During that time no ``except KeyboardInterrupt`` is in force. This module imports almost nothing, so that it takes
+effect early.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import os
 import sys
 import time
 
-TYPE_CHECKING = False  # as that of `typing`, which takes longer to import than everything else here
+TYPE_CHECKING = False  # defined here because importing `typing` takes longer than everything else in this module
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Any, Protocol
@@ -20,10 +21,10 @@ if TYPE_CHECKING:
         """A process of `subprocess` or `asyncio`."""
 
         def send_signal(self, signal: int, /) -> None:
-            """Send it a signal."""
+            """Send a signal to the process."""
 
         def terminate(self) -> None:
-            """End it."""
+            """Terminate the process."""
 
 
 INTERRUPTED = 130
@@ -33,32 +34,35 @@ _SOON_SECONDS = 0.01
 
 
 def end_at_once() -> None:
-    """Let Ctrl-C, and any other SIGINT, end the process from now on without a message: there is nothing to clean up.
+    """Let Ctrl-C, and any other SIGINT, end the process from now on, without a message.
 
-    This also holds if the process was started to ignore it: scripts do that to every program that they start with
-    ``&``, and end it by ``kill -INT``. ROS's programs obey it too: rclpy and rclcpp install handlers in any case.
+    It is for the time when there is nothing to clean up. It also takes effect if the process was started with SIGINT
+    ignored: scripts do so for every program that they start with ``&``, and then use ``kill -INT`` to end it. ROS's
+    programs
+    obey that as well, because rclpy and rclcpp always install handlers.
     """
     if _signal.getsignal(_signal.SIGINT) in (_signal.default_int_handler, _signal.SIG_IGN):
         _signal.signal(_signal.SIGINT, _end)
 
 
 def raise_interrupts() -> None:
-    """Let Ctrl-C raise KeyboardInterrupt again, for a handler from now on."""
+    """From now on, let Ctrl-C raise KeyboardInterrupt again, which code may handle."""
     if _signal.getsignal(_signal.SIGINT) is _end:
         _signal.signal(_signal.SIGINT, _signal.default_int_handler)
         when_lost(lambda: signal_again(_signal.SIGINT))
 
 
 def when_lost(deliver: Callable[[], None]) -> Callable[[Any], Any]:
-    """Deliver a KeyboardInterrupt again that Python drops with a message and no code can catch.
+    """Redeliver each KeyboardInterrupt that Python drops with a message and that no code can catch.
 
-    Python drops one that arrives in a destructor or in a weak reference's callback; imports run these all the time.
+    Python drops a KeyboardInterrupt that is raised in a destructor or in a weak reference's callback; imports run these
+    all the time.
 
     Args:
-        deliver: called in a thread of its own, a moment later.
+        deliver: called in a new thread, a moment later.
 
     Returns:
-        The ``sys.unraisablehook`` that was there before.
+        The previous ``sys.unraisablehook``.
     """
     before = sys.unraisablehook
 
@@ -77,7 +81,7 @@ def when_lost(deliver: Callable[[], None]) -> Callable[[Any], Any]:
 
 
 def signal_again(number: int) -> None:
-    """Send a signal to this process, whose handler runs in the main thread as if it came from outside."""
+    """Send a signal to this process, which the main thread handles as if it came from outside."""
     if sys.platform == "win32":
         _thread.interrupt_main(number)  # ``os.kill`` would end the process there
     else:
@@ -85,7 +89,10 @@ def signal_again(number: int) -> None:
 
 
 def interrupt(process: Interruptible) -> None:
-    """Ask another process to end, as Ctrl-C does; where processes cannot send that, it is ended."""
+    """Ask another process to end, as Ctrl-C does.
+
+    On Windows, which cannot send that signal, terminate it.
+    """
     if sys.platform == "win32":
         process.terminate()
     else:

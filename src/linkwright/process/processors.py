@@ -1,4 +1,4 @@
-"""How many processors a process may use."""
+"""The number of processors that a process may use."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ _UNKNOWN = 2
 
 
 def usable_processors() -> int:
-    """The number of processors that this process may use; those of the machine if the system has no affinity."""
+    """Return the number of processors that this process may use.
+
+    If the system has no affinity, these are all processors of the machine.
+    """
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or _UNKNOWN
