@@ -1,1 +1,1 @@
-"""Worlds and models: reading SDF, resolving includes, and computing poses."""
+"""Read SDF worlds and models, resolve includes, and compute poses."""

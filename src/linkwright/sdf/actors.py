@@ -18,7 +18,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Skin:
-    """The mesh of a figure, by its URI, and a scale."""
+    """The mesh of an actor, by its URI, and its scale."""
 
     filename: str = "__default__"
     scale: float = 1.0
@@ -26,7 +26,7 @@ class Skin:
 
 @dataclass(frozen=True, slots=True)
 class Animation:
-    """A movement of the limbs, from a file; with `interpolate_x` its speed follows that of the figure."""
+    """An animation of the limbs from a file; with `interpolate_x` its speed follows the actor's speed."""
 
     name: str
     filename: str = "__default__"
@@ -36,7 +36,7 @@ class Animation:
 
 @dataclass(frozen=True, slots=True)
 class Waypoint:
-    """The pose of the figure at a time in seconds."""
+    """The pose of the actor at a time in seconds."""
 
     time: float = 0.0
     pose: RawPose = AT_ORIGIN
@@ -54,7 +54,7 @@ class Trajectory:
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """When the figure walks: after `delay_start` seconds, by itself or when started, once or in a loop."""
+    """The timing of the walk: after `delay_start` seconds, automatic or on request, once or in a loop."""
 
     loop: bool = True
     delay_start: float = 0.0

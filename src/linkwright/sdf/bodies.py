@@ -1,6 +1,6 @@
-"""The rigid bodies of a robot: links joined by fixed joints, and their poses in the body.
+"""The rigid bodies of a robot: links connected by fixed joints, and their poses in the body.
 
-Source: libsdformat's parser of URDF, which makes one link of those that fixed joints connect.
+Source: libsdformat's parser of URDF, which merges links that fixed joints connect.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class Part:
 
     Attributes:
         link: the link.
-        pose: the pose of its frame in that of the body.
+        pose: the pose of the link's frame in the frame of the body.
         joint: the fixed joint that makes it a part; None for the link that names the body.
     """
 
@@ -33,11 +33,11 @@ class Part:
 
 @dataclass(slots=True)
 class Body:
-    """Links joined by fixed joints.
+    """Links connected by fixed joints.
 
     Attributes:
-        parts: the link that names the body, then the links below it.
-        joint: the joint that connects it to its parent; None for the root.
+        parts: the link that names the body, then its descendants.
+        joint: the joint that connects the body to its parent; None for the root.
         parent: the name of the parent body; ``world``, or empty for the root.
         pose: the pose of the joint in the parent body.
         children: the child bodies.
@@ -51,12 +51,14 @@ class Body:
 
     @property
     def name(self) -> str:
-        """The name of the link of SDF that it becomes."""
+        """The name of the SDF link that the body becomes."""
         return self.parts[0].link.name
 
 
 def bodies_of(robot: Robot, is_lumped: Callable[[Joint], bool]) -> list[Body]:
-    """Return the bodies of a robot, parents before children, and children by the names of their joints, as gz does.
+    """Return the bodies of a robot, parents before children.
+
+    Children are ordered by joint name, as in gz.
 
     Args:
         robot: the robot; a root link called ``world`` represents the world.
@@ -91,5 +93,5 @@ def bodies_of(robot: Robot, is_lumped: Callable[[Joint], bool]) -> list[Body]:
 
 
 def _by_name(joints: list[Joint]) -> list[Joint]:
-    """Joints sorted for taking them from the end of a list."""
+    """Return joints in reverse order of their names, because they are taken from the end."""
     return sorted(joints, key=lambda joint: joint.name, reverse=True)

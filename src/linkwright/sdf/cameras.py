@@ -16,7 +16,7 @@ from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, made, v
 
 @dataclass(frozen=True, slots=True)
 class ImageFormat:
-    """Size in pixels and format of a camera's image, as ``R8G8B8``."""
+    """The size in pixels and the format of a camera's image, such as ``R8G8B8``."""
 
     width: int = 320
     height: int = 240
@@ -25,7 +25,7 @@ class ImageFormat:
 
 @dataclass(frozen=True, slots=True)
 class Clip:
-    """The near and the far clip distance, in metres."""
+    """The near and the far clipping distance, in metres."""
 
     near: float = 0.1
     far: float = 100.0
@@ -33,7 +33,7 @@ class Clip:
 
 @dataclass(frozen=True, slots=True)
 class Distortion:
-    """Brown's coefficients of a lens; `center` in fractions of the image size."""
+    """Brown's distortion coefficients of a lens; `center` is in fractions of the image size."""
 
     k1: float = 0.0
     k2: float = 0.0
@@ -45,7 +45,7 @@ class Distortion:
 
 @dataclass(frozen=True, slots=True)
 class Intrinsics:
-    """Focal lengths and centre of an image in pixels, and skew."""
+    """The focal lengths and the image centre in pixels, and the skew."""
 
     fx: float = 277.0
     fy: float = 277.0
@@ -56,25 +56,25 @@ class Intrinsics:
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """A camera; it looks along x of its frame, with z up.
+    """A camera, which looks along x of its frame, with z up.
 
     Attributes:
-        name: of one camera among several.
-        pose: in the frame of the sensor.
+        name: the name of one camera among several.
+        pose: the pose in the frame of the sensor.
         horizontal_fov: the horizontal field of view, in radians.
-        image: size and format.
-        clip: the nearest and farthest visible distances.
-        noise: on each colour, from 0 to 1.
-        distortion: of the lens; None for a perfect one.
-        intrinsics: replace the field of view if given; else None.
+        image: the size and format of the image.
+        clip: the minimum and maximum visible distances.
+        noise: the noise on each colour, whose values range from 0 to 1.
+        distortion: the distortion of the lens; None if there is none.
+        intrinsics: override the field of view if given; else None.
         depth_clip: the range of a depth camera; None for the same as `clip`.
         segmentation_type: ``semantic`` or ``instance`` (also ``panoptic``).
         box_type: ``2d``, ``visible_2d``, ``full_2d`` or ``3d``.
-        camera_info_topic: the topic of its intrinsics; empty for the default one.
-        optical_frame_id: the frame of its images; empty for that of the sensor.
-        triggered: whether it takes images only on request.
+        camera_info_topic: the topic of its camera info; empty for the default topic.
+        optical_frame_id: the frame of its images; empty for the frame of the sensor.
+        triggered: whether it renders images only on request.
         trigger_topic: the topic of these requests.
-        visibility_mask: selects the visuals that it sees: those with a common bit.
+        visibility_mask: selects the visuals that it sees, by having a bit in common.
     """
 
     name: str = ""

@@ -1,4 +1,4 @@
-"""Comparing parts of models: equal content, wherever and however it was written."""
+"""Compare parts of models for equal content, regardless of how and where it was written."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from linkwright.xmltree import Element
 
 
 def alike(one: Any, other: Any) -> bool:
-    """Return whether two parts of the model of a file, or tuples of them, have equal content.
+    """Return whether two parsed parts of a file, or tuples of parts, have equal content.
 
-    Comments, blanks and positions make no difference. The parameters of plugins do, which only their elements hold, and
-    so do the folders of files that name meshes by paths.
+    Comments, blanks and positions in the text make no difference. The parameters of plugins, which only their elements
+    hold, do make a difference, and so do the folders of files that name meshes by paths.
     """
     if one is other:
         return True
@@ -45,7 +45,7 @@ def _content(element: Element) -> tuple[object, ...]:
 
 
 def _folder(part: Visual | Collision) -> Path | None:
-    """The folder to which the paths in a part with a mesh are relative; None where it makes no difference."""
+    """Return the folder to which the mesh paths in a part are relative; None if it makes no difference."""
     shape, element = part.geometry, part.element
     if not isinstance(shape, Mesh | Heightmap) or "://" in shape.uri or element is None or element.source is None:
         return None

@@ -1,7 +1,7 @@
-"""Poses of frames in models and worlds, by the "pose frame semantics" of SDF 1.7 and later.
+"""Compute the poses of frames in models and worlds, by the "pose frame semantics" of SDF 1.7 and later.
 
-Source: the proposal "Pose Frame Semantics" of SDFormat. Poses of older files, which name no frames, come out the same.
-A frame is named within its model or world; ``arm::tip`` is the frame ``tip`` of the model ``arm`` in it.
+Source: the proposal "Pose Frame Semantics" of SDFormat. Poses in older files, which do not name frames, have the same
+result. A frame is named within its model or world; ``arm::tip`` is the frame ``tip`` of the nested model ``arm``.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _NO_ANGLE = 1e-12
 
 
 class FrameError(Exception):
-    """A pose cannot be computed.
+    """Raised when a pose cannot be computed.
 
     Attributes:
         name: the frame that does not exist, or one frame of a cycle.
@@ -71,12 +71,12 @@ class Frames:
 
     def __contains__(self, name: str) -> bool:
         head, colon, tail = name.partition(SEPARATOR)
-        if not colon or name in self.named:  # old files have '::' in link names
+        if not colon or name in self.named:  # old files have '::' in the names of links
             return name in self._roots or name in self.named
         return isinstance(self.named.get(head), Model) and tail in self.inside(head)
 
     def inside(self, name: str) -> Frames:
-        """The frames of a nested model."""
+        """Return the frames of a nested model."""
         frames = self._inner.get(name)
         if frames is None:
             model = self.named.get(name)
@@ -89,9 +89,9 @@ class Frames:
         """Return the pose of a frame in the model or world.
 
         Raises:
-            FrameError: it does not exist, or is defined relative to itself through others.
+            FrameError: the frame does not exist, or is indirectly defined relative to itself.
         """
-        pending: dict[str, None] = {}  # from the requested frame to the first known one
+        pending: dict[str, None] = {}  # frames from the requested one to the first with a known pose
         while name not in self._roots and name not in self._poses:
             if name in pending:
                 circle = list(pending)
@@ -104,11 +104,11 @@ class Frames:
         return found
 
     def placed(self, pose: RawPose, absent: str = "") -> Transform:
-        """The pose of a part in the model or world.
+        """Return the pose of a part in the model or world.
 
         Args:
-            pose: as written.
-            absent: the frame in which it is where it names none.
+            pose: the pose as written.
+            absent: the frame to which the pose is relative if it does not name one.
 
         Raises:
             FrameError: as for `pose`.
@@ -128,7 +128,7 @@ class Frames:
         return compose(invert(self.pose(link)), self.placed(pose))
 
     def axis(self, joint: Joint, axis: Axis) -> Vector3:
-        """The direction of an axis in the frame of its joint.
+        """Return the direction of an axis in the frame of its joint.
 
         Raises:
             FrameError: as for `pose`.
@@ -139,10 +139,12 @@ class Frames:
         return rotate(invert(self.pose(joint.name))[3:], in_owner)
 
     def link(self, name: str) -> str:
-        """Return the link to which a frame is attached, named from here; ``world`` for a frame fixed to the world.
+        """Return the link to which a frame is attached.
+
+        The name is relative to this model or world; it is ``world`` for a frame fixed to the world.
 
         Raises:
-            FrameError: it does not exist, is attached to itself through others, or the model has no link.
+            FrameError: the frame does not exist, is indirectly attached to itself, or the model has no link.
         """
         seen: dict[str, None] = {}
         while True:
@@ -166,7 +168,7 @@ class Frames:
             name = found.attached_to if isinstance(found, Frame) else found.child
 
     def _canonical_link(self) -> str:
-        """The canonical link: the one that the model names, or the first in it."""
+        """Return the canonical link: the one that the model names, or else its first link."""
         model = self.owner
         assert isinstance(model, Model)
         if model.canonical_link:
@@ -178,7 +180,7 @@ class Frames:
         raise FrameError(MODEL)
 
     def _base(self, name: str) -> str:
-        """The frame to which the pose of another is relative."""
+        """Return the frame to which the pose of another frame is relative."""
         found = self.named.get(name)
         head, colon, _ = name.partition(SEPARATOR)
         if found is None and colon:
@@ -189,7 +191,7 @@ class Frames:
         return found.pose.relative_to or absent
 
     def _in_base(self, name: str) -> Transform:
-        """The pose of a frame in the one that it is relative to."""
+        """Return the pose of a frame in the frame to which it is relative."""
         found = self.named.get(name)
         if found is None:
             head, _, tail = name.partition(SEPARATOR)
@@ -205,12 +207,12 @@ class PlacedLink:
     """A link of a world.
 
     Attributes:
-        name: with the models around it: ``robot::arm::tip``.
+        name: the name with the enclosing models: ``robot::arm::tip``.
         link: the parsed link.
         model: the model that directly contains it.
         frames: the frames of that model.
         pose: the pose of its frame in the world.
-        static: whether its model, or one around that, never moves.
+        static: whether its model, or an enclosing model, never moves.
     """
 
     name: str
@@ -222,10 +224,10 @@ class PlacedLink:
 
 
 def placed_links(world: World) -> Iterator[PlacedLink]:
-    """All links of a world, in document order, each with its pose.
+    """Yield all links of a world, in document order, each with its pose.
 
     Raises:
-        FrameError: one cannot be placed.
+        FrameError: a link cannot be placed.
     """
     frames = Frames(world)
     for model in world.models:
@@ -233,17 +235,17 @@ def placed_links(world: World) -> Iterator[PlacedLink]:
 
 
 def links_of(model: Model, frames: Frames, pose: Transform, name: str, *, static: bool = False) -> Iterator[PlacedLink]:
-    """Yield all links of a model and of nested models, each with its pose.
+    """Yield all links of a model and its nested models, each with its pose.
 
     Args:
-        model: with its includes resolved.
-        frames: those of the model.
+        model: the model, with its includes resolved.
+        frames: the frames of the model.
         pose: the pose of its frame in the world.
         name: its name in the world.
-        static: whether a model around it never moves.
+        static: whether an enclosing model never moves.
 
     Raises:
-        FrameError: one cannot be placed.
+        FrameError: a link cannot be placed.
     """
     static = static or model.static
     for link in model.links:
@@ -256,12 +258,15 @@ def links_of(model: Model, frames: Frames, pose: Transform, name: str, *, static
 
 
 def transform_of(pose: Pose) -> Transform:
-    """A pose as a transform."""
+    """Return a pose as a transform."""
     return (*pose.xyz, *quaternion_of(pose))
 
 
 def pose_of(transform: Transform) -> Pose:
-    """A transform as a pose: with angles, or with the quaternion too where the angles would not be exact."""
+    """Return a transform as a pose with angles.
+
+    The pose also has the quaternion if the angles would not be exact.
+    """
     rotation = transform[3:]
     rpy = rpy_from_quaternion(rotation)
     difference = quaternion_multiply(quaternion_from_rpy(rpy), quaternion_inverse(rotation))

@@ -1,4 +1,4 @@
-"""Converting a robot of URDF to a model of SDF, as gz does.
+"""Convert a robot from URDF to a model in SDF, as gz does.
 
 Source: libsdformat's parser of URDF and its page "URDF extensions in SDFormat".
 """
@@ -44,8 +44,8 @@ class Conversion:
     """The result of a conversion.
 
     Attributes:
-        model: the robot as a model of SDF.
-        diagnostics: errors in its ``<gazebo>`` elements, and parts without a place in SDF.
+        model: the robot as an SDF model.
+        diagnostics: errors in its ``<gazebo>`` elements, and parts that SDF cannot express.
     """
 
     model: Model
@@ -55,13 +55,13 @@ class Conversion:
 def model_from_robot(robot: Robot, *, lump_fixed_joints: bool) -> Conversion:
     """Convert a robot as gz does.
 
-    A root link called ``world`` is the world. The addresses of meshes stay as they are written.
+    A root link called ``world`` represents the world. The addresses of meshes are not changed.
 
     Args:
         robot: the robot.
-        lump_fixed_joints: whether links that fixed joints connect become one link, as by default in gz. The original
-            links then become frames, and links without a mass are left out. Otherwise every link and every fixed joint
-            stays.
+        lump_fixed_joints: whether links that fixed joints connect are merged into one link, which is the default in gz.
+            The original links then become frames, and links without a mass are left out. Otherwise all links and fixed
+            joints are kept.
     """
     report = SdfReport()
     extensions = Extensions(robot, report)
@@ -104,7 +104,7 @@ class _Converter:
         )
 
     def _with_mass(self, bodies: list[Body]) -> list[Body]:
-        """Return the bodies with a mass; bodies below a massless one are left out too, as in gz."""
+        """Return the bodies with a mass; bodies below a massless one are also left out, as in gz."""
         left_out: set[str] = set()
         kept = []
         for body in bodies:
@@ -127,7 +127,7 @@ class _Converter:
         self._report.warning("SDF170", message, element, hint=phrase("give it an <inertial> with a mass"))
 
     def _report_default_mass(self, bodies: list[Body]) -> None:
-        """Warn of a movable body without mass: SDF gives it 1 kg, where gz leaves it out."""
+        """Warn of a movable body without mass: SDF gives it 1 kg, whereas gz leaves it out."""
         if self._lumps:
             return
         links = [body.parts[0].link for body in bodies if body.joint is None or body.joint.type != "fixed"]
@@ -164,12 +164,12 @@ class _Converter:
         )
 
     def _weightless(self, link: urdf.Link) -> Inertial | None:
-        """The mass of a link that has none: next to nothing where links fixed to it have one."""
+        """Return the mass of a massless link: a tiny mass if links fixed to it have a mass."""
         rigid = self._rigid.of(link.name)
         return _FRAME if not self._lumps and rigid is not None and self._rigid.mass(rigid) > 0 else None
 
     def _pose(self, body: Body) -> RawPose:
-        """The pose of a link: that of its joint, relative to its own or to the parent link."""
+        """Return the pose of a link: the pose of its joint, relative to the link itself or to its parent link."""
         if body.joint is None:
             return RawPose()
         if body.joint.type in _TYPES and body.joint.name not in self._robot.links:
@@ -203,7 +203,7 @@ class _Converter:
         )
 
     def _frames(self, body: Body) -> Iterator[Frame]:
-        """The lumped links and their joints, as frames."""
+        """Yield the lumped links and their joints as frames."""
         for part in body.parts[1:]:
             joint, link = part.joint, part.link
             assert joint is not None
@@ -234,21 +234,21 @@ def _from_parent(body: Body) -> RawPose:
 
 
 def _moved(posed: _Posed, pose: Transform) -> _Posed:
-    """A part of a link, moved to the frame of its body."""
+    """Return a part of a link, moved to the frame of its body."""
     if posed.pose.relative_to:
         return posed
     return replace(posed, pose=RawPose(pose_of(compose(pose, transform_of(posed.pose.pose)))))
 
 
 def _placed(pose: Pose, part: Part) -> RawPose:
-    """A pose in the frame of a part, expressed in that of its body."""
+    """Return a pose in the frame of a part, expressed in the frame of the part's body."""
     return RawPose(pose if part.joint is None else pose_of(compose(part.pose, transform_of(pose))))
 
 
 def _inertial(parts: Sequence[Part]) -> Inertial | None:
     first = parts[0].link.inertial
     if any(part.link.inertial for part in parts[1:]):
-        from linkwright.sdf.lumping import lumped_inertial  # which takes numpy
+        from linkwright.sdf.lumping import lumped_inertial  # imported here, because it imports numpy
 
         return lumped_inertial(parts)
     if first is None:
@@ -284,7 +284,10 @@ def _collisions(body: Body, extensions: Mapping[str, LinkExtension]) -> Iterator
 
 
 def _name_of_shape(body: Body, part: Part, own: str, kind: str, count: int) -> str:
-    """``wheel_visual``, ``wheel_visual_1``, ``base_fixed_joint_lump__camera_visual_2``."""
+    """Return the name of a shape, as libsdformat forms it.
+
+    Examples are ``wheel_visual``, ``wheel_visual_1`` and ``base_fixed_joint_lump__camera_visual_2``.
+    """
     name = f"{own or part.link.name}_{kind}"
     if count:
         name = f"{name}_{count}"
@@ -298,7 +301,7 @@ def _shape(geometry: urdf.Geometry) -> shapes.Shape:
 
 
 def _material(written: urdf.Material | None, extension: Material | None) -> Material | None:
-    """The material of a visual, with the colours and scripts of ``<gazebo>``, which come first."""
+    """Return the material of a visual; the colours and scripts of ``<gazebo>`` take precedence."""
     if (
         extension is not None
         and extension.script is not None
@@ -322,7 +325,7 @@ def _brighter(part: float) -> float:
 
 
 def _axis(joint: urdf.Joint, extension: Axis) -> Axis:
-    """The axis of a joint, with the spring of ``<gazebo>``."""
+    """Return the axis of a joint, with the spring from ``<gazebo>``."""
     limit, dynamics, mimic = AxisLimit(), extension.dynamics, None
     if joint.limit is not None:
         limit = AxisLimit(effort=joint.limit.effort, velocity=joint.limit.velocity)

@@ -1,11 +1,11 @@
 """``<gazebo>`` in a URDF: the part of a description that only simulators read.
 
-Most of its content is SDF for the link, joint or model that it refers to; some words are older than SDF and represent
-elements of it (``mu1``, ``turnGravityOff``). Both are joined into one SDF element and read by the tables of SDF, so
-that errors are reported at their place in the URDF.
+Most of its content is SDF for the link, joint or model to which it refers. Some words are older than SDF and stand for
+SDF elements (``mu1``, ``turnGravityOff``). Both are combined into one SDF element, which the SDF tables read, so that
+errors are reported at their place in the URDF.
 
-Source: libsdformat's parser of URDF. That parser finds the shapes of a link by names derived from the link, and so
-skips shapes with other names; here all shapes of the link are meant.
+Source: libsdformat's parser of URDF. That parser finds the shapes of a link by names derived from the link, and
+therefore skips shapes with other names; here the settings apply to all shapes of the link.
 """
 
 from __future__ import annotations
@@ -74,9 +74,9 @@ class LinkExtension:
     """The simulators' settings of a link.
 
     Attributes:
-        link: sensors, lights and whether it falls; its shapes, mass and pose are not those of the link.
+        link: sensors, lights and whether gravity acts; its shapes, mass and pose are not those of the link.
         visual: settings for each of its visuals, except geometry and pose.
-        collision: the same for each of its collisions.
+        collision: settings for each of its collisions, except geometry and pose.
     """
 
     link: Link
@@ -100,7 +100,7 @@ class Extensions:
                 self._by_name[element.attributes.get("reference", "")].append(element)
 
     def model(self, robot: Robot) -> Model:
-        """The settings of the whole robot: plugins, and the links and joints that URDF cannot have."""
+        """Return the settings of the whole robot: plugins, and links and joints that URDF cannot express."""
         whole = _like(robot.element, "model", robot.name)
         for gazebo in self._by_name.get("", ()):
             whole.children += _blobs(gazebo)
@@ -109,7 +109,7 @@ class Extensions:
         return model
 
     def link(self, link: urdf.Link) -> LinkExtension:
-        """The settings of a link, its visuals and its collisions."""
+        """Return the settings of a link, its visuals and its collisions."""
         whole = _like(link.element, "link", link.name)
         visual, collision = _like(link.element, "visual", link.name), _like(link.element, "collision", link.name)
         for gazebo in self._by_name.get(link.name, ()):
@@ -126,7 +126,7 @@ class Extensions:
         )
 
     def joint(self, joint: urdf.Joint, robot: Robot) -> Joint:
-        """The settings of a joint: sensors, a spring, whether its forces are measured."""
+        """Return the settings of a joint: sensors, a spring, and whether its forces are measured."""
         whole = _like(joint.element, "joint", joint.name)
         whole.attributes["type"] = "fixed"
         _put(whole, "parent", joint.parent, whole)
@@ -151,7 +151,7 @@ class Extensions:
         return any(_text_of(element).casefold() in _TRUE for element in elements)
 
     def _add_words(self, whole: Element, gazebo: Element, words: _Words, rule: ElementRule) -> None:
-        """Add the elements for words to an element; the last of several equal words counts."""
+        """Add the elements for old words to an element; the last of several equal words counts."""
         for word in gazebo.elements():
             for path in words.get(word.tag, ()):
                 place, text = _rule_at(rule, path), _text_of(word)
@@ -169,19 +169,19 @@ class Extensions:
 
 
 def _like(element: Element | None, tag: str, name: str) -> Element:
-    """An element of SDF at the place of one of URDF."""
+    """Return a new SDF element with the position of a URDF element."""
     if element is None:
         return Element(tag, {"name": name})
     return Element(tag, {"name": name}, element.source, element.offset, element.origin)
 
 
 def _blobs(gazebo: Element) -> Iterator[Element]:
-    """The children that are SDF already."""
+    """Yield the children that are already SDF."""
     return (element for element in gazebo.elements() if element.tag not in _WORDS and element.tag not in _SHAPES)
 
 
 def _merge(shape: Element, given: Element) -> None:
-    """Merge the settings of all shapes of a link; a later surface or material replaces an earlier one."""
+    """Merge the settings for all shapes of a link; a later surface or material replaces an earlier one."""
     for element in given.elements():
         if element.tag in ("surface", "material"):
             shape.children = [other for other in shape.elements() if other.tag != element.tag]
@@ -195,7 +195,7 @@ def _copied(element: Element) -> Element:
 
 
 def _put(whole: Element, path: str, text: str, place: Element) -> None:
-    """Set the text of a nested element; missing ones are made, at the place of another."""
+    """Set the text of a nested element, creating missing elements with the position of another element."""
     for tag in path.split("/"):
         inner = whole.first(tag)
         if inner is None:
@@ -212,7 +212,7 @@ def _with_text(word: Element, text: str) -> Element:
 
 
 def _text_of(word: Element) -> str:
-    """The value of a word, in its attribute ``value`` or inside."""
+    """Return the value of an old word, from its attribute ``value`` or its text."""
     return word.attributes.get("value", word.text()).strip()
 
 

@@ -1,4 +1,4 @@
-"""Resolving ``<include>`` in worlds and models."""
+"""Resolve ``<include>`` in worlds and models."""
 
 from __future__ import annotations
 
@@ -29,14 +29,13 @@ Entity = Model | Light | Actor
 
 @dataclass
 class Included:
-    """A file after resolving its includes.
+    """A file after its includes were resolved.
 
     Attributes:
-        sdf: the file with the included models in the places of their includes, which are gone; an include that leads
-            nowhere stays.
+        sdf: the file with its includes replaced by the included models; an include that cannot be resolved stays.
         diagnostics: errors in the included files, and includes of missing files.
-        files: the files that were read for it, each once.
-        entities: the entities that the includes of worlds name, by their elements' ids; None for a missing one.
+        files: the files that were read, each once.
+        entities: the entities that the includes of worlds name, by their elements' IDs; None for a missing one.
     """
 
     sdf: Sdf
@@ -50,7 +49,7 @@ def resolve_includes(sdf: Sdf, path: Path, finder: ResourceFinder) -> Included:
 
     Args:
         sdf: the parsed file.
-        path: the file.
+        path: the path of the file.
         finder: finds models.
     """
     resolver = _Resolver(finder)
@@ -138,9 +137,12 @@ class _Resolver:
             return merged(whole, replace(part, placement_frame=""))
 
     def _included(self, include: Include, path: Path, chain: tuple[Path, ...]) -> Entity | None:
-        """The included model, light or actor with the include's changes; None, with a finding, if it is missing."""
+        """Return the included model, light or actor with the include's changes, or None.
+
+        A missing one is reported.
+        """
         if not include.uri:
-            return None  # which the reader reported
+            return None  # the reader has reported it
         found = self._finder.model(include.uri, path.parent)
         if isinstance(found, Missing):
             message = phrase("'{uri}' is left out: {reason}", uri=include.uri, reason=found.reason)
@@ -168,7 +170,7 @@ class _Resolver:
         return None
 
     def _check_name(self, entity: Entity | None, include: Include, names: set[str]) -> None:
-        """Report an included model whose name is taken, and record the name."""
+        """Report an included model whose name is already used, and record the name."""
         if not isinstance(entity, Model):
             return
         if entity.name in names:
@@ -178,7 +180,7 @@ class _Resolver:
         names.add(entity.name)
 
     def _read(self, path: Path, include: Include) -> Reading | None:
-        """Read an included file; its findings are reported once, with the place of the include."""
+        """Read an included file; its findings are reported once, with the position of the include."""
         if path in self._readings:
             return self._readings[path]
         self.files[path] = None
@@ -212,7 +214,7 @@ class _Resolver:
 
 
 def _as_included(model: Model, include: Include) -> Model:
-    """A model with the changes of the include."""
+    """Return a model with the changes of its include."""
     return replace(
         model,
         name=include.name or model.name,

@@ -34,7 +34,7 @@ JOINT_TYPES = (
 
 @dataclass(frozen=True, slots=True)
 class AxisLimit:
-    """Bounds of an axis: positions in rad or m, effort in N m or N, velocity in rad/s or m/s; infinite for none."""
+    """Limits of an axis: positions in rad or m, effort in N m or N, velocity in rad/s or m/s; infinite for none."""
 
     lower: float = -inf
     upper: float = inf
@@ -46,7 +46,9 @@ class AxisLimit:
 
 @dataclass(frozen=True, slots=True)
 class AxisDynamics:
-    """Damping in N m s/rad or N s/m, friction in N m or N, and a spring about a position in rad or m."""
+    """The damping of an axis in N m s/rad or N s/m, its friction in N m or N, and a spring about a position in rad or
+    m.
+    """
 
     damping: float = 0.0
     friction: float = 0.0
@@ -56,7 +58,7 @@ class AxisDynamics:
 
 @dataclass(frozen=True, slots=True)
 class AxisMimic:
-    """Position = multiplier (position of `joint` - reference) + offset, all in rad or m (SDF 1.11)."""
+    """A mimic relation: position = multiplier (position of `joint` - reference) + offset, in rad or m (SDF 1.11)."""
 
     joint: str
     axis: str = "axis"
@@ -71,7 +73,7 @@ class Axis:
 
     Attributes:
         xyz: its direction in the frame `expressed_in`.
-        expressed_in: a frame; empty for that of the joint.
+        expressed_in: a frame; empty for the frame of the joint.
         initial_position: in rad or m, before SDF 1.9.
     """
 
@@ -91,12 +93,13 @@ class Joint:
         type: one of `JOINT_TYPES`.
         parent: a link or frame; ``world`` for the world.
         child: a link or frame.
-        pose: the pose of the joint; in the frame of its child by default.
-        axis: its first axis; None for a joint that has none.
-        axis2: its second, of joints of two.
-        thread_pitch: of a screw, in metres for each revolution (``screw_thread_pitch``); None where not given.
-        gearbox_ratio: of a gearbox, how often the child turns, the other way round, while the parent turns once.
-        gearbox_reference_body: of a gearbox, the link that both turn against.
+        pose: the pose of the joint; by default in the frame of its child.
+        axis: its first axis; None for a joint without axes.
+        axis2: its second axis, if the joint type has two axes.
+        thread_pitch: for a screw joint, in metres per revolution (``screw_thread_pitch``); None if not given.
+        gearbox_ratio: for a gearbox, the revolutions of the child, in the opposite direction, per revolution of the
+            parent.
+        gearbox_reference_body: for a gearbox, the link relative to which both rotate.
         sensors: force-torque sensors.
     """
 
@@ -131,7 +134,7 @@ def _direction(axis: Vector3, expressed_in: str) -> tuple[Vector3, str]:
 
 
 def _limit(lower: float, upper: float, effort: float, velocity: float, **rest: float) -> AxisLimit:
-    """Return a limit; 1e16 and more, and a negative effort or speed, become infinite."""
+    """Return a limit; values of 1e16 and more, and negative efforts or velocities, become infinite."""
     return AxisLimit(
         -inf if lower <= -1e16 else lower,
         inf if upper >= 1e16 else upper,
@@ -145,7 +148,7 @@ def _joint(
     screw_thread_pitch: float | None, thread_pitch: float | None, physics: _Physics | None, **parts: Any
 ) -> Joint:
     if screw_thread_pitch is None and thread_pitch is not None:
-        # The older word is in revolutions a metre, with the other sign.
+        # The older word is in revolutions per metre, with the opposite sign.
         screw_thread_pitch = -6.283185307179586 / thread_pitch if thread_pitch else None
     measured = physics is not None and (physics.provide_feedback or bool(physics.ode and physics.ode.provide_feedback))
     return Joint(thread_pitch=screw_thread_pitch, provide_feedback=measured, **parts)

@@ -16,7 +16,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Attenuation:
-    """How light fades: 1 / (constant + linear d + quadratic d^2) at d metres, and nothing beyond the range."""
+    """How light fades: 1 / (constant + linear d + quadratic d^2) at d metres, and no light beyond the range."""
 
     range: float = 10.0
     constant: float = 1.0
@@ -26,7 +26,7 @@ class Attenuation:
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """The cone of a spot light: full within the inner angle, nothing outside the outer one, in radians."""
+    """The cone of a spot light: full within the inner angle, dark outside the outer angle, in radians."""
 
     inner_angle: float = 0.0
     outer_angle: float = 0.0
@@ -42,12 +42,12 @@ class Light:
         pose: its pose.
         diffuse: its colour.
         specular: the colour of its highlights.
-        direction: the direction of its rays, in its own frame; of spot and directional lights.
+        direction: the direction of its rays in its own frame, for spot and directional lights.
         attenuation: how it fades with distance.
-        spot: its cone; None where it has none.
+        spot: the cone of a spot light; None for other types.
         cast_shadows: whether the objects that it lights cast shadows.
-        intensity: a factor on its colour.
-        light_on: whether it is lit.
+        intensity: a factor for its colour.
+        light_on: whether it is switched on.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Counts links without reading a world: reading a huge one would take minutes, and gigabytes."""
+"""Count links without parsing a world completely, which would take minutes and gigabytes for a huge one."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ _COUNTED = frozenset({"link", "include"})
 
 
 def has_more_links(data: bytes | str, most: int) -> bool:
-    """Whether the first world of a text has more links and includes than a number; parsing stops at the first too many.
+    """Return whether the first world in a text has more than a number of links and includes.
+
+    Parsing stops at the first one that exceeds the number.
 
     Args:
         data: the text; errors in its syntax are not reported here.
-        most: how many there may be.
+        most: the maximum number.
     """
     if len(data) <= most * _SHORTEST:
         return False
@@ -30,7 +32,7 @@ def has_more_links(data: bytes | str, most: int) -> bool:
 
 
 class _DoneError(Exception):
-    """Ends the parsing: there is nothing more to count."""
+    """Raised to stop parsing when there is nothing more to count."""
 
 
 class _Counter:
@@ -52,5 +54,5 @@ class _Counter:
             raise _DoneError
 
     def stop(self, *_declared: object) -> None:
-        """End the counting at an XML entity, which may contain any text: the XML reader handles it."""
+        """Stop counting at an XML entity, which may contain any text: the XML reader handles it."""
         raise _DoneError

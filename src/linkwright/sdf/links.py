@@ -36,11 +36,11 @@ class Inertial:
     """Mass properties.
 
     Attributes:
-        mass: in kg.
-        pose: the centre of mass and the axes of the tensor, in the frame of the link.
-        inertia: the tensor.
-        auto: whether all this is to be worked out from the collisions, by their densities (SDF 1.11).
-        density: in kg/m3, for `auto`; None for that of each collision.
+        mass: the mass in kg.
+        pose: the centre of mass and the axes of the inertia tensor, in the frame of the link.
+        inertia: the inertia tensor.
+        auto: whether to compute all of this from the collisions and their densities (SDF 1.11).
+        density: in kg/m3, for `auto`; None for the density of each collision.
     """
 
     mass: float = 1.0
@@ -56,9 +56,9 @@ class Visual:
     """A shape to draw.
 
     Attributes:
-        transparency: from 0, solid, to 1, not there.
-        laser_retro: how much of a laser's light comes back; None where nothing is said.
-        visibility_flags: the bits that cameras see of it.
+        transparency: from 0 for solid to 1 for invisible.
+        laser_retro: the intensity with which it reflects a laser; None if not specified.
+        visibility_flags: the bits that the visibility masks of cameras select.
     """
 
     name: str
@@ -78,9 +78,9 @@ class Collision:
     """A shape for contacts.
 
     Attributes:
-        density: in kg/m3, for links whose mass is worked out; None for that of water.
-        laser_retro: how much of a laser's light comes back; None where nothing is said.
-        max_contacts: how many points of contact with another shape count at most.
+        density: in kg/m3, for links whose mass is computed; None for the density of water.
+        laser_retro: the intensity with which it reflects a laser; None if not specified.
+        max_contacts: the maximum number of contact points with another shape.
     """
 
     name: str
@@ -95,7 +95,7 @@ class Collision:
 
 @dataclass(frozen=True, slots=True)
 class Decay:
-    """Damping: the share of linear and angular velocity that is lost in a step."""
+    """Velocity damping: the fraction of linear and angular velocity that is lost in a step."""
 
     linear: float = 0.0
     angular: float = 0.0

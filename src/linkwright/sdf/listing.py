@@ -1,4 +1,4 @@
-"""Listing the contents of a world."""
+"""List the contents of a world."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.sdf.worlds import Sdf, World
 
 
 def sdf_text(sdf: Sdf) -> str:
-    """Worlds with their models, lights and actors, nested models below theirs; two blanks a level, a line for each."""
+    """Return a list of models, lights and actors, one per line, with two blanks of indentation per level."""
     lines: list[str] = []
     for world in sdf.worlds:
         lines += [_line(0, phrase("world {name}", name=world.name)), *_world(world)]

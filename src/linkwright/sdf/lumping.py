@@ -1,4 +1,4 @@
-"""Lumping the mass properties of several links."""
+"""Combine the mass properties of several links."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from linkwright.urdf import model as urdf
 
 
 def lumped_inertial(parts: Sequence[Part]) -> Inertial | None:
-    """Return the joint mass properties of a body's parts, in the axes of the first one's; None if no part has any.
+    """Return the combined mass properties of a body's parts, or None if no part has any.
 
-    Source of the axes: libsdformat's parser of URDF.
+    They are in the axes of the first mass properties. Source of the axes: libsdformat's parser of URDF.
     """
     bodies = [_mass_properties(part.link.inertial).moved(pose_of(part.pose)) for part in parts if part.link.inertial]
     if not bodies:

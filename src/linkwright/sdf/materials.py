@@ -13,7 +13,7 @@ from linkwright.sdf.values import COLOR, NUMBER, TEXT, TRUTH, Color, made, reada
 
 @dataclass(frozen=True, slots=True)
 class MaterialScript:
-    """A material in a script of the renderer, such as ``Gazebo/Grey``, and the folders of scripts."""
+    """A material in a script of the renderer, such as ``Gazebo/Grey``, and the folders that contain scripts."""
 
     uris: tuple[str, ...] = ()
     name: str = ""
@@ -24,7 +24,7 @@ class Workflow:
     """A physically based material: images by their URIs, roughness and metalness from 0 to 1.
 
     Attributes:
-        metalness: None where the other workflow (specular and glossiness) is given.
+        metalness: None if the other workflow (specular and glossiness) is given.
     """
 
     albedo_map: str = ""
@@ -44,7 +44,7 @@ class Workflow:
 
 @dataclass(frozen=True, slots=True)
 class Pbr:
-    """The workflows of a material, of which renderers take the one that they support."""
+    """The workflows of a material, from which a renderer chooses one that it supports."""
 
     metal: Workflow | None = None
     specular: Workflow | None = None
@@ -52,7 +52,7 @@ class Pbr:
 
 @dataclass(frozen=True, slots=True)
 class Shader:
-    """The shader of a material in Gazebo classic: ``vertex``, ``pixel`` or by a normal map."""
+    """The shader of a material in Gazebo classic: ``vertex``, ``pixel`` or one with a normal map."""
 
     type: str = "pixel"
     normal_map: str = ""
@@ -60,17 +60,17 @@ class Shader:
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """The material of a visual; colours and images that are absent are None.
+    """The material of a visual; missing colours and images are None.
 
     Attributes:
         ambient: the colour in the shade.
         diffuse: the colour in the light.
         specular: the colour of highlights.
         emissive: the colour that it emits.
-        shininess: the specular exponent; higher makes highlights narrower.
-        lighting: whether lights change it.
-        double_sided: whether it is visible from inside too.
-        render_order: the surface with the higher order is drawn over another one in the same place.
+        shininess: the specular exponent; higher values make highlights narrower.
+        lighting: whether lights affect it.
+        double_sided: whether it is also visible from inside.
+        render_order: in the same place, a surface with a higher order is drawn over one with a lower order.
         script: a material of a script, which overrides the colours in Gazebo classic.
         pbr: a physically based surface, which overrides everything else in gz-sim.
     """

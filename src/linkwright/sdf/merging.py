@@ -1,4 +1,4 @@
-"""``<include merge="true">``: the parts of one model become parts of another (SDF 1.9).
+"""``<include merge="true">``, which makes the parts of one model parts of another (SDF 1.9).
 
 Source: the proposal "Merge include" of SDFormat and libsdformat's frame ``_merged__NAME__model__``.
 """
@@ -19,7 +19,7 @@ _Posed = TypeVar("_Posed", Link, Frame, Model)
 
 
 def merged(whole: Model, part: Model) -> Model:
-    """Return a model with the parts of another as its own.
+    """Return a model with the parts of another model added to its own.
 
     The parts of the other model are placed in a new frame, which has the other model's pose.
 
@@ -41,12 +41,12 @@ def merged(whole: Model, part: Model) -> Model:
         frames=(*whole.frames, *frames),
         models=(*whole.models, *(_moved(model, frame) for model in part.models)),
         plugins=(*whole.plugins, *part.plugins),
-        includes=(*whole.includes, *part.includes),  # those that lead nowhere
+        includes=(*whole.includes, *part.includes),  # includes that cannot be resolved
     )
 
 
 def _moved(posed: _Posed, frame: str) -> _Posed:
-    """A part whose pose is relative to its model's frame, now relative to the frame that replaces it."""
+    """Return a part whose pose is relative to a frame that replaces its model's frame."""
     pose = posed.pose
     is_attached = isinstance(posed, Frame) and posed.attached_to != ""
     if pose.relative_to == MODEL or (pose.relative_to == "" and not is_attached):
@@ -59,7 +59,10 @@ def _attached(attached: Frame, frame: str) -> Frame:
 
 
 def _connected(joint: Joint, frame: str) -> Joint:
-    """A joint whose ends, pose or axes refer to its model's frame; its pose is relative to its child."""
+    """Return a joint in which a frame replaces the model's frame.
+
+    The pose of the joint is relative to its child.
+    """
     pose = RawPose(joint.pose.pose, frame) if joint.pose.relative_to == MODEL else joint.pose
     return replace(
         joint,
@@ -72,7 +75,7 @@ def _connected(joint: Joint, frame: str) -> Joint:
 
 
 def _turned(axis: Axis | None, frame: str) -> Axis | None:
-    """An axis in the frame of its model."""
+    """Return an axis that refers to the frame of its model."""
     if axis is None or axis.expressed_in != MODEL:
         return axis
     return replace(axis, expressed_in=frame)

@@ -12,7 +12,7 @@ from linkwright.sdf.shapes import Heightmap, Mesh
 
 
 def shapes_of(model: Model) -> Iterator[Visual | Collision]:
-    """All shapes of visuals and collisions of a model and of the models in it."""
+    """Yield all visuals and collisions of a model and its nested models."""
     for link in model.links:
         yield from link.visuals
         yield from link.collisions
@@ -21,7 +21,7 @@ def shapes_of(model: Model) -> Iterator[Visual | Collision]:
 
 
 def mesh_files(models: Iterable[Model], finder: ResourceFinder) -> tuple[Path, ...]:
-    """The existing files of the meshes and heightmaps of models, each once."""
+    """Return the existing mesh and heightmap files of models, each once."""
     found: dict[Path, None] = {}
     for shape in (item for model in models for item in shapes_of(model)):
         if isinstance(shape.geometry, Mesh | Heightmap) and shape.element is not None and shape.element.source:

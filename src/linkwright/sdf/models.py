@@ -1,4 +1,4 @@
-"""``<model>``: links, joints and models in it, and ``<include>``: a model from another file.
+"""``<model>``: links, joints and nested models, and ``<include>``: a model from another file.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``model.sdf``, ``frame.sdf``.
 """
@@ -22,7 +22,7 @@ class Frame:
     """A frame of a model or world.
 
     Attributes:
-        attached_to: the link, joint, frame or model that it moves with; empty for the model or world it is in.
+        attached_to: the link, joint, frame or model with which it moves; empty for the model or world that contains it.
         pose: its pose; relative to `attached_to` by default.
     """
 
@@ -38,12 +38,12 @@ class Include:
 
     Attributes:
         uri: ``model://NAME``, a path or the address of a model.
-        name: its name here; empty for that in the file.
-        pose: its pose here; None for that in the file.
+        name: the name to use; empty for the name in the file.
+        pose: the pose to use; None for the pose in the file.
         static: whether it never moves; None for the setting of the file.
-        placement_frame: the frame in it that `pose` places; empty for that of the model.
-        merge: whether its parts become parts of the model around it (SDF 1.9).
-        plugins: added to those in the file.
+        placement_frame: its frame that is placed at `pose`; empty for the frame of the model.
+        merge: whether its parts become parts of the enclosing model (SDF 1.9).
+        plugins: plugins in addition to those in the file.
     """
 
     uri: str
@@ -61,15 +61,15 @@ class Model:
     """A model.
 
     Attributes:
-        pose: its pose in the frame of the model or world around it.
+        pose: its pose in the frame of the enclosing model or world.
         static: whether it never moves.
         self_collide: whether its links collide with each other.
         allow_auto_disable: whether the engine may put it to sleep when it does not move.
         enable_wind: whether wind moves its links.
-        canonical_link: the link that its frame is attached to; empty for the first.
-        placement_frame: the frame in it that `pose` places; empty for its own.
-        scale: of Gazebo classic's saved worlds, which few readers follow.
-        models: the models in it.
+        canonical_link: the link to which its frame is attached; empty for the first link.
+        placement_frame: its frame that is placed at `pose`; empty for the frame of the model.
+        scale: the scale in worlds that Gazebo classic saved, which few readers support.
+        models: the nested models.
         includes: the models from other files.
     """
 

@@ -20,9 +20,9 @@ class Noise:
         mean: the mean of the noise.
         stddev: the standard deviation.
         bias_mean: the mean of a bias that is drawn once.
-        bias_stddev: its standard deviation.
-        dynamic_bias_stddev: the standard deviation of a bias that wanders.
-        dynamic_bias_correlation_time: how slowly it wanders, in seconds.
+        bias_stddev: the standard deviation of this bias.
+        dynamic_bias_stddev: the standard deviation of a drifting bias.
+        dynamic_bias_correlation_time: the correlation time of the drift, in seconds.
         precision: the step to which quantized values are rounded.
     """
 
@@ -62,12 +62,15 @@ _NOISE_PARTS = (
 
 
 def _noise_of(type: str, old_type: str, **parts: float) -> Noise:  # noqa: A002 - the attribute's name
-    """Read noise; older files name its type by an element, and mere numbers are Gaussian noise, as in Gazebo."""
+    """Read noise in the notation of any version.
+
+    In older files an element names its type, and plain numbers mean Gaussian noise, as in Gazebo.
+    """
     return Noise(old_type or type or ("gaussian" if any(parts.values()) else "none"), **parts)
 
 
 def noise_rule() -> ElementRule:
-    """The rule of an element of noise."""
+    """Return the rule of a noise element."""
     return ElementRule(
         "noise",
         "noise on the value",
@@ -84,7 +87,7 @@ def noise_rule() -> ElementRule:
 
 
 def around_noise(tag: str, meaning: str, target: str = "") -> ElementRule:
-    """The rule of an element that holds nothing but noise."""
+    """Return the rule of an element that contains only noise."""
     inside = replace(noise_rule(), get=_inner)
     return made(_inner, tag, meaning, inside, default=NO_NOISE, field=target or tag)
 
@@ -94,6 +97,6 @@ def _inner(noise: Noise) -> Noise:
 
 
 def noise_xyz(tag: str, meaning: str, absent: NoiseXyz | None = NO_NOISE_XYZ) -> ElementRule:
-    """The rule of an element with noise for each of three components."""
+    """Return the rule of an element with noise for each of three components."""
     parts = (around_noise("x", "along x"), around_noise("y", "along y"), around_noise("z", "along z"))
     return made(NoiseXyz, tag, meaning, *parts, default=absent)

@@ -1,8 +1,8 @@
-"""Translating SDF 1.0 to 1.2 to the elements of SDF 1.3 and later.
+"""Translate SDF 1.0 to 1.2 to the elements of SDF 1.3 and later.
 
 SDF 1.0 wrote values in attributes, ``<origin pose="1 2 0 0 0 0"/>`` and ``<box size="1 1 1"/>``, where later versions
-have elements, ``<pose>1 2 0 0 0 0</pose>`` and ``<box><size>1 1 1</size></box>``. Which value belongs to which element
-follows from the table of the language; a few words were others. Source: ``1_0.convert`` of libsdformat.
+have elements, ``<pose>1 2 0 0 0 0</pose>`` and ``<box><size>1 1 1</size></box>``. The table of the language determines
+which value belongs to which element; a few words had other names. Source: ``1_0.convert`` of libsdformat.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ def is_old(root: Element) -> bool:
 
 
 def upgraded(element: Element, rule: ElementRule) -> Element:
-    """An element translated to SDF 1.3; findings on its parts point to the original ones.
+    """Return an element translated to SDF 1.3; findings on its parts point to the original parts.
 
     Args:
-        element: of SDF 1.0 to 1.2; not changed.
-        rule: the rule of the element in SDF today.
+        element: an element of SDF 1.0 to 1.2, which is not changed.
+        rule: the rule of the element in the current SDF.
     """
     new = Element(element.tag, dict(element.attributes), element.source, element.offset, element.origin)
     new.children = [_child(child, rule) if isinstance(child, Element) else child for child in element.children]
@@ -66,7 +66,7 @@ def _child(child: Element, rule: ElementRule) -> Node:
 
 
 def _value_element(element: Element, rule: ElementRule, value: str) -> Element:
-    """The element for an attribute of another one."""
+    """Return the element that replaces an attribute of another element."""
     new = Element(rule.tag, None, element.source, element.offset, element.origin)
     if "name" in rule.child_rules:
         new.children.append(_value_element(element, rule.child_rules["name"], value))

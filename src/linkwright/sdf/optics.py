@@ -26,11 +26,11 @@ class Optics:
     """The projection of a camera.
 
     Attributes:
-        width, height: in pixels.
+        width, height: the size of the image in pixels.
         fx, fy: focal lengths in pixels.
         cx, cy: the principal point, in pixels from the outer corner of the first pixel, whose centre is at 0.5.
-        near, far: the visible distances along the optical axis, in m.
-        distortion: of the lens; None for a perfect one.
+        near, far: the limits of the visible distance along the optical axis, in m.
+        distortion: the distortion of the lens; None if there is none.
     """
 
     width: int
@@ -45,7 +45,7 @@ class Optics:
 
     @cached_property
     def rays(self) -> Array:
-        """The direction of each pixel, x, y, z with z = 1: shape (height * width, 3)."""
+        """The direction of each pixel, x, y, z with z = 1, shape (height * width, 3)."""
         across = (np.arange(self.width) + 0.5 - self.cx) / self.fx
         down = (np.arange(self.height) + 0.5 - self.cy) / self.fy
         x: Array
@@ -57,7 +57,7 @@ class Optics:
         return rays
 
     def directions(self, axes: Array) -> Array:
-        """The direction of each pixel in other axes: shape (height * width, 3), as 32-bit numbers.
+        """Return the direction of each pixel in other axes, shape (height * width, 3), as 32-bit numbers.
 
         Args:
             axes: right, down and forwards, as columns.
@@ -70,19 +70,19 @@ class Optics:
 
     @cached_property
     def columns(self) -> tuple[float, float]:
-        """The least and the greatest x at z = 1 of all pixels."""
+        """The minimum and maximum x at z = 1 of all pixels."""
         across, _ = self.slopes
         return float(across.min()), float(across.max())
 
     @cached_property
     def rows(self) -> tuple[float, float]:
-        """The least and the greatest y at z = 1 of all pixels."""
+        """The minimum and maximum y at z = 1 of all pixels."""
         _, down = self.slopes
         return float(down.min()), float(down.max())
 
     @cached_property
     def slopes(self) -> tuple[Array, Array]:
-        """The x and y at z = 1 of each pixel: shape (height * width,), float32."""
+        """The x and y at z = 1 of each pixel, both of shape (height * width,), float32."""
         across, down, _ = np.ascontiguousarray(self.rays.T, dtype=np.float32)
         return across, down
 
@@ -91,8 +91,8 @@ class Optics:
         """The six planes of the view frustum, for square pixels without distortion.
 
         Returns:
-            Their outward normals, of length 1, in the axes right, down and forwards: shape (6, 3); and the places of
-            the planes along them, in m: shape (6, 1).
+            Their outward unit normals in the axes right, down and forwards, shape (6, 3), and the offsets of the planes
+            along the normals, in m, shape (6, 1).
         """
         left, right = -self.cx / self.fy, (self.width - self.cx) / self.fy
         top, bottom = -self.cy / self.fy, (self.height - self.cy) / self.fy
@@ -111,12 +111,12 @@ class Optics:
 
     @property
     def is_pinhole(self) -> bool:
-        """Whether this is a pinhole with square pixels."""
+        """Whether this is a pinhole camera with square pixels."""
         return self.distortion is None and self.fx == self.fy
 
     @cached_property
     def pinhole(self) -> Optics:
-        """The optics of a pinhole whose image covers this one."""
+        """The optics of a pinhole camera whose image covers this one."""
         if self.is_pinhole:
             return self
         x, y = self.rays[:, 0], self.rays[:, 1]
@@ -136,7 +136,7 @@ class Optics:
 
     @cached_property
     def sources(self) -> tuple[Array, Array]:
-        """Columns and rows, as fractions, of the pixels of `pinhole` that the pixels of this image show."""
+        """For each pixel of this image, the fractional column and row of the corresponding point in `pinhole`."""
         hole = self.pinhole
         return self.rays[:, 0] * hole.fx + hole.cx - 0.5, self.rays[:, 1] * hole.fy + hole.cy - 0.5
 
@@ -150,7 +150,7 @@ class Optics:
 
 
 def optics_of(camera: Camera) -> Optics:
-    """The optics of a camera of SDF."""
+    """Return the optics of an SDF camera."""
     width, height = max(camera.image.width, 1), max(camera.image.height, 1)
     clip = camera.clip
     nearest = max(clip.near, 1e-3)
@@ -166,7 +166,7 @@ def optics_of(camera: Camera) -> Optics:
 
 
 def distorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
-    """Apply the distortion of a lens to x, y of a pinhole; both at a focal length of 1."""
+    """Apply the distortion of a lens to x and y of a pinhole camera, both at a focal length of 1."""
     square = x * x + y * y
     radial = 1 + square * (lens.k1 + square * (lens.k2 + square * lens.k3))
     across = x * radial + 2 * lens.p1 * x * y + lens.p2 * (square + 2 * x * x)
@@ -175,7 +175,7 @@ def distorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def undistorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
-    """The inverse of `distorted`, by fixed-point iteration."""
+    """Invert `distorted` by fixed-point iteration."""
     across, down = x.copy(), y.copy()
     for _ in range(_TURNS):
         there = distorted(lens, across, down)

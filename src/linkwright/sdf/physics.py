@@ -15,15 +15,15 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Physics:
-    """Time step and solver of the physics engine.
+    """The time step and solver of the physics engine.
 
     Attributes:
-        type: the engine that the author had in mind.
-        default: whether this is the one to take among several.
+        type: the engine for which the file was written.
+        default: whether to use this one if there are several.
         max_step_size: the step in seconds.
-        real_time_factor: how many times faster than real time it shall go at most.
+        real_time_factor: the maximum number of simulated seconds per real second.
         real_time_update_rate: steps per real second in Gazebo classic; 0 for as many as possible.
-        max_contacts: how many points of contact of two shapes count at most.
+        max_contacts: the maximum number of contact points between two shapes.
         gravity: up to SDF 1.5, in m/s2; None if not given.
     """
 

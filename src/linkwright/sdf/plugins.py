@@ -1,4 +1,4 @@
-"""``<plugin>``: a library of the simulator, with parameters of any form."""
+"""``<plugin>``: a library for the simulator, with parameters of any form."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _GZ = re.compile(r"^(gz-sim|ignition-gazebo)[0-9]*-")
 
 @dataclass(frozen=True, slots=True)
 class Plugin:
-    """A plugin: the file of the library, its name (in gz-sim that of the class), the element with the parameters."""
+    """A plugin: the library file, its name (in gz-sim the class name), and the element with the parameters."""
 
     filename: str
     name: str = ""
@@ -38,15 +38,19 @@ PLUGIN = ElementRule(
 
 
 def library_name(filename: str) -> str:
-    """The name of a library without folders, ``lib``, ``.so`` and the version; ``ignition-gazebo-`` is ``gz-sim-``."""
+    """Return the name of a library without folders, ``lib``, ``.so`` and version.
+
+    The prefix ``ignition-gazebo-`` becomes ``gz-sim-``.
+    """
     name = _ENDING.sub("", filename.strip().replace("\\", "/").rpartition("/")[2])
     return _GZ.sub("gz-sim-", name.removeprefix("lib"))
 
 
 def original_library(class_name: str) -> str:
-    """The library that a class comes from: ``ign_ros2_control-system`` for one in the namespace ``ign_ros2_control``.
+    """Return the library that defines a class.
 
-    Vendors ship copies of libraries under names of their own, ``franka_ign_ros2_control-system``, that keep the class.
+    It is ``ign_ros2_control-system`` for the namespace ``ign_ros2_control``. Vendors ship copies of libraries under
+    their own names, ``franka_ign_ros2_control-system``, that keep the class.
     """
     namespace, separator, _ = class_name.strip().partition("::")
     return f"{namespace}-system" if separator else ""

@@ -1,7 +1,8 @@
 """``<population>``: copies of a model, distributed over a box or a cylinder.
 
-Source of the elements: the SDFormat specification 1.12, ``population.sdf``; of the places and names, Gazebo classic's
-``Population.cc``. There `random` and `uniform` are other places with each start; here they are the same with each one.
+Source of the elements: the SDFormat specification 1.12, ``population.sdf``; of the positions and names, Gazebo
+classic's ``Population.cc``. There, `random` and `uniform` give other positions with each start; here the positions are
+always the same.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ _GOLDEN_ANGLE = pi * (3 - sqrt(5))
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """The distribution of models: `rows`, `columns` and `step`, in metres, are those of a grid."""
+    """The distribution of models; `rows`, `columns` and `step`, in metres, describe a grid."""
 
     type: str = "random"
     rows: int = 1
@@ -46,8 +47,8 @@ class Population:
         pose: the pose of the box's centre, of the centre of the cylinder's base, or of the grid.
         models: the repeated model; only the first counts.
         count: the number of copies, unless they form a grid.
-        box: the box around them; None for no box.
-        cylinder: the cylinder around them; None for no cylinder.
+        box: the box that contains them; None for no box.
+        cylinder: the cylinder that contains them; None for no cylinder.
     """
 
     name: str
@@ -61,7 +62,10 @@ class Population:
 
 
 def models_of(population: Population) -> Iterator[Model]:
-    """Yield the models of a population, ``NAME_clone_0`` and so on; none if it has no volume, as in Gazebo."""
+    """Yield the models of a population, ``NAME_clone_0`` and so on.
+
+    A population without volume has none, as in Gazebo.
+    """
     if not population.models:
         return
     model = population.models[0]
@@ -74,7 +78,7 @@ def models_of(population: Population) -> Iterator[Model]:
 
 
 def _half(population: Population) -> Vector3:
-    """The offset from the corner of the volume to its pose, which Gazebo does not rotate."""
+    """Return the offset from the corner of the volume to its pose, which Gazebo does not rotate."""
     distribution = population.distribution
     if distribution.type == "grid":
         x, y, _ = distribution.step

@@ -1,4 +1,4 @@
-"""``<pose>``: a pose as written, with the frame that it is relative to."""
+"""``<pose>``: a pose as written, with the frame to which it is relative."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class RawPose:
 
     Attributes:
         pose: the pose in the frame named by `relative_to`.
-        relative_to: a frame, link, joint or model; empty for the default: the element around it, or for a joint its
+        relative_to: a frame, link, joint or model; empty for the default: the enclosing element, or for a joint its
             child link.
     """
 

@@ -1,7 +1,7 @@
-"""Reads an SDF document into worlds and models, with all of its errors as findings.
+"""Read an SDF document into worlds and models, and report all of its errors as findings.
 
-Like libsdformat, it continues after an error if it can: a missing value has its default, and an invalid value counts as
-missing. If libsdformat refuses the file at that point, the finding is an error.
+Like libsdformat, the reader continues after an error if it can: a missing value has its default, and an invalid value
+counts as missing. If libsdformat refuses the file at that point, the finding is an error.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ class Reading:
 
 
 def read(document: Document) -> Reading:
-    """Read an SDF document; never raises for its content."""
+    """Read an SDF document; its content never raises an error."""
     report = SdfReport()
     root = document.root
     if root.tag != "sdf" and not (root.tag == _OLD_ROOT and "version" in root.attributes):
@@ -140,7 +140,7 @@ def read(document: Document) -> Reading:
 
 
 def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
-    """Read an element of limited depth, with findings on all mistakes in it."""
+    """Read an element of limited depth, and report all mistakes in it."""
     found = reader_of(rule, NEWEST).read(element, element, report)
     flat = _is_flat(element)
     known = list(_known(element, rule))
@@ -157,7 +157,7 @@ def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
 
 
 def is_too_deep(root: Element, report: SdfReport) -> bool:
-    """Return whether an element is nested too deeply to be read, with a finding."""
+    """Return whether an element is nested too deeply to be read, which is also reported."""
     deep = _too_deep(root)
     if deep is not None:
         message = phrase("elements are nested more than {count} deep", count=_DEEPEST)
@@ -178,7 +178,7 @@ def _explain_root(root: Element, report: SdfReport) -> None:
 def _check_version(root: Element, report: SdfReport) -> None:
     written = root.attributes.get("version")
     if written is None:
-        return  # which the reader reports
+        return  # the reader reports it
     found = _VERSION(written.strip())
     if found and int(found[1]) <= NEWEST[1]:
         return
@@ -188,7 +188,7 @@ def _check_version(root: Element, report: SdfReport) -> None:
 
 
 def _too_deep(root: Element) -> Element | None:
-    """The first element that is nested too deeply, or None."""
+    """Return the first element that is nested too deeply, or None."""
     waiting = [(root, 0)]
     while waiting:
         element, depth = waiting.pop()
@@ -199,7 +199,7 @@ def _too_deep(root: Element) -> Element | None:
 
 
 def _known(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementRule]]:
-    """An element and every element in it that SDF has a place for, with its rule, in document order."""
+    """Yield an element and its known descendants, each with its rule, in document order."""
     waiting = [(root, rule)]
     while waiting:
         element, rule = waiting.pop()
@@ -212,24 +212,30 @@ def _known(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementR
 
 
 def _is_let_be(element: Element, rule: ElementRule) -> bool:
-    """Return whether an unknown element is acceptable: it has a prefix, or is a word of SDF without effect here."""
+    """Return whether an unknown element is acceptable.
+
+    It is if it has a prefix, or is an SDF element without effect here.
+    """
     tag = element.tag
     return ":" in tag or tag in WITHOUT_EFFECT.get(rule.tag, ()) or (tag == _FRAME and POSE in rule.children)
 
 
 def _is_flat(root: Element) -> bool:
-    """Return whether names may contain '::': up to SDF 1.7, where included models became part of the including one."""
+    """Return whether names may contain '::'.
+
+    Up to SDF 1.7, included models became part of the including one.
+    """
     return _minor(root) <= _NEWEST_FLAT_MINOR
 
 
 def _minor(root: Element) -> int:
-    """The number behind the point of a file's version; of one that is not known, that of the newest."""
+    """Return the minor number of a file's version; for an unknown version, that of the newest one."""
     found = _VERSION(root.attributes.get("version", "").strip())
     return NEWEST[1] if found is None else int(found[1])
 
 
 def _check_names(element: Element, report: SdfReport, *, flat: bool) -> None:
-    """Report duplicate names, among all that poses may refer to and among shapes and sensors of one kind.
+    """Report duplicate names among targets of poses, and among shapes and sensors of one kind.
 
     Names with a special meaning in poses are reported as well.
     """

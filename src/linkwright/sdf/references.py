@@ -1,4 +1,4 @@
-"""Checking the references of joints and poses by name."""
+"""Check references by name in joints and poses."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.xmltree import Element
 
 
 def check_references(sdf: Sdf) -> list[Diagnostic]:
-    """The findings on references in a file with its includes resolved; each once."""
+    """Return the findings on references in a file with its includes resolved, each once."""
     found: dict[tuple[object, str], Diagnostic] = {}
     inserted = (model for world in sdf.worlds for state in world.states for model in state.insertions.models)
     owners: tuple[World | Model, ...] = (*sdf.worlds, *sdf.models, *inserted)
@@ -46,7 +46,7 @@ def _check(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
             *link.lights,
         )
         for part in parts:
-            # libsdformat looks these up only when needed, and continues if they are missing.
+            # libsdformat resolves these references only when needed, and continues if they are missing.
             yield from (
                 diagnostic.but(severity=Severity.WARNING) for diagnostic in _pose(part.pose, part.element, frames)
             )
@@ -98,7 +98,7 @@ def _pose(pose: RawPose | None, element: Element | None, frames: Frames) -> Iter
 
 
 def _circles(parts: tuple[Frame | Link | Joint | Model, ...], frames: Frames) -> Iterator[Diagnostic]:
-    """The cycles of frames whose poses are relative to each other, each at its first frame."""
+    """Yield findings for the cycles of frames whose poses are relative to each other, each at its first frame."""
     reported: set[frozenset[str]] = set()
     for part in parts:
         circle = _circle_of(part.name, frames)
@@ -113,7 +113,7 @@ def _circles(parts: tuple[Frame | Link | Joint | Model, ...], frames: Frames) ->
 
 
 def _circle_of(name: str, frames: Frames) -> tuple[str, ...]:
-    """The cycle to which the chain of a frame leads; empty for none."""
+    """Return the cycle to which a frame's chain of references leads; empty if there is none."""
     try:
         frames.pose(name)
     except FrameError as error:
@@ -122,7 +122,7 @@ def _circle_of(name: str, frames: Frames) -> tuple[str, ...]:
 
 
 def _is_known(name: str, frames: Frames) -> bool:
-    """Return whether a frame exists, or may exist in a model that could not be included, which has been reported."""
+    """Return whether a frame exists, or may exist in a model whose failed include has been reported."""
     if name in frames:
         return True
     head = name.partition(SEPARATOR)[0]

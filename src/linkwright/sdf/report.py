@@ -1,4 +1,4 @@
-"""Messages on elements of SDF, from their rules and their text."""
+"""Messages about SDF elements, from their rules and their text."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ NEWEST = (1, 12)
 
 
 def described(element: Element) -> Phrase:
-    """An element as messages name it: ``link 'chassis'``, ``<pose>``."""
+    """Return a description of an element for messages: ``link 'chassis'``, ``<pose>``."""
     name = element.attributes.get("name")
     if name is None:
         return phrase("<{tag}>", tag=element.tag)
@@ -39,7 +39,7 @@ def described(element: Element) -> Phrase:
 
 
 class SdfReport(Findings):
-    """Collects the findings of one reading, and words the mistakes that the reader of elements meets."""
+    """Collects the findings of one reading, and formulates messages about the mistakes in elements."""
 
     __slots__ = ("_misspelt", "is_of_classic")
 
@@ -70,7 +70,7 @@ class SdfReport(Findings):
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
         """Report an invalid value; the default is used in its place.
 
-        For a number or a vector, libsdformat reads the beginning of the text and ignores the rest: a
+        For a number or a vector, libsdformat reads the beginning of the text and ignores the rest, so the finding is a
         warning.
         """
         inside = attribute is rule.text
@@ -91,7 +91,7 @@ class SdfReport(Findings):
         return UNREADABLE
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """Do nothing: files of all versions are read by the newest, so that nothing is too new."""
+        """Do nothing: files of all versions are read with the newest rules, so no element is too new."""
         raise AssertionError(f"{rule.tag} {attribute.name} is for some versions only")
 
     def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:
@@ -111,20 +111,23 @@ class SdfReport(Findings):
         )
 
     def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
-        """Do nothing: SDF has no element whose first child decides."""
+        """Do nothing: SDF has no element whose first child determines its meaning."""
         raise AssertionError(rule.tag)
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
-        """Do nothing: SDF has no element whose first child decides."""
+        """Do nothing: SDF has no element whose first child determines its meaning."""
         raise AssertionError(rule.tag)
 
     def unknown_elements(self, elements: Sequence[Element], rule: ElementRule, harmless: Sequence[bool]) -> None:
-        """Report the unknown elements of one place: misspelt and misplaced ones each, the others as one.
+        """Report the unknown elements of one parent.
+
+        Misspelt and misplaced elements are reported separately, the others together.
 
         Args:
             elements: the elements.
-            rule: of the element around them.
-            harmless: of each, whether it would change nothing if it were read: an information, unless it is misspelt.
+            rule: the rule of the parent.
+            harmless: for each element, whether reading it would change nothing; such an element is reported as
+                information, unless it is misspelt.
         """
         known = [child.tag for child in rule.children]
         others: list[Element] = []
@@ -171,7 +174,7 @@ class SdfReport(Findings):
         self.error("SDF111", message, element, "name", hint=hint)
 
     def twice(self, element: Element, first: Element) -> None:
-        """Report siblings of one name."""
+        """Report siblings with the same name."""
         notes: Sequence[Note] = (Note(phrase("first defined here"), first.span()),)
         message = phrase("there are two elements named '{name}' in one place", name=element.attributes.get("name", ""))
         if element.tag == first.tag:
@@ -185,7 +188,7 @@ class SdfReport(Findings):
 
 
 def _filled(text: str, count: int) -> str:
-    """Numbers with 0 for those that are missing; empty where it is not numbers that are missing."""
+    """Return numbers padded with 0 for missing ones; empty if the text is invalid for another reason."""
     try:
         found = numbers(text)
     except ValueError:
@@ -194,7 +197,7 @@ def _filled(text: str, count: int) -> str:
 
 
 def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Phrase:
-    """The place of a value: ``<mass> of link 'arm'``, ``'type' of joint 'elbow'``."""
+    """Return a description of a value's place: ``<mass> of link 'arm'``, ``'type' of joint 'elbow'``."""
     if "name" in element.attributes:
         return phrase("'{name}' of {owner}", name=attribute.name, owner=described(element))
     place = phrase("<{tag}>", tag=rule.tag)
@@ -204,7 +207,7 @@ def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner:
 
 
 def _explained(place: Phrase, text: str, attribute: AttributeRule, element: Element) -> tuple[Phrase, Phrase | None]:
-    """The message and hint for a text that is not a value of the attribute's type."""
+    """Return the message and the hint for a text that is not a value of the attribute's type."""
     values = {"place": place, "value": text}
     if attribute.type in COUNTS:
         return _miscounted(values, text, COUNTS[attribute.type], element)

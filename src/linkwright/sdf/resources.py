@@ -1,4 +1,4 @@
-"""Resolving URIs of models and their files: ``model://``, ``package://``, ``file://``, paths, Fuel addresses."""
+"""Resolve URIs of models and their files: ``model://``, ``package://``, ``file://``, paths, Fuel addresses."""
 
 from __future__ import annotations
 
@@ -57,10 +57,10 @@ class Missing(NamedTuple):
     """The reason why a URI cannot be resolved, and a hint.
 
     Attributes:
-        reason: why.
+        reason: the reason.
         hint: the hint of the message.
-        severity: of a finding about it; an information where the resource is likely to be there for Gazebo, which
-            fetches models by itself or finds them in folders that this machine does not have.
+        severity: the severity of a finding about it; information if Gazebo can probably find the resource, because it
+            downloads models or finds them in folders that this machine does not have.
     """
 
     reason: Phrase
@@ -71,25 +71,25 @@ class Missing(NamedTuple):
 class ResourceFinder:
     """Resolves the URIs of worlds.
 
-    ``model://NAME/PATH`` is looked for as ``NAME/PATH`` in, one after the other,
+    ``model://NAME/PATH`` is searched for as ``NAME/PATH`` in these folders, in this order:
 
     1. the folders of `SEARCH_VARIABLES`,
-    2. those that packages export for it in their ``package.xml`` (``<gazebo_ros gazebo_model_path="..."/>``), or put
-       into these variables by an environment hook,
-    3. the folders that hold packages, so that ``model://PACKAGE/PATH`` works as in gz,
+    2. the folders that packages export for this purpose in their ``package.xml``
+       (``<gazebo_ros gazebo_model_path="..."/>``), or add to these variables by an environment hook,
+    3. the folders that contain packages, so that ``model://PACKAGE/PATH`` works as in gz,
     4. the folder ``models`` of each package,
-    5. our own: ``ground_plane`` and ``sun``,
-    6. the folder of the file that names it and those around it, up to that of its package, and ``models`` in each:
-       launch files put one of these into the variables.
+    5. our own models: ``ground_plane`` and ``sun``,
+    6. the folder of the file that contains the URI and its parents, up to the folder of its package, and ``models`` in
+       each: launch files put one of these into the variables.
 
-    ``file://PATH`` without a third slash is below one of these, or below the folder around one, as in Gazebo classic,
-    or in ``models``, ``media/models`` or ``Media/models`` there.
+    ``file://PATH`` without a third slash is relative to one of these folders, or to its parent, as in Gazebo classic,
+    or to ``models``, ``media/models`` or ``Media/models`` there.
 
-    Nothing is fetched from the network: of models on Fuel only those in the cache of gz are found.
+    Nothing is downloaded: models on Fuel are only found if they are in the cache of gz.
 
     Args:
-        packages: where packages are.
-        environment: the variables; those of the process by default.
+        packages: the finder of packages.
+        environment: the environment variables; by default the variables of the process.
     """
 
     def __init__(self, packages: PackageFinder, environment: Mapping[str, str] | None = None) -> None:
@@ -98,11 +98,11 @@ class ResourceFinder:
         self._near: dict[Path, tuple[Path, ...]] = {}
 
     def file(self, address: str, beside: Path) -> Path | Missing:
-        """The existing file or folder of a URI, or why there is none.
+        """Return the existing file or folder of a URI, or why there is none.
 
         Args:
-            address: as written.
-            beside: the folder of the file that it is written in, from which plain paths start.
+            address: the URI as written.
+            beside: the folder of the file that contains the URI, to which plain paths are relative.
         """
         address = address.strip()
         scheme, colon, rest = address.partition("://")
@@ -123,14 +123,14 @@ class ResourceFinder:
         return path if path.exists() else _no_file(path)
 
     def model(self, address: str, beside: Path) -> Path | Missing:
-        """The SDF file of a model's URI: the file itself, or the newest in its folder."""
+        """Return the SDF file of a model's URI: the file itself, or the newest one in its folder."""
         found = self.file(address, beside)
         if isinstance(found, Missing) or not found.is_dir():
             return found
         return model_file(found)
 
     def models(self) -> dict[str, Path]:
-        """All models on the search path: name of the folder -> the folder; of two of a name the one that is found."""
+        """Return all models on the search path, as folders by their names; the first folder of a name counts."""
         found: dict[str, Path] = {}
         for folder in self._folders:
             with suppress(OSError):
@@ -140,9 +140,9 @@ class ResourceFinder:
         return found
 
     def worlds(self) -> dict[str, Path]:
-        """All worlds on the search path: name of the file without its ending -> the file; of two the first found.
+        """Return all worlds on the search path, as files by their names without suffix; the first one counts.
 
-        They are in the folders in which models are looked for and in folders ``worlds`` of these and of packages.
+        They are searched for in the folders of models, and in the folders ``worlds`` of these and of packages.
         """
         found: dict[str, Path] = {}
         shares = self._packages.packages().values()
@@ -159,7 +159,10 @@ class ResourceFinder:
         return found
 
     def world(self, name: str) -> Path | None:
-        """The file of a world, by its path, its ``file://`` address or its name on the search path; None for none."""
+        """Return the file of a world, or None.
+
+        The name is a path, a ``file://`` address or a name on the search path.
+        """
         file = name.removeprefix("file://")
         path = Path(file if file == name else absolute_path(f"//{file}") or file).expanduser()
         if path.is_file():
@@ -169,7 +172,7 @@ class ResourceFinder:
 
     @cached_property
     def _folders(self) -> tuple[Path, ...]:
-        """The folders in which models are searched, in order, without missing ones."""
+        """The existing folders in which models are searched for, in order."""
         return tuple(dict.fromkeys(path for path in self._places() if path.is_dir()))
 
     def _places(self) -> Iterator[Path]:
@@ -236,7 +239,10 @@ class ResourceFinder:
         return Missing(reason, hint, Severity.INFO)
 
     def _cached(self, address: str) -> Path | Missing:
-        """The folder of a Fuel address in gz's cache: ``HOST/OWNER/models/NAME/VERSION``, in lower case."""
+        """Return the folder of a Fuel address in gz's cache.
+
+        It is ``HOST/OWNER/models/NAME/VERSION``, in lower case.
+        """
         parts = [unquote(part) for part in urlsplit(address).path.split("/") if part]
         host = urlsplit(address).netloc.lower()
         if parts and re.fullmatch(r"[0-9.]+", parts[0]):
@@ -270,7 +276,10 @@ def _is_model(folder: Path) -> bool:
 
 
 def _around(folder: Path) -> tuple[Path, ...]:
-    """Return a folder and its parents: up to the folder of its package, or one parent if it is not in a package."""
+    """Return a folder and its parents.
+
+    They end at the folder of its package, or at one parent if it is not in a package.
+    """
     package = enclosing_package(folder)
     around = (folder, *folder.parents)
     last = 1 if package is None else max(1, around.index(package[1]))
@@ -278,7 +287,10 @@ def _around(folder: Path) -> tuple[Path, ...]:
 
 
 def model_file(folder: Path) -> Path | Missing:
-    """The SDF file of a model's folder: by its ``model.config`` the newest that can be read, or else ``model.sdf``."""
+    """Return the SDF file in a model's folder.
+
+    It is the newest readable one in ``model.config``, or else ``model.sdf``.
+    """
     newest: tuple[int, Path] | None = None
     with suppress(LinkwrightError):
         for element in parse_file(folder / CONFIG).root.elements("sdf"):
@@ -302,7 +314,10 @@ def _holds_world(file: Path) -> bool:
 
 
 def exported_folders(share: Path, attribute: str) -> Iterator[Path]:
-    """The folders that a package exports to Gazebo in its ``package.xml``; ``${prefix}`` is its share folder."""
+    """Yield the folders that a package exports to Gazebo in its ``package.xml``.
+
+    ``${prefix}`` is the share folder of the package.
+    """
     text = ""
     with suppress(OSError):
         text = (share / MANIFEST).read_text(encoding="utf-8", errors="replace")
@@ -317,9 +332,10 @@ def exported_folders(share: Path, attribute: str) -> Iterator[Path]:
 
 
 def hooked_folders(share: Path) -> Iterator[Path]:
-    """The values that environment hooks of a package, and their templates in its sources, give `SEARCH_VARIABLES`.
+    """Yield the folders that a package's environment hooks add to `SEARCH_VARIABLES`.
 
-    Source: ``ament_environment_hooks`` and the ``.dsv`` files of ament: ``prepend-non-duplicate;VARIABLE;PATH``.
+    The templates of hooks in the package's sources are read, too. Source: ``ament_environment_hooks`` and the ``.dsv``
+    files of ament: ``prepend-non-duplicate;VARIABLE;PATH``.
     """
     for file in sorted((*share.glob("*hook*/*.*"), *share.glob("environment/*.dsv"))):
         if _HOOK(file.name):
@@ -330,7 +346,7 @@ def hooked_folders(share: Path) -> Iterator[Path]:
 
 
 def _version_in(place: Path, rest: list[str]) -> Path | None:
-    """Return the folder of a cached version, and the path below it; ``tip`` or no version means the newest."""
+    """Return the folder of a cached version, with the path in it; ``tip`` or no version means the newest."""
     try:
         versions = sorted((int(path.name), path) for path in place.iterdir() if path.name.isdigit())
     except OSError:
@@ -345,19 +361,22 @@ def _version_in(place: Path, rest: list[str]) -> Path | None:
 
 
 def _kind(path: Path) -> str:
-    """The kind of a file, for suggesting similar ones."""
+    """Return the kind of a file, which limits the names that are suggested."""
     suffix = path.suffix.lower()
     return ".sdf" if suffix == ".world" else suffix
 
 
 def _is_ours(folder: Path) -> bool:
-    """Return whether a folder is one of our own models, which replace some of Gazebo's with fewer files."""
+    """Return whether a folder is one of our own models.
+
+    They replace some of Gazebo's models with fewer files.
+    """
     shipped = shipped_folder()
     return folder.is_relative_to(_SHIPPED) or (shipped is not None and folder.absolute().is_relative_to(shipped))
 
 
 def _in_other_case(path: Path) -> Path | None:
-    """The file whose name differs from a missing one's in upper and lower case alone, or None."""
+    """Return a file whose name differs from a missing file's name only in case, or None."""
     with suppress(OSError):
         return next((entry for entry in path.parent.iterdir() if entry.name.casefold() == path.name.casefold()), None)
     return None

@@ -1,7 +1,7 @@
 """``<state>``: the state of a world that Gazebo classic saved.
 
-A saved world has each pose twice: in the models as they were first written, and in ``<state>``, which the simulator
-uses. Poses in a state are in the frame of the world.
+A saved world contains each pose twice: in the models as they were first written, and in ``<state>``, which the
+simulator uses. Poses in a state are in the frame of the world.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from linkwright.sdf.worlds import World
 
 
 def as_saved(world: World) -> World:
-    """A world, with its includes resolved, at its last saved state; a world without one is returned as it is."""
+    """Return a world, with its includes resolved, in its last saved state; unchanged if it has none."""
     if not world.states:
         return world
     state = world.states[-1]
@@ -42,7 +42,7 @@ def _place(frames: Frames, model: Model) -> Transform:
 
 
 def _restored(model: Model, state: ModelState | None, place: Transform) -> Model:
-    """A model at its saved state; `place` is its pose in the world without one."""
+    """Return a model in its saved state; `place` is its pose in the world if it has no state."""
     if state is None:
         return model
     if state.pose is not None:

@@ -1,7 +1,7 @@
-"""Material scripts: Gazebo's own by their names, and ``.material`` files of models.
+"""Material scripts: the materials of Gazebo by their names, and ``.material`` files of models.
 
-Gazebo classic's renderer, Ogre, has materials in scripts of its own language, of which colours and the first image are
-read here. Colours that an SDF file gives beside the name of a material come before those of the script.
+Gazebo classic's renderer, Ogre, has materials in scripts of its own language; only their colours and the first image
+are read here. Colours that an SDF file gives next to the name of a material take precedence over those of the script.
 
 Source: ``gazebo.material`` of Gazebo classic, and Ogre's manual, "Material scripts".
 """
@@ -24,7 +24,7 @@ from linkwright.sdf.worlds import Sdf
 
 
 class Look(NamedTuple):
-    """The colours of a script's material, or None, and its texture, or an empty text."""
+    """The colours of a script's material, None if missing, and its texture, empty if missing."""
 
     ambient: Color | None = None
     diffuse: Color | None = None
@@ -94,12 +94,12 @@ _COLORS = ("ambient", "diffuse", "specular", "emissive")
 
 
 def gazebo_look(name: str) -> Look | None:
-    """The look of one of Gazebo's materials, as ``Gazebo/Grey``; None for another name."""
+    """Return the look of one of Gazebo's materials, such as ``Gazebo/Grey``; None for another name."""
     return _NAMED.get(name.removeprefix(_PREFIX)) if name.startswith(_PREFIX) else None
 
 
 def painted(material: Material, look: Look) -> Material:
-    """A material with the colours and texture of a script, where it has none itself."""
+    """Return a material with missing colours and a missing texture completed from a script."""
     pbr = material.pbr
     if look.image and pbr is None:
         pbr = Pbr(metal=Workflow(albedo_map=look.image))
@@ -114,11 +114,11 @@ def painted(material: Material, look: Look) -> Material:
 
 
 def with_scripts(sdf: Sdf, finder: ResourceFinder) -> Sdf:
-    """A file, with its includes resolved, whose materials have the colours and textures of their scripts.
+    """Return a file, with its includes resolved, whose materials have the looks of their scripts.
 
     Args:
         sdf: the file.
-        finder: where scripts and images are.
+        finder: the finder of scripts and images.
     """
     library = _Library(finder)
     worlds = tuple(replace(world, models=tuple(map(library.model, world.models))) for world in sdf.worlds)
@@ -166,7 +166,7 @@ class _Library:
 
 
 def _image(name: str, script: Path, places: Mapping[str, Path]) -> str:
-    """The path of a texture that a script names, in the folders of the material or near the script."""
+    """Return the path of a texture that a script names, in the folders of the material or near the script."""
     if name:
         for uri, place in places.items():
             if (place / name).is_file():
@@ -186,7 +186,7 @@ def _scripts(place: Path) -> list[Path]:
 
 
 def read_script(text: str) -> dict[str, Look]:
-    """Parse an Ogre script into materials by their names; the first value of each counts."""
+    """Parse an Ogre script into materials by their names; the first value of each property counts."""
     found: dict[str, Look] = {}
     current = ""
     depth = 0
@@ -218,7 +218,7 @@ def _with_word(look: Look, word: str, values: list[str]) -> Look:
 
 
 def _lines(text: str) -> Iterator[list[str]]:
-    """The words of each line that has some, with braces by themselves."""
+    """Yield the words of each line that is not empty, with braces as separate lines."""
     words: list[str] = []
     for match in _WORDS.finditer(text):
         word = match[0]

@@ -1,4 +1,4 @@
-"""``<sensor>``: sensors, their ranges and noise.
+"""``<sensor>``: sensors with their ranges and noise.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``sensor.sdf`` and the files of each kind.
 """
@@ -21,7 +21,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """The rays of a lidar in one direction; angles in radians, from `min_angle` to `max_angle`."""
+    """The rays of a lidar in one direction, from `min_angle` to `max_angle` in radians."""
 
     samples: int = 640
     resolution: float = 1.0
@@ -30,7 +30,7 @@ class Sweep:
 
     @property
     def count(self) -> int:
-        """The number of rays: a resolution multiplies the samples."""
+        """The number of rays: the samples multiplied by the resolution."""
         return max(round(self.samples * self.resolution), 1) if self.resolution > 0 else max(self.samples, 1)
 
     @property
@@ -41,7 +41,7 @@ class Sweep:
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """The least and greatest distance that a sensor measures, and the resolution; metres."""
+    """The minimum and maximum distance that a sensor measures, and the resolution, in metres."""
 
     min: float = 0.0
     max: float = 0.0
@@ -50,7 +50,7 @@ class Reach:
 
 @dataclass(frozen=True, slots=True)
 class Lidar:
-    """A lidar; it looks along x of its frame, horizontal angles are about z and vertical ones upwards."""
+    """A lidar, which looks along x of its frame; horizontal angles are about z, vertical angles positive upwards."""
 
     horizontal: Sweep = Sweep()
     vertical: Sweep = Sweep(1)
@@ -66,7 +66,7 @@ class Imu:
     Attributes:
         angular_velocity: noise in rad/s.
         linear_acceleration: noise in m/s2.
-        enable_orientation: whether it measures its orientation too.
+        enable_orientation: whether it also measures its orientation.
         localization: the reference of the orientation: ``CUSTOM``, ``NED``, ``ENU``, ``NWU``, ``GRAV_UP`` or
             ``GRAV_DOWN``.
         custom_rpy: roll, pitch, yaw of the custom frame, in radians, in the frame `custom_parent_frame`.
@@ -90,7 +90,7 @@ class ContactSensor:
 
 @dataclass(frozen=True, slots=True)
 class Navsat:
-    """A satellite receiver: noise of positions in metres and of velocities in m/s, horizontal and vertical."""
+    """A satellite receiver: horizontal and vertical noise of positions in metres and of velocities in m/s."""
 
     horizontal_position: Noise = NO_NOISE
     vertical_position: Noise = NO_NOISE
@@ -117,7 +117,7 @@ class ForceTorque:
 
 @dataclass(frozen=True, slots=True)
 class Altimeter:
-    """An altimeter: noise of height in metres and of vertical velocity in m/s."""
+    """An altimeter: noise of the height in metres and of the vertical velocity in m/s."""
 
     vertical_position: Noise = NO_NOISE
     vertical_velocity: Noise = NO_NOISE
@@ -157,13 +157,13 @@ class Sensor:
 
     Attributes:
         type: such as ``camera``, ``gpu_lidar``, ``imu``; an unknown type stays as written.
-        pose: in the frame of the link or joint.
+        pose: the pose in the frame of the link or joint.
         update_rate: measurements per second; 0 for one per step.
         always_on: whether it measures without a subscriber.
         visualize: whether its measurements are drawn.
-        topic: its topic; empty for the default one.
-        frame_id: the frame of its messages; empty for the default one.
-        cameras: its cameras; every type except ``multicamera`` has one.
+        topic: its topic; empty for the default topic.
+        frame_id: the frame of its messages; empty for the default frame.
+        cameras: its cameras; every camera type except ``multicamera`` has one.
         plugins: the plugins that publish its measurements in Gazebo classic.
     """
 

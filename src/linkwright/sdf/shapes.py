@@ -23,14 +23,14 @@ class Plane:
 
 @dataclass(frozen=True, slots=True)
 class Ellipsoid:
-    """Semi-axes along x, y, z in metres, centred at the origin."""
+    """An ellipsoid centred at the origin, with its semi-axes along x, y and z in metres."""
 
     radii: Vector3 = (1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Cone:
-    """Along z with its tip above, centred at half its height; metres."""
+    """A cone along z with its tip at the top, centred at half its height; lengths in metres."""
 
     radius: float = 0.5
     length: float = 1.0
@@ -38,7 +38,7 @@ class Cone:
 
 @dataclass(frozen=True, slots=True)
 class Submesh:
-    """One part of a mesh file, by its name there; `center` moves it to the origin."""
+    """A part of a mesh file, by its name in the file; `center` moves it to the origin."""
 
     name: str
     center: bool = False
@@ -46,7 +46,7 @@ class Submesh:
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A mesh file by its URI, scaled along x, y, z; the whole or one submesh."""
+    """A mesh file by its URI, scaled along x, y and z; either all of it or one submesh."""
 
     uri: str
     scale: Vector3 = (1.0, 1.0, 1.0)
@@ -64,7 +64,7 @@ class TerrainTexture:
 
 @dataclass(frozen=True, slots=True)
 class Blend:
-    """The transition between two textures of a heightmap: from a height in metres, over a distance."""
+    """The transition between two textures of a heightmap, from a height over a distance, both in metres."""
 
     min_height: float = 0.0
     fade_dist: float = 0.0
@@ -72,15 +72,15 @@ class Blend:
 
 @dataclass(frozen=True, slots=True)
 class Heightmap:
-    """A ground whose heights are the grey values of an image, or those of an elevation model.
+    """Terrain whose heights are the grey values of an image, or the values of an elevation model.
 
     Attributes:
         uri: the image, with 2^n + 1 pixels along each side.
-        size: the extent along x, y and from the lowest to the highest value.
-        position: the offset of its middle.
-        textures: from the lowest up.
-        blends: between the textures.
-        sampling: how many heights are made of one pixel.
+        size: the extent along x and y, and from the lowest to the highest value.
+        position: the offset of its centre.
+        textures: the textures, from the lowest to the highest.
+        blends: the transitions between the textures.
+        sampling: the number of heights per pixel.
     """
 
     uri: str
@@ -93,7 +93,7 @@ class Heightmap:
 
 @dataclass(frozen=True, slots=True)
 class Image:
-    """A relief: each pixel of an image that is brighter than a threshold becomes a box of a height."""
+    """A relief: each pixel of an image that is brighter than a threshold becomes a box of a given height."""
 
     uri: str
     scale: float = 1.0
@@ -112,7 +112,7 @@ class Polyline:
 
 @dataclass(frozen=True, slots=True)
 class Empty:
-    """No shape."""
+    """An empty geometry without a shape."""
 
 
 NO_SHAPE = Empty()
@@ -135,12 +135,12 @@ Shape = (
 
 
 def _shape(**shapes: Shape | tuple[Polyline, ...] | None) -> Shape:
-    """The shape that is used of several: the first in libsdformat's order, which is that of the table."""
+    """Return the shape to use of several: the first in libsdformat's order, which is that of the table."""
     return next((shape for shape in shapes.values() if shape), NO_SHAPE)
 
 
 def _if(kind: type) -> Callable[[Shape], Shape | None]:
-    """The value to be written for one kind of shape; None for other kinds."""
+    """Return a function that returns a shape of one kind for writing, and None for other kinds."""
     return lambda shape: shape if isinstance(shape, kind) else None
 
 

@@ -13,7 +13,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Sky:
-    """A sky; the time of the day, of sunrise and of sunset in hours."""
+    """A sky; the time of day and the times of sunrise and sunset are in hours."""
 
     time: float = 10.0
     sunrise: float = 6.0
@@ -23,11 +23,11 @@ class Sky:
 
 @dataclass(frozen=True, slots=True)
 class Fog:
-    """Fog.
+    """Fog in a scene.
 
     Attributes:
         color: its colour.
-        type: ``none``, ``linear``, from `start` to `end`, or by `density`: ``constant`` (Gazebo: ``exp``) or
+        type: ``none``, ``linear`` (from `start` to `end`), or by `density`: ``constant`` (Gazebo: ``exp``) or
             ``quadratic`` (``exp2``).
         start: the distance in m at which it begins.
         end: the distance in m beyond which nothing is visible.

@@ -70,9 +70,9 @@ _TEXT = """\
 
 
 def starting_world(name: str) -> str:
-    """A world with ground, light and a box, with comments, that Gazebo classic and gz read.
+    """Return a world with ground, light and a box, with comments, that Gazebo classic and gz can read.
 
     Args:
-        name: the world's.
+        name: the name of the world.
     """
     return _TEXT.format(name=quoteattr(name))

@@ -18,7 +18,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class LinkState:
-    """The state of a link in a saved world, in the frame of the world."""
+    """The state of a link in a saved world; its pose is in the frame of the world."""
 
     name: str
     pose: RawPose | None = None
@@ -26,7 +26,7 @@ class LinkState:
 
 @dataclass(frozen=True, slots=True)
 class ModelState:
-    """The state of a model, its links and nested models in a saved world, in the frame of the world."""
+    """The state of a model, its links and nested models in a saved world, with poses in the frame of the world."""
 
     name: str
     pose: RawPose | None = None
@@ -61,12 +61,12 @@ class Deletions:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """A saved state of a world by Gazebo classic, which overrides the rest of the file.
+    """A state of a world that Gazebo classic saved, which overrides the rest of the file.
 
     Attributes:
-        world_name: the world.
-        sim_time: simulated time in seconds.
-        iterations: how many steps were made.
+        world_name: the name of the world.
+        sim_time: the simulated time in seconds.
+        iterations: the number of steps.
     """
 
     world_name: str = ""

@@ -15,14 +15,14 @@ from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, made, u
 
 @dataclass(frozen=True, slots=True)
 class Friction:
-    """Friction of ODE's pyramid.
+    """Friction with ODE's friction pyramid.
 
     Attributes:
         mu: Coulomb's coefficient along `direction`.
-        mu2: the coefficient across it.
+        mu2: the coefficient perpendicular to it.
         direction: the first direction in the frame of the collision (or of `expressed_in`); zero for any.
-        slip1: how far it slides for each newton along `direction`, in m/s/N.
-        slip2: the same across it.
+        slip1: the slip velocity per force along `direction`, in m/s/N.
+        slip2: the slip velocity per force perpendicular to it, in m/s/N.
         expressed_in: the frame of `direction`.
     """
 
@@ -36,7 +36,7 @@ class Friction:
 
 @dataclass(frozen=True, slots=True)
 class BulletFriction:
-    """Friction for the engine Bullet."""
+    """Friction parameters of the engine Bullet."""
 
     friction: float = 1.0
     friction2: float = 1.0
@@ -45,7 +45,7 @@ class BulletFriction:
 
 @dataclass(frozen=True, slots=True)
 class TorsionalFriction:
-    """Friction against turning on the spot; radii in metres."""
+    """Friction against rotation about the contact normal; radii in metres."""
 
     coefficient: float = 1.0
     use_patch_radius: bool = True
@@ -55,14 +55,14 @@ class TorsionalFriction:
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """Stiffness of a contact.
+    """The stiffness of a contact.
 
     Attributes:
         soft_cfm: the constraint force mixing.
         soft_erp: the fraction of the error that is corrected in a step.
         kp: stiffness in N/m.
         kd: damping in N s/m.
-        max_vel: the maximum speed of correcting an overlap, in m/s.
+        max_vel: the maximum speed at which an overlap is corrected, in m/s.
         min_depth: the overlap that is not corrected, in metres.
     """
 
@@ -79,15 +79,15 @@ class Surface:
     """The contact properties of a collision.
 
     Attributes:
-        friction: friction; None if not given.
-        bullet_friction: the same for the engine Bullet.
+        friction: friction for ODE; None if not given.
+        bullet_friction: friction for the engine Bullet; None if not given.
         torsional: friction against rotation about the normal.
         contact: stiffness; None if not given.
-        restitution: the fraction of the speed after a bounce.
+        restitution: the fraction of the speed that remains after a bounce.
         bounce_threshold: the speed in m/s above which it bounces.
-        collide_without_contact: whether contacts are reported without an effect.
-        collide_bitmask: selects the shapes that it touches: those with a common bit.
-        category_bitmask: the bits that others see.
+        collide_without_contact: whether contacts are reported without having an effect.
+        collide_bitmask: selects the shapes that it touches, by a common bit.
+        category_bitmask: the bits that the masks of other shapes select.
     """
 
     friction: Friction | None = None
@@ -156,7 +156,7 @@ _Group = TypeVar("_Group")
 
 
 def _different(group: _Group, usual: _Group) -> _Group | None:
-    """The value to be written for a group: None where all are defaults."""
+    """Return the value to write for a group, or None if all its values are defaults."""
     return None if group == usual else group
 
 

@@ -1,6 +1,6 @@
-"""Parsing XML as the simulators do, whose parser (TinyXML2) accepts more than XML allows.
+"""Parse XML as the simulators do, whose parser (TinyXML2) accepts more than XML allows.
 
-Blanks and comments before the XML declaration and bytes that are not UTF-8 do not trouble them either.
+The simulators also accept blanks and comments before the XML declaration, and bytes that are not UTF-8.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ _READ_ALL_THE_SAME = phrase("simulators read it all the same; other XML readers 
 def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagnostic, ...]]:
     """Parse a text as Gazebo does, and report each kind of text that XML forbids.
 
-    An error that does not change the content, such as dashes in a comment, is an information: only simulators read
-    these files.
+    An error that does not change the content, such as dashes in a comment, is reported as information, because only
+    simulators read these files.
 
     Raises:
-        LinkwrightError: it is not XML (XML###).
+        LinkwrightError: the text is not XML (XML###).
     """
     warnings: list[Diagnostic] = []
     if isinstance(text, bytes):
@@ -52,7 +52,7 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
 
 
 def _decoded(data: bytes, name: str) -> tuple[str, list[Diagnostic]]:
-    """Decode the text of a file; bytes that are invalid in its encoding are taken for Latin-1."""
+    """Decode the text of a file; bytes that are invalid in its encoding are decoded as Latin-1."""
     try:
         return decode(data, name), []
     except LinkwrightError as error:

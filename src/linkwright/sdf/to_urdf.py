@@ -1,4 +1,4 @@
-"""Converting a model of SDF to a robot of URDF, as ROS does where a robot description is SDF.
+"""Convert a model in SDF to a robot in URDF, as ROS does if a robot description is SDF.
 
 Source: the package sdformat_urdf, which is urdfdom's reader of SDF.
 """
@@ -38,7 +38,7 @@ _AMBIENT, _DIFFUSE = 0.4, 0.8
 
 
 class _NoRobotError(Exception):
-    """A model cannot be a robot; names the element that prevents it."""
+    """Raised when a model cannot become a robot; names the element that prevents it."""
 
     def __init__(self, reason: Phrase, element: Element | None, hint: Phrase | None = None) -> None:
         super().__init__(reason)
@@ -50,16 +50,16 @@ class _NoRobotError(Exception):
 def robot_from_sdf(sdf: Sdf, root: Element) -> Reading:
     """Convert the model of an SDF text to a robot.
 
-    The frame of a link of URDF is that of its parent joint: the parts of a link move with it. Addresses of meshes stay
-    as they are written. Sensors, lights and plugins have no place in the robot.
+    In URDF, the frame of a link is the frame of its parent joint, so the parts of the link are moved. Addresses of
+    meshes are not changed. Sensors, lights and plugins are dropped.
 
     Args:
         sdf: the parsed document, with its includes resolved.
-        root: its element.
+        root: its root element.
 
     Returns:
-        The robot and no findings, or no robot and why (SDF180): it is not one model by itself, links and joints are no
-        tree from the canonical link on, or there are shapes that URDF has not.
+        The robot and no findings, or no robot and the reason (SDF180): the document is not a single model, links and
+        joints do not form a tree from the canonical link, or there are shapes that URDF does not have.
     """
     report = SdfReport()
     try:
@@ -173,7 +173,7 @@ class _Converter:
         )
 
     def _frame(self, link: str, above: dict[str, Joint]) -> Transform:
-        """The pose in the model of the frame that URDF gives a link: that of its joint, or its own."""
+        """Return the pose in the model of the frame that URDF gives a link: its joint's frame, or its own."""
         return self._frames.pose(above[link].name if link in above else link)
 
     def _link(self, link: Link, above: Joint | None) -> urdf.Link:

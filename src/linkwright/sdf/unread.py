@@ -1,4 +1,4 @@
-"""Messages about elements that SDF does not have at their place."""
+"""Messages about elements that SDF does not define at their place."""
 
 from __future__ import annotations
 
@@ -17,13 +17,16 @@ _HARMLESS = frozenset({("collision", "material")})
 
 
 def homes_of(tag: str) -> tuple[str, ...]:
-    """Return the elements in which SDF reads an element; none where it has no such element, or reads it in many."""
+    """Return the parents that SDF allows for an element.
+
+    The result is empty if the element is unknown or has many parents.
+    """
     found = _homes().get(tag, ())
     return tuple(sorted(found)) if len(found) <= _MOST_HOMES else ()
 
 
 def links_of_static_models(elements: Iterable[Element]) -> frozenset[int]:
-    """Return the identities of the links whose models never move anyway."""
+    """Return the IDs of links in models that never move."""
     return frozenset(
         id(link)
         for model in elements
@@ -33,9 +36,9 @@ def links_of_static_models(elements: Iterable[Element]) -> frozenset[int]:
 
 
 def changes_nothing(child: Element, parent: Element, static_links: frozenset[int]) -> bool:
-    """Return whether an element would make no difference if it were read.
+    """Return whether reading an element would make no difference.
 
-    It is empty, repeats the default, or sets an unknown word to zero.
+    This is the case if it is empty, repeats the default, or sets an unknown word to zero.
     """
     if (parent.tag, child.tag) in _HARMLESS or (child.tag == "static" and id(parent) in static_links):
         return True
@@ -59,7 +62,7 @@ def _numbers(text: str) -> list[float]:
 
 @cache
 def _homes() -> dict[str, frozenset[str]]:
-    """Tag -> the tags of the elements in which it is read."""
+    """Return the tags of the allowed parents for each tag."""
     homes: dict[str, set[str]] = {}
     seen: set[int] = set()
     waiting: list[ElementRule] = [SDF]

@@ -1,8 +1,8 @@
-"""Types of values in SDF, and abbreviations for the tables of the language.
+"""Types of values in SDF, and helper functions for the tables of the language.
 
-SDF writes a value as the text of an element: ``<mass>2.5</mass>``. Numbers are separated by blanks of any kind. The
+SDF writes a value as the text of an element: ``<mass>2.5</mass>``. Numbers are separated by whitespace of any kind. The
 syntax of values follows libsdformat's parser (``Param.cc``): it accepts ``inf`` and ``nan`` as numbers, and ``true``,
-``false``, ``1`` or ``0`` in upper or lower case as truth values.
+``false``, ``1`` or ``0`` in upper or lower case as booleans.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ Color = tuple[float, float, float, float]
 
 
 def number(text: str) -> float:
-    """One number.
+    """Parse one number.
 
     Raises:
-        ValueError: it is none.
+        ValueError: the text is not a number.
     """
     if not _NUMBER.fullmatch(text.strip()):
         raise ValueError(text)
@@ -36,17 +36,17 @@ def number(text: str) -> float:
 
 
 def numbers(text: str) -> tuple[float, ...]:
-    """A list of numbers.
+    """Parse a list of numbers.
 
     Raises:
-        ValueError: one of them is none.
+        ValueError: one of them is not a number.
     """
     return tuple(map(number, text.split()))
 
 
 def plain(value: float) -> str:
     """Format a number as briefly as possible without loss."""
-    return repr(float(value) or 0.0).removesuffix(".0")  # -0 is 0
+    return repr(float(value) or 0.0).removesuffix(".0")  # float() or 0.0 also changes -0 to 0
 
 
 def _joined(values: Iterable[float]) -> str:
@@ -54,13 +54,16 @@ def _joined(values: Iterable[float]) -> str:
 
 
 def beginning(text: str) -> float | None:
-    """Return the number at the beginning of a text, as ``std::stod`` in libsdformat does; None if there is none."""
+    """Return the number at the beginning of a text, or None.
+
+    The text is read as by ``std::stod`` in libsdformat.
+    """
     found = _NUMBER.match(text.strip())
     return None if found is None else float(found[0])
 
 
 def beginning_of_vector(text: str, count: int) -> tuple[float, ...] | None:
-    """Return the numbers that a text begins with, which libsdformat takes alone (``>>``); None for too few."""
+    """Return the leading numbers of a text, as libsdformat reads them (``>>``); None if there are too few."""
     found = re.match(rf"\s*{_STREAMED}(?:\s+{_STREAMED}){{{count - 1}}}", text)
     return None if found is None else tuple(map(float, found[0].split()))
 
@@ -104,7 +107,7 @@ def _color(text: str) -> Color:
 
 
 def _time(text: str) -> float:
-    """Parse seconds and nanoseconds, or seconds alone."""
+    """Parse seconds and nanoseconds, or only seconds."""
     found = numbers(text)
     if len(found) == 1:
         return found[0]
@@ -134,7 +137,7 @@ COUNTS = {VECTOR2: 2, VECTOR3: 3, COLOR: 4, POSE: 6}
 
 
 def choice(*names: str) -> ValueType:
-    """The type of an enumeration."""
+    """Return the value type of an enumeration."""
 
     def read(text: str) -> str:
         if text.strip() not in names:
@@ -156,7 +159,7 @@ def value(
     usual: bool = False,
     get: Callable[[Any], Any] | None = None,
 ) -> ElementRule:
-    """An element with one value, as ``<mass>2.5</mass>``."""
+    """Return the rule of an element with one value, such as ``<mass>2.5</mass>``."""
     rule = AttributeRule(
         "text", kind, meaning, unit, required=required, default=default, usual=usual, field=field or tag, get=get
     )
@@ -165,7 +168,7 @@ def value(
 
 
 def values(tag: str, kind: ValueType, meaning: str, *, field: str = "") -> ElementRule:
-    """An element with one value that may occur any number of times."""
+    """Return the rule of an element with one value that may occur any number of times."""
     rule = AttributeRule("text", kind, meaning, field="value", get=_only)
     return ElementRule(tag, meaning, text=rule, many=True, make=_only, field=field or f"{tag}s")
 
@@ -175,21 +178,24 @@ def _only(value: Any) -> Any:
 
 
 def unwritten(_: Any) -> None:
-    """Never written: a synonym of another word."""
+    """Return None, because a synonym of another word is never written."""
 
 
 def name_of(meaning: str = "its name, unique among its kind in the model or world") -> AttributeRule:
-    """The attribute ``name``."""
+    """Return the rule of the attribute ``name``."""
     return AttributeRule("name", TEXT, meaning, required=True, default="")
 
 
 def made(kind: Callable[..., Any], tag: str, meaning: str, *children: ElementRule, **details: Any) -> ElementRule:
-    """Make an object from parts; a mistake in one part leaves the others."""
+    """Return the rule of an element that creates an object from its parts.
+
+    An invalid part does not affect the others.
+    """
     return ElementRule(tag, meaning, children=children, make=kind, keeps=True, **details)
 
 
 def readable(kind: Callable[..., Any]) -> Callable[..., Any]:
-    """Adapt a function of parts, so that empty and unreadable ones of `values` are left out."""
+    """Wrap a factory so that empty and unreadable parts in `values` are left out."""
 
     def make(**parts: Any) -> Any:
         return kind(
@@ -205,10 +211,10 @@ def readable(kind: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def pose_of(found: tuple[float, ...], degrees: bool, rotation_format: str) -> Pose:
-    """The pose of six or seven numbers.
+    """Return the pose given by six or seven numbers.
 
     Raises:
-        ValueError: as many numbers do not go with the format.
+        ValueError: the count of the numbers does not match the format.
     """
     if rotation_format == "quat_xyzw":
         x, y, z, *rest = found
@@ -217,7 +223,7 @@ def pose_of(found: tuple[float, ...], degrees: bool, rotation_format: str) -> Po
         if length == 0.0:
             raise ValueError(found)
         if abs(length - 1.0) < 1e-12:
-            length = 1.0  # a number written by a program keeps every bit
+            length = 1.0  # keeps every bit of a written quaternion
         quaternion: Quaternion = (qx / length, qy / length, qz / length, qw / length)
         return Pose((x, y, z), rpy_from_quaternion(quaternion), quaternion)
     x, y, z, roll, pitch, yaw = found

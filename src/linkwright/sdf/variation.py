@@ -1,4 +1,4 @@
-"""Varying models: masses, friction, noise of sensors."""
+"""Vary models: masses, friction, and noise of sensors."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SCALED_NOISE = ("mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_std
 
 
 def with_mass(model: Model, factor: float) -> Model:
-    """A model with the masses of its links multiplied, of the same shapes: inertias grow as well."""
+    """Return a model with the masses of its links multiplied; inertias grow in proportion."""
 
     def scaled(link: Link) -> Link:
         inertial = link.inertial or Inertial()
@@ -29,7 +29,7 @@ def with_mass(model: Model, factor: float) -> Model:
 
 
 def with_friction(model: Model, coefficient: float) -> Model:
-    """A model with another coefficient of friction, in all its collisions and in all directions."""
+    """Return a model with another coefficient of friction, in all its collisions and all directions."""
 
     def scaled(collision: Collision) -> Collision:
         friction = replace(collision.surface.friction or Friction(), mu=coefficient, mu2=coefficient)
@@ -39,7 +39,7 @@ def with_friction(model: Model, coefficient: float) -> Model:
 
 
 def with_noise(model: Model, factor: float) -> Model:
-    """A model with the noise and bias of its sensors, as written in ``<noise>``, multiplied."""
+    """Return a model with the noise and bias of its sensors, as written in ``<noise>``, multiplied."""
 
     def scaled(noise: Noise) -> Noise:
         return replace(noise, **{name: getattr(noise, name) * factor for name in _SCALED_NOISE})
@@ -48,7 +48,7 @@ def with_noise(model: Model, factor: float) -> Model:
 
 
 def _changed(value: V, kind: type[Any], change: Callable[[Any], Any]) -> V:
-    """A value with all values of a class in it changed; unchanged ones are the same objects."""
+    """Return a value with all contained values of a class changed; unchanged parts are the same objects."""
     if isinstance(value, kind):
         return cast("V", change(value))
     if isinstance(value, tuple):

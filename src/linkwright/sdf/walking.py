@@ -1,7 +1,8 @@
-"""Poses of a figure along its path.
+"""Compute the poses of an actor along its path.
 
-Source: Gazebo's ``common::PoseAnimation``, ``Spline`` and ``RotationSpline``: through the points of a trajectory goes a
-Catmull-Rom spline, whose tangents its tension shortens, and through their rotations a spline of quaternions (squad).
+Source: Gazebo's ``common::PoseAnimation``, ``Spline`` and ``RotationSpline``. The points of a trajectory are
+interpolated by a Catmull-Rom spline, whose tangents are shortened by the tension, and their rotations by a quaternion
+spline (squad).
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ class Walk:
     """A walk along the trajectories of a script, one after the other.
 
     Args:
-        script: when and where it goes.
+        script: the timing and the trajectories of the walk.
     """
 
     def __init__(self, script: Script) -> None:
@@ -32,14 +33,16 @@ class Walk:
 
     @property
     def is_somewhere(self) -> bool:
-        """Whether it has any waypoint."""
+        """Whether the walk has at least one waypoint."""
         return bool(self._legs)
 
     def pose(self, seconds: float) -> Transform:
-        """The pose at a time: that of the first waypoint before the walk, that of the last after one that ends.
+        """Return the pose at a time.
+
+        It is the pose of the first waypoint before the walk, and of the last one after its end.
 
         Args:
-            seconds: of the world's time.
+            seconds: the time of the world.
         """
         if not self._legs:
             return IDENTITY
@@ -64,13 +67,13 @@ class _Key:
 
 
 class _Leg:
-    """The segment of one trajectory."""
+    """A section of the walk that follows one trajectory."""
 
     def __init__(self, trajectory: Trajectory) -> None:
         found = {waypoint.time: transform_of(waypoint.pose.pose) for waypoint in trajectory.waypoints}
         self._times = sorted(found)
         poses = [found[time] for time in self._times]
-        self._times[0] = min(self._times[0], 0.0)  # the walk begins at the first point, whatever its time
+        self._times[0] = min(self._times[0], 0.0)  # the walk starts at the first point, regardless of its time
         stretch = 0.5 * (1.0 - trajectory.tension)
         self._keys = [_key(poses, index, stretch) for index in range(len(poses))]
         self.length = self._times[-1]
@@ -98,7 +101,7 @@ def _key(poses: list[Transform], index: int, stretch: float) -> _Key:
 
 
 def _between(one: _Key, other: _Key, share: float) -> Vector3:
-    """A point of the cubic Hermite curve through two points with tangents there."""
+    """Return a point of the cubic Hermite curve through two points with given tangents."""
     square, cube = share**2, share**3
     first, last = 2 * cube - 3 * square + 1, 3 * square - 2 * cube
     leaving, coming = cube - 2 * square + share, cube - square
@@ -131,7 +134,7 @@ def _slerp(one: Quaternion, other: Quaternion, share: float) -> Quaternion:
 
 
 def _log(turn: Quaternion) -> Vector3:
-    """The logarithm of a rotation: half its angle, along its axis."""
+    """Return the logarithm of a rotation: its axis multiplied by half its angle."""
     x, y, z, w = turn
     if w < 0.0:
         x, y, z, w = -x, -y, -z, -w

@@ -1,4 +1,4 @@
-"""``<world>`` and ``<sdf>``: worlds with their scene, place on earth, atmosphere and roads.
+"""``<world>`` and ``<sdf>``: worlds with their scene, position on earth, atmosphere and roads.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``world.sdf``, ``scene.sdf``.
 """
@@ -36,7 +36,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """The look of a world: light, background, sky, fog; colours are as in `Material`, None means no sky or fog."""
+    """The look of a world: light, background, sky and fog; colours are as in `Material`, None means no sky or fog."""
 
     ambient: Color = (0.4, 0.4, 0.4, 1.0)
     background: Color = (0.7, 0.7, 0.7, 1.0)
@@ -62,7 +62,7 @@ class SphericalCoordinates:
 
 @dataclass(frozen=True, slots=True)
 class Atmosphere:
-    """Temperature in kelvin, how it falls in K/m, and pressure in pascals, at the origin."""
+    """The temperature at the origin in kelvin, its gradient in K/m, and the pressure at the origin in pascals."""
 
     type: str = "adiabatic"
     temperature: float = 288.15
@@ -112,7 +112,7 @@ class World:
 
 @dataclass(frozen=True, slots=True)
 class Sdf:
-    """A file: worlds, or a model, light or actor by itself."""
+    """A file with worlds, or with a single model, light or actor."""
 
     version: str
     worlds: tuple[World, ...] = ()
@@ -123,7 +123,7 @@ class Sdf:
 
 
 def gravity_of(world: World) -> Vector3:
-    """The gravity in m/s2: the world's, that of its physics in old files, or the default."""
+    """Return the gravity in m/s2: from the world, from its physics in old files, or the default."""
     if world.gravity is not None:
         return world.gravity
     physics = physics_of(world)
@@ -131,13 +131,13 @@ def gravity_of(world: World) -> Vector3:
 
 
 def populated(world: World) -> World:
-    """A world with the models of its populations added."""
+    """Return a world with the models of its populations added."""
     more = (model for population in world.populations for model in models_of(population))
     return replace(world, models=(*world.models, *more), populations=())
 
 
 def physics_of(world: World) -> Physics:
-    """The physics in use: the one marked as default, or the first."""
+    """Return the physics in use: the one marked as default, or else the first."""
     return next(
         (physic for physic in world.physics if physic.default), world.physics[0] if world.physics else Physics()
     )

@@ -1,4 +1,4 @@
-"""Writing worlds and models as SDF, so that reading them back gives equal ones."""
+"""Write worlds and models as SDF that gives equal ones when it is read back."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class WrittenModel:
     """A model as part of a world.
 
     Attributes:
-        text: its element.
+        text: the text of its element.
         prefixes: the prefixes of names in it.
     """
 
@@ -36,7 +36,7 @@ class WrittenModel:
 
 
 def save_model_of_world(model: Model) -> WrittenModel:
-    """A model as text for `save_world`, without an include that is resolved."""
+    """Return a model as text for `save_world`, without resolved includes."""
     element = write_element(MODEL, model, _complete)
     return WrittenModel(xmltree.write_element(element, depth=2), frozenset(_prefixes(element)))
 
@@ -44,11 +44,11 @@ def save_model_of_world(model: Model) -> WrittenModel:
 def save_world(world: World, models: Sequence[WrittenModel]) -> str:
     """Return the text that `save` returns for a world, with models that are already written.
 
-    A caller that writes a world after each of many changes thereby writes only the changed models.
+    A caller that writes a world after each of many changes thus only has to write the changed models.
 
     Args:
-        world: without models.
-        models: its models.
+        world: the world without its models.
+        models: the models.
     """
     if not models:
         return save(world)
@@ -59,12 +59,13 @@ def save_world(world: World, models: Sequence[WrittenModel]) -> str:
 
 
 def save(document: Sdf | World | Model) -> str:
-    """Worlds and models as SDF text; defaults are left out, numbers are as short as they can be without loss.
+    """Return worlds and models as SDF text.
 
-    The elements inside plugins, and words of SDF without effect here (``<gui>``), are written as they were read.
+    Defaults are left out, and numbers are as short as possible without loss. The elements inside plugins, and SDF
+    elements without effect here (``<gui>``), are written as they were read.
 
     Args:
-        document: a world, a model or a whole file; without resolved includes.
+        document: a world, a model or a whole file, without resolved includes.
     """
     if isinstance(document, World):
         document = Sdf(VERSION, worlds=(document,))
@@ -76,7 +77,7 @@ def save(document: Sdf | World | Model) -> str:
 
 
 def _element(sdf: Sdf) -> Element:
-    """The element of a whole file, with the namespaces that it declares itself."""
+    """Return the element of a whole file, with the namespaces that it declares."""
     root = write_element(SDF, replace(sdf, version=VERSION), _complete)
     declared = {} if sdf.element is None else sdf.element.attributes
     root.attributes |= {name: value for name, value in declared.items() if name.startswith("xmlns")}
@@ -84,13 +85,13 @@ def _element(sdf: Sdf) -> Element:
 
 
 def _declare(root: Element, more: Iterable[str] = ()) -> None:
-    """Declare the prefixes that a file uses, and others."""
+    """Declare the XML prefixes that a file uses, and additional ones."""
     for prefix in sorted({*_prefixes(root), *more}):
         root.attributes.setdefault(f"xmlns:{prefix}", _PREFIX)
 
 
 def _complete(element: Element, rule: ElementRule, instance: Any) -> None:
-    """Add the parts that no rule of the tables covers."""
+    """Add the parts that the rules of the tables do not cover."""
     read: Element | None = getattr(instance, "element", None)
     if read is None:
         return

@@ -1,4 +1,4 @@
-"""Adding shapes, lights and models to a world."""
+"""Add shapes, lights and models to a world."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LightKind = Literal["point", "directional", "spot"]
 
 @dataclass(frozen=True, slots=True)
 class NewShape:
-    """The defaults of a new shape: metres, kilograms, red green blue; without a mass it is static."""
+    """The defaults of a new shape, in metres, kilograms and red, green, blue; without a mass it is static."""
 
     size: tuple[float, ...]
     colour: tuple[float, float, float]
@@ -66,19 +66,19 @@ _THINGS = ("model", "include", "light", "actor")
 def add_shape(
     world: WorldText, kind: ShapeKind, pose: Sequence[float], size: Sequence[float] = ()
 ) -> tuple[WorldText, str]:
-    """Add a model of one simple shape.
+    """Add a model that consists of one simple shape.
 
     Args:
         world: the world.
-        kind: which shape; walls and ramps are static, the others have a mass of 1 kg.
-        pose: of its middle in the world: x, y, z in m, roll, pitch, yaw in rad.
-        size: see `SimpleShape`; empty for the usual one.
+        kind: the kind of shape; walls and ramps are static, the others have a mass of 1 kg.
+        pose: the pose of its centre in the world: x, y, z in m, roll, pitch, yaw in rad.
+        size: the size as in `SimpleShape`; empty for the default size.
 
     Returns:
-        The world, and the name of the model.
+        The changed world, and the name of the model.
 
     Raises:
-        EditError: the numbers are none that a shape can have.
+        EditError: the numbers are not valid for a shape.
     """
     usual = USUAL[kind]
     wanted = tuple(map(float, size)) or usual.size
@@ -109,10 +109,10 @@ def add_light(world: WorldText, kind: LightKind, pose: Sequence[float]) -> tuple
     """Add a light.
 
     Returns:
-        The world, and the name of the light.
+        The changed world, and the name of the light.
 
     Raises:
-        EditError: the pose is none.
+        EditError: the pose is invalid.
     """
     name = world.free_name(f"{kind}_light")
     light = made("light", writing.pose_element(pose_in_world(pose)), *_LIGHTS[kind], name=name, type=kind)
@@ -120,18 +120,18 @@ def add_light(world: WorldText, kind: LightKind, pose: Sequence[float]) -> tuple
 
 
 def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[WorldText, str]:
-    """Add a model of another file.
+    """Include a model from another file.
 
     Args:
         world: the world.
-        address: ``model://NAME``, or whatever else ``<uri>`` may be.
-        pose: of its frame in the world: x, y, z in m, roll, pitch, yaw in rad.
+        address: ``model://NAME``, or any other value that ``<uri>`` may have.
+        pose: the pose of its frame in the world: x, y, z in m, roll, pitch, yaw in rad.
 
     Returns:
-        The world, and the name of the model here.
+        The changed world, and the name of the model in it.
 
     Raises:
-        EditError: there is no such model, or the pose is none.
+        EditError: there is no such model, or the pose is invalid.
     """
     address = address.strip()
     if not address:

@@ -1,7 +1,7 @@
-"""Changing, copying and deleting the models and lights of a world.
+"""Change, copy and delete the models and lights of a world.
 
-A world that Gazebo classic saved repeats all poses in ``<state>``, and those apply. So a move, a renaming or a
-deletion changes the state too, with the links in it.
+A world that Gazebo classic saved repeats all poses in ``<state>``, and those poses apply. Therefore moving, renaming or
+deleting an entity also changes the state, including its links.
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ _FIRST = ("uri", "name")
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """The properties to be changed; None for those that stay.
+    """The properties to change; None for properties that stay.
 
     Attributes:
-        name: the entity.
-        pose: in the world: x, y, z in m, roll, pitch, yaw in rad.
-        size: of a model that is one simple shape, see `SimpleShape`.
-        new_name: another name.
-        static: whether it never moves.
-        colour: of such a model or a light: red, green, blue, alpha from 0 to 1.
+        name: the name of the entity.
+        pose: the pose in the world: x, y, z in m, roll, pitch, yaw in rad.
+        size: the size of a model that is one simple shape, as in `SimpleShape`.
+        new_name: the new name.
+        static: whether the model never moves.
+        colour: the colour of such a model or of a light: red, green, blue, alpha from 0 to 1.
     """
 
     name: str
@@ -61,14 +61,14 @@ class Change:
 
 
 def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
-    """Change models and lights.
+    """Return a world with changed models and lights.
 
     Args:
         world: the world.
-        changes: which; a name may come once.
+        changes: the changes, at most one for each name.
 
     Raises:
-        EditError: something cannot be changed so.
+        EditError: an entity cannot be changed in this way.
     """
     changes = list(changes)
     values: list[Replacement] = []
@@ -83,18 +83,18 @@ def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
 
 
 def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tuple[WorldText, list[str]]:
-    """Copy models and lights.
+    """Return a world with copies of models and lights.
 
     Args:
         world: the world.
-        names: the entities.
-        offset: x, y, z in m from each to its copy.
+        names: the entities to copy.
+        offset: x, y, z in m from each entity to its copy.
 
     Returns:
-        The world, and the names of the copies.
+        The changed world, and the names of the copies.
 
     Raises:
-        EditError: one is not there or cannot be copied.
+        EditError: an entity does not exist or cannot be copied.
     """
     if len(offset) != 3 or not all(map(isfinite, offset)):
         raise EditError(phrase("an offset has three numbers"))
@@ -112,10 +112,10 @@ def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tup
 
 
 def delete(world: WorldText, names: Iterable[str]) -> WorldText:
-    """Delete models and lights, and their parts of a saved state.
+    """Return a world without the given models and lights, and without their parts of a saved state.
 
     Raises:
-        EditError: one does not exist, or a remaining element refers to it.
+        EditError: an entity does not exist, or a remaining element refers to it.
     """
     gone = {name: world.entity(name) for name in names}
     elements = {id(entity.element) for entity in gone.values()}
@@ -133,10 +133,10 @@ def delete(world: WorldText, names: Iterable[str]) -> WorldText:
 
 
 def pose_in_world(numbers: Sequence[float]) -> Pose:
-    """A pose from the six numbers of a user.
+    """Return a pose from six numbers that a user has entered.
 
     Raises:
-        EditError: they are none.
+        EditError: they do not form a pose.
     """
     if len(numbers) != 6 or not all(map(isfinite, numbers)):
         raise EditError(phrase("a pose has six numbers: x y z roll pitch yaw"))
@@ -145,7 +145,10 @@ def pose_in_world(numbers: Sequence[float]) -> Pose:
 
 
 def pose_of_entity(entity: Entity) -> Pose:
-    """The pose of an entity in the world: exactly the numbers of the file, where they mean that."""
+    """Return the pose of an entity in the world.
+
+    The exact numbers of the file are used if they are in that frame.
+    """
     own = entity.pose
     if own.pose.quaternion is None and not own.relative_to and transform_of(own.pose) == entity.place:
         return own.pose
@@ -156,7 +159,7 @@ def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
     """Return the edits that move an entity to a pose in the world, whatever frame its own pose is given in.
 
     Raises:
-        EditError: that frame does not exist.
+        EditError: the frame of its pose does not exist.
     """
     wanted = transform_of(pose)
     edits = place(entity, _local(world, entity, pose))
@@ -166,7 +169,7 @@ def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
 
 
 def place(entity: Entity, pose: Pose) -> list[Replacement]:
-    """The edits that write the pose of an entity, in the frame that it is given in."""
+    """Return the edits that write the pose of an entity, in the frame in which its pose is given."""
     element = entity.element.first("pose")
     if element is not None:
         return writing.set_pose(element, pose)
@@ -175,19 +178,19 @@ def place(entity: Entity, pose: Pose) -> list[Replacement]:
 
 
 def state_of(world: WorldText, name: str) -> list[Element]:
-    """The part of the last saved state that holds an entity."""
+    """Return the parts of the last saved state that contain an entity."""
     state = world.state
     entries = () if state is None else (*state.elements("model"), *state.elements("light"))
     return [entry for entry in entries if entry.attributes.get("name") == name]
 
 
 def named_in(element: Element, attribute: str | None) -> str:
-    """The name by which an element refers to something."""
+    """Return the name by which an element refers to another one."""
     return element.text().strip() if attribute is None else element.attributes[attribute]
 
 
 def renamed_references(world: WorldText, names: dict[str, str]) -> list[Replacement]:
-    """The edits that rename an entity, or its parts, in everything that refers to them."""
+    """Return the edits that update all references to an entity, or to its parts, for new names."""
     edits: list[Replacement] = []
     for element, attribute in writing.references(world.element):
         written = named_in(element, attribute)
@@ -253,7 +256,7 @@ def _resized(entity: Entity, size: tuple[float, ...]) -> list[Replacement]:
 
 
 def _same_values(owner: Element, new: Element) -> list[Replacement]:
-    """Write the values of a new element into an existing one."""
+    """Return the edits that write the values of a new element into an existing one."""
     edits: list[Replacement] = []
     found = list(owner.elements(new.tag))
     if not found:
@@ -293,7 +296,7 @@ def _coloured(entity: Entity, colour: Sequence[float]) -> list[Replacement]:
             parts = (made("ambient", text), made("diffuse", text))
             edits.append(writing.inserted_in(visual.element, [made("material", *parts)]))
             continue
-        script = material.first("script")  # it would override the colours
+        script = material.first("script")  # the script would override the colours
         missing = [tag for tag in ("ambient", "diffuse") if material.first(tag) is None]
         for tag in ("ambient", "diffuse"):
             if tag not in missing:
@@ -348,7 +351,10 @@ def _named(entity: Entity, name: str) -> list[Replacement]:
 
 
 def _copied(entity: Entity, name: str) -> Replacement:
-    """Return the edit that copies an entity behind it, on separate lines if the entity is on separate lines."""
+    """Return the edit that inserts a copy after an entity.
+
+    The copy is on separate lines if the entity is on separate lines.
+    """
     text, (start, end) = writing.text_of(entity.element), writing.range_of(entity.element)
     copy = text[start:end]
     for edit in sorted(_named(entity, name), key=lambda edit: edit.start, reverse=True):
@@ -358,11 +364,14 @@ def _copied(entity: Entity, name: str) -> Replacement:
     return Replacement(end, end, between + copy)
 
 
-# --- places --------------------------------------------------------------------------------------------------------
+# --- poses ---------------------------------------------------------------------------------------------------------
 
 
 def _with_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Replacement] = ()) -> WorldText:
-    """Edits together with new poses of entities; an entity is moved after the one that its pose is relative to."""
+    """Return the world with edits and new poses.
+
+    Each entity is moved after the one to which its pose is relative.
+    """
     alone = [name for name in poses if not world.entity(name).pose.relative_to]
     edits = [*edits, *(edit for name in alone for edit in moved(world, world.entity(name), poses[name]))]
     world = world.edited(edits)
@@ -372,7 +381,7 @@ def _with_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Replac
 
 
 def _local(world: WorldText, entity: Entity, pose: Pose) -> Pose:
-    """A pose in the world, expressed in the frame in which an entity's pose is given."""
+    """Return a pose in the world, expressed in the frame in which an entity's pose is given."""
     relative_to = entity.pose.relative_to
     placed = entity.model.placement_frame if entity.model is not None else ""
     if isinstance(entity.written, Model | Include):
@@ -390,7 +399,7 @@ def _local(world: WorldText, entity: Entity, pose: Pose) -> Pose:
 
 
 def _state_moved(entry: Element, old: Transform, new: Transform, pose: Pose) -> list[Replacement]:
-    """Move the saved state of an entity, whose parts have poses in the frame of the world as well."""
+    """Return the edits that move an entity in the saved state, whose parts also have poses in the world."""
     by = compose(new, invert(old))
     edits: list[Replacement] = []
     for element in entry.walk():
@@ -410,7 +419,7 @@ def _state_moved(entry: Element, old: Transform, new: Transform, pose: Pose) -> 
 
 
 def _depth(world: WorldText, name: str) -> int:
-    """The length of the chain of frames to which the pose of an entity is relative."""
+    """Return the length of the chain of frames to which the pose of an entity is relative."""
     depth, seen = 0, set[str]()
     entity = world.entities.get(name)
     while entity is not None and entity.name not in seen:

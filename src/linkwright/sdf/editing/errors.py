@@ -1,4 +1,4 @@
-"""The error of edits that a world does not allow."""
+"""The error of edits that cannot be applied to a world."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from linkwright.diagnostics import Phrase
 
 
 class EditError(Exception):
-    """An edit is refused; the text gives the reason, as a sentence without a full stop.
+    """Raised when an edit is refused; the text gives the reason, as a sentence without a full stop.
 
     Attributes:
         message: the text.

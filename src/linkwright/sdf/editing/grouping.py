@@ -1,4 +1,4 @@
-"""Grouping models into one, and ungrouping."""
+"""Group models into one model, and ungroup them."""
 
 from __future__ import annotations
 
@@ -26,17 +26,18 @@ _CDATA = re.compile(r"<!\[CDATA\[.*?\]\]>", re.DOTALL)
 
 
 def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
-    """Make one model of several, which keep their poses in the world; its frame is in the middle of them.
+    """Return a world with several models grouped into one, whose frame is in the middle of them.
 
-    Their entries of a saved state are removed; they get those poses themselves.
+    The models keep their poses in the world. Their entries in a saved state are removed, and the poses from there are
+    written into the models.
 
     Args:
         world: the world.
-        names: the models, two at least.
-        name: of the new one; a free one like it is taken.
+        names: the models, at least two.
+        name: the preferred name of the group, which is changed if it is not free.
 
     Raises:
-        EditError: they cannot be one model.
+        EditError: the models cannot be grouped.
     """
     entities = [world.entity(fromkey) for fromkey in dict.fromkeys(names)]
     _check_group(entities)
@@ -50,7 +51,7 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
         edits += [writing.removed(entry) for entry in state_of(world, entity.name)]
         base = entity.pose.relative_to
         if base.partition(SEPARATOR)[0] in inside and not state_of(world, entity.name):
-            continue  # its pose is relative to another one in the group, and stays so
+            continue  # its pose remains relative to another model in the group
         edits += _placed_in(world, entity, origin)
     edits += renamed_references_outside(world, inside, name)
     text = world.text
@@ -77,13 +78,13 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
 
 
 def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
-    """Replace a model by its parts as models of the world, which keep their poses in the world.
+    """Return a world in which the parts of a model are separate models with the same poses in the world.
 
     Returns:
-        The world, and the names of the parts, which are others where they were taken.
+        The changed world, and the names of the parts, which were changed if they were not free.
 
     Raises:
-        EditError: the model is more than its parts, or another file's.
+        EditError: the model contains more than its parts, or is from another file.
     """
     entity = world.entity(name)
     model = entity.written
@@ -148,7 +149,7 @@ def _check_group(entities: Sequence[Entity]) -> None:
 
 
 def _placed_in(world: WorldText, entity: Entity, origin: Transform) -> list[Replacement]:
-    """Write the pose of an entity in the frame of a group with a pose, so that it stays where it is."""
+    """Return the edits that write an entity's pose relative to a group's origin, so that it does not move."""
     written = pose_of_entity(entity)
     x, y, z = (a - b for a, b in zip(written.xyz, origin[:3], strict=True))
     local = Pose((x, y, z), written.rpy)
@@ -164,7 +165,7 @@ def _placed_in(world: WorldText, entity: Entity, origin: Transform) -> list[Repl
 
 
 def _old_names(entity: Entity, parts: Sequence[Element]) -> list[str]:
-    """The names of parts within their group, in document order: models first, then includes."""
+    """Return the names of parts within their group, in document order: models first, then includes."""
     assert isinstance(entity.written, Model), "groups are models"
     assert entity.model is not None, "groups are models"
     models = [id(model.element) for model in entity.written.models]
@@ -185,7 +186,7 @@ def _names_of(world: WorldText, entity: Entity, parts: Sequence[Element]) -> dic
 def _let_out(
     world: WorldText, entity: Entity, element: Element, old: str, names: dict[str, str], there: Transform
 ) -> list[Replacement]:
-    """The edits in a part of a group that is taken out of it."""
+    """Return the edits in a part of a group that is moved out of the group."""
     assert entity.model is not None, "groups are models"
     model = next(model for model in entity.model.models if model.name == old)
     edits: list[Replacement] = []
@@ -222,12 +223,12 @@ def _let_out(
 
 
 def _shifted(text: str, step: str) -> str:
-    """A text with all lines but the first indented by one step; those in CDATA stay."""
+    """Return a text with all lines except the first indented by one step; CDATA is not changed."""
     return _outside_cdata(text, lambda part: _LINE.sub(step, part))
 
 
 def _unshifted(text: str, step: str) -> str:
-    """The inverse of `_shifted`."""
+    """Return a text with the indentation of `_shifted` removed."""
     pattern = re.compile(rf"(?<=\n){re.escape(step)}")
     return _outside_cdata(text, lambda part: pattern.sub("", part)) if step else text
 

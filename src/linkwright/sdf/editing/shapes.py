@@ -1,7 +1,7 @@
-"""Models of one simple shape: recognising them, making their elements, and their masses.
+"""Models of one simple shape: recognise them, create their elements, and compute their masses.
 
-A wall is a box whose link is called ``wall``. A ramp is a wedge that rises along x, a ``<polyline>`` of three corners
-in a link called ``ramp``: so a file keeps their kind within plain SDF.
+A wall is a box whose link is called ``wall``. A ramp is a wedge that rises along x, a ``<polyline>`` with three corners
+in a link called ``ramp``. In this way, a plain SDF file preserves their kind.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ class SimpleShape:
     """The kind, size and colour of a model of one simple shape.
 
     Attributes:
-        kind: which.
-        size: metres: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere.
+        kind: the kind of shape.
+        size: in metres: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere.
         colour: red, green, blue, alpha from 0 to 1; None if not given.
     """
 
@@ -49,7 +49,7 @@ class SimpleShape:
 
 
 def simple_shape(model: Model) -> SimpleShape | None:
-    """The shape of a model of one link in its frame, whose visuals and collisions are all the same; else None."""
+    """Return the shape of a model with one link whose visuals and collisions all have this shape, else None."""
     if len(model.links) != 1 or model.joints or model.models or model.includes:
         return None
     link = model.links[0]
@@ -99,23 +99,26 @@ def _colour(material: Material | None) -> Color | None:
 
 
 def is_size(kind: str, size: tuple[float, ...]) -> bool:
-    """Return whether numbers are a valid size of a shape."""
+    """Return whether numbers are a valid size for a kind of shape."""
     return len(size) == COUNTS[kind] and all(isfinite(value) and 1e-6 <= value <= 1e6 for value in size)
 
 
 def wedge(size: tuple[float, ...]) -> Polyline:
-    """The outline of a ramp in x and z, as the x and y of a polyline, extruded to its width."""
+    """Return the outline of a ramp as a polyline, which is extruded to its width.
+
+    The x and y of the polyline are the x and z of the ramp.
+    """
     x, y, z = size
     return Polyline(((-x / 2, -z / 2), (x / 2, -z / 2), (x / 2, z / 2)), y)
 
 
 def ramp_pose(size: tuple[float, ...]) -> Pose:
-    """The pose of a ramp's polyline in its link: on its side."""
+    """Return the pose of a ramp's polyline, lying on its side, in its link."""
     return Pose((0.0, size[1] / 2, 0.0), (pi / 2, 0.0, 0.0))
 
 
 def solid(kind: str, size: tuple[float, ...]) -> MassProperties:
-    """Mass, centre of mass and inertia of a solid shape of density 1, in the frame of its link."""
+    """Return the mass, centre of mass and inertia of a solid shape of density 1, in the frame of its link."""
     if kind == "cylinder":
         return shape_properties(Cylinder(*size))
     if kind == "sphere":
@@ -131,14 +134,14 @@ def solid(kind: str, size: tuple[float, ...]) -> MassProperties:
 
 
 def tensor(properties: MassProperties) -> dict[str, str]:
-    """The elements of ``<inertia>`` and their texts."""
+    """Return the child elements of ``<inertia>`` with their texts."""
     inertia = properties.inertia
     places = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
     return {tag: number(float(inertia[at])) for tag, at in places.items()}
 
 
 def number(value: float) -> str:
-    """Format a number with six significant digits, as those of inertia have."""
+    """Format a number with six significant digits, as used for inertias."""
     return plain(float(f"{value:.6g}"))
 
 
@@ -153,14 +156,14 @@ def lengths(values: tuple[float, ...]) -> str:
 
 
 def made(tag: str, *children: Element | str, **attributes: str) -> Element:
-    """Make an element with a text or with children."""
+    """Return a new element with a text or with children."""
     element = Element(tag, attributes)
     element.children.extend(Text(child) if isinstance(child, str) else child for child in children)
     return element
 
 
 def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
-    """Make the ``<inertial>`` of a solid shape with a mass in kg."""
+    """Return the ``<inertial>`` of a solid shape with a mass in kg."""
     properties = solid(kind, size).with_mass(mass)
     parts = [made("mass", number(mass))]
     if properties.center.any():
@@ -170,7 +173,10 @@ def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
 
 
 def geometry(kind: str, size: tuple[float, ...]) -> list[Element]:
-    """Make the ``<geometry>`` of a shape; before it, where the shape is not at its frame's origin, a ``<pose>``."""
+    """Return the ``<geometry>`` of a shape.
+
+    A ``<pose>`` precedes it if the shape is not at the origin of its frame.
+    """
     if kind == "ramp":
         outline = wedge(size)
         points = (made("point", lengths(point)) for point in outline.points)

@@ -1,4 +1,4 @@
-"""The text of a world, with the places and poses of its models and lights."""
+"""The text of a world, with the positions in the text and the poses of its models and lights."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ class Entity:
     Attributes:
         name: its name in the world.
         kind: its kind.
-        element: where it is written.
+        element: the element that declares it.
         written: the parsed element.
-        model: the model, with its includes resolved; None for a light, and for an include that leads nowhere.
+        model: the model, with its includes resolved; None for a light, and for an include that cannot be resolved.
         light: the light; None for a model.
-        place: its frame in the world.
+        place: the pose of its frame in the world.
         shape: its shape, if it is one simple shape in this file.
     """
 
@@ -59,26 +59,26 @@ class Entity:
 
     @property
     def pose(self) -> RawPose:
-        """Its pose as written."""
+        """The entity's pose as written."""
         return self.written.pose or AT_ORIGIN
 
     @property
     def static(self) -> bool:
-        """Whether it is static."""
+        """Whether the entity is static."""
         if self.model is not None:
             return self.model.static
         return isinstance(self.written, Include) and bool(self.written.static)
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """The names of the models in it, if it contains nothing else."""
+        """The names of the models in the entity, if it contains nothing else."""
         if not isinstance(self.written, Model) or self.model is None or self.written.links:
             return ()
         return tuple(model.name for model in self.model.models)
 
 
 class WorldText:
-    """The text of a world with its parsed content; of a file with several worlds, of the first.
+    """The text of a world with its parsed content; in a file with several worlds, of the first world.
 
     Args:
         text: SDF.
@@ -87,13 +87,13 @@ class WorldText:
         reserved: names that new entities cannot have, because the running world uses them.
 
     Attributes:
-        world: the world, with includes resolved and all poses of the last saved state.
-        frames: the frames of that.
+        world: the world, with includes resolved and all poses from the last saved state.
+        frames: the frames of `world`.
         entities: its models and lights by their names, in the order of the text.
 
     Raises:
-        LinkwrightError: it is not XML.
-        EditError: there is no world in it.
+        LinkwrightError: the text is not XML.
+        EditError: the text does not contain a world.
     """
 
     def __init__(self, text: str, path: Path, finder: ResourceFinder, reserved: frozenset[str] = frozenset()) -> None:
@@ -128,14 +128,14 @@ class WorldText:
 
     @property
     def state(self) -> Element | None:
-        """The last saved state, whose poses come before those of the models."""
+        """The last saved state, whose poses take precedence over the poses of the models."""
         return self.world.states[-1].element if self.world.states else None
 
     def entity(self, name: str) -> Entity:
         """Find a model or light by its name.
 
         Raises:
-            EditError: there is none.
+            EditError: there is no such model or light.
         """
         try:
             return self.entities[name]
@@ -143,18 +143,18 @@ class WorldText:
             raise EditError(phrase("there is no '{name}' in the world's file", name=name)) from None
 
     def edited(self, edits: list[Replacement]) -> WorldText:
-        """The world after replacements in its text.
+        """Return the world after replacements in its text.
 
         Raises:
-            EditError: they do not result in a world, which is a mistake of their author.
+            EditError: the result is not a world, which is a mistake in the caller's edits.
         """
         return self.with_text(apply(self.text, edits))
 
     def with_text(self, text: str) -> WorldText:
-        """The same world with another text.
+        """Return the same world with another text.
 
         Raises:
-            EditError: it would be none.
+            EditError: the text is not a world.
         """
         if text == self.text:
             return self
@@ -165,7 +165,7 @@ class WorldText:
             raise EditError(phrase("the text would not be SDF: {reason}", reason=found.message)) from None
 
     def free_name(self, wanted: str, taken: AbstractSet[str] | None = None) -> str:
-        """Return a free name: the preferred one, or that one with a number."""
+        """Return a free name: the preferred name, with a number appended if necessary."""
         taken = self.taken if taken is None else taken
         if wanted not in taken:
             return wanted
@@ -180,7 +180,7 @@ class WorldText:
         """Check the name of a new entity.
 
         Raises:
-            EditError: it is empty, taken, or means something else in SDF.
+            EditError: the name is empty, already used, or has a special meaning in SDF.
         """
         if not name.strip():
             raise EditError(phrase("a name cannot be empty"))
@@ -217,7 +217,7 @@ class WorldText:
             name = written.name or written.uri.strip().rstrip("/").rpartition("/")[2]
             pose = written.pose or AT_ORIGIN
             return Entity(name, "model", element, written, None, None, transform_of(pose.pose), None)
-        return None  # an actor
+        return None  # an actor, which cannot be edited
 
     def _place(self, entity: Model | Light) -> Transform:
         try:

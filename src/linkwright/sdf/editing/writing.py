@@ -1,4 +1,4 @@
-"""Minimal edits that give elements of a world other values."""
+"""Minimal edits that change the values of elements in a world."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ _TRUE = frozenset({"true", "1"})
 
 
 def text_of(element: Element) -> str:
-    """The text of the file that an element is in."""
+    """Return the text of the file that contains an element."""
     assert element.source is not None, "it was read from a text"
     return element.source.text
 
 
 def range_of(element: Element) -> tuple[int, int]:
-    """The range of an element in its text, from its ``<`` to behind its last ``>``.
+    """Return the range of an element in its text, from its ``<`` to the position after its last ``>``.
 
     Raises:
-        EditError: it comes from an entity.
+        EditError: the element comes from an XML entity.
     """
     found = element_range(element)
     if found is None:
@@ -49,7 +49,7 @@ def range_of(element: Element) -> tuple[int, int]:
 
 
 def content_of(element: Element) -> tuple[int, int]:
-    """The range of an element's content; for ``<a/>`` an empty range at its end."""
+    """Return the range of an element's content; for ``<a/>`` an empty range at its end."""
     start, end = range_of(element)
     tag = start_tag_of(element)
     assert tag is not None, "its range is known"
@@ -57,7 +57,7 @@ def content_of(element: Element) -> tuple[int, int]:
 
 
 def set_text(element: Element, value: str) -> list[Replacement]:
-    """Set the text of an element; blanks around it stay."""
+    """Return the edits that set the text of an element; surrounding blanks stay."""
     text, (start, end) = text_of(element), content_of(element)
     tag = start_tag_of(element)
     assert tag is not None, "its content is known"
@@ -70,7 +70,7 @@ def set_text(element: Element, value: str) -> list[Replacement]:
 
 
 def set_numbers(element: Element, numbers: Sequence[float]) -> list[Replacement]:
-    """Set the numbers of an element; those that are equal are left as they are written."""
+    """Return the edits that set the numbers of an element; equal numbers stay as written."""
     text, (start, end) = text_of(element), content_of(element)
     plain = _COMMENT.sub(lambda found: " " * len(found[0]), text[start:end])
     words = list(re.finditer(r"\S+", plain))
@@ -93,13 +93,15 @@ def _has_value(word: str, number: float) -> bool:
 def set_child(
     owner: Element, tag: str, value: str | Sequence[float], *, after: tuple[str, ...] = ()
 ) -> list[Replacement]:
-    """Set the value of a child; a missing one is inserted behind the last of `after`, or at the end.
+    """Return the edits that set the value of a child.
+
+    A missing child is inserted after `after`, or at the end.
 
     Args:
         owner: the element.
-        tag: of the child.
+        tag: the tag of the child.
         value: a text or numbers.
-        after: the tags of those that it is to come behind.
+        after: the tags of the children after which a missing child is inserted.
     """
     child = owner.first(tag)
     if child is not None:
@@ -109,10 +111,13 @@ def set_child(
 
 
 def inserted_in(owner: Element, new: list[Element], *, after: tuple[str, ...] = (), first: bool = False) -> Replacement:
-    """Insert elements into another: behind the last child with a tag of `after`; else at the end, or at the beginning.
+    """Return the edit that inserts elements into another one.
+
+    They are inserted after the last child with a tag in `after`, otherwise at the end, or at the beginning with
+    `first`.
 
     Raises:
-        EditError: the owner comes from an entity.
+        EditError: the owner comes from an XML entity.
     """
     before = [child for child in owner.elements() if child.tag in after]
     edit = inserted(owner, new, after=before[-1] if before else None, first=first)
@@ -122,7 +127,10 @@ def inserted_in(owner: Element, new: list[Element], *, after: tuple[str, ...] = 
 
 
 def set_attribute(element: Element, name: str, value: str) -> list[Replacement]:
-    """Set an attribute, in the quotes that it has; a missing one is inserted behind the others."""
+    """Return the edits that set an attribute, keeping its quotes.
+
+    A missing attribute is inserted after the others.
+    """
     text = text_of(element)
     found = attribute_value_range(text, element.offset, name)
     if found is None:
@@ -137,12 +145,15 @@ def set_attribute(element: Element, name: str, value: str) -> list[Replacement]:
 
 
 def set_reference(element: Element, attribute: str | None, name: str) -> list[Replacement]:
-    """Set the name to which an element refers, in an attribute, or in its text where that is None."""
+    """Return the edits that set the name to which an element refers.
+
+    The name is in an attribute, or in the text of the element if `attribute` is None.
+    """
     return set_text(element, name) if attribute is None else set_attribute(element, attribute, name)
 
 
 def without_attribute(element: Element, name: str) -> list[Replacement]:
-    """Remove an attribute, and the blanks before it."""
+    """Return the edits that remove an attribute, with the blanks before it."""
     text = text_of(element)
     named, found = (each(text, element.offset, name) for each in (attribute_name_range, attribute_value_range))
     if named is None or found is None:
@@ -152,12 +163,12 @@ def without_attribute(element: Element, name: str) -> list[Replacement]:
 
 
 def removed(element: Element) -> Replacement:
-    """Return the edit that removes an element with its content, and its lines if they have nothing else."""
+    """Return the edit that removes an element with its content, and its lines if they contain nothing else."""
     return Replacement(*whole_lines(text_of(element), *range_of(element)), "")
 
 
 def exchanged(element: Element, new: list[Element]) -> Replacement:
-    """Replace an element by others."""
+    """Return the edit that replaces an element by others."""
     if not new:
         return removed(element)
     text, (start, end) = text_of(element), range_of(element)
@@ -167,7 +178,7 @@ def exchanged(element: Element, new: list[Element]) -> Replacement:
 
 
 def set_pose(element: Element, pose: Pose) -> list[Replacement]:
-    """Set the numbers of a ``<pose>``, in the units and the form that it declares."""
+    """Return the edits that set the numbers of a ``<pose>``, in the units and the form that it declares."""
     if element.attributes.get("rotation_format", "").strip() == "quat_xyzw":
         numbers: tuple[float, ...] = (*pose.xyz, *_nearest(element, quaternion_of(pose)))
     elif element.attributes.get("degrees", "").strip().casefold() in _TRUE:
@@ -178,7 +189,7 @@ def set_pose(element: Element, pose: Pose) -> list[Replacement]:
 
 
 def _nearest(element: Element, quaternion: Quaternion) -> Quaternion:
-    """Of the two quaternions of a rotation the one nearer to the written one."""
+    """Return the one of the two quaternions of a rotation that is nearer to the written one."""
     try:
         written = [float(word) for word in element.text().split()[3:]]
     except ValueError:
@@ -190,7 +201,7 @@ def _nearest(element: Element, quaternion: Quaternion) -> Quaternion:
 
 
 def pose_from(transform: Transform) -> Pose:
-    """A transform as a pose with angles, exact where pitch is 90 degrees too."""
+    """Return a transform as a pose with angles, which is exact even where the pitch is 90 degrees."""
     x, y, z, w = transform[3:]
     along, across = 1 - 2 * (y * y + z * z), 2 * (x * y + z * w)
     pitch = atan2(-2 * (x * z - y * w), hypot(along, across))
@@ -202,12 +213,12 @@ def pose_from(transform: Transform) -> Pose:
 
 
 def pose_element(pose: Pose) -> Element:
-    """A new ``<pose>``."""
+    """Return a new ``<pose>`` element."""
     return made("pose", lengths((*pose.xyz, *pose.rpy)))
 
 
 def references(world: Element) -> Iterator[tuple[Element, str | None]]:
-    """The references of a world by name: the element, and its attribute, or None for its text."""
+    """Yield the references by name in a world: the element, and its attribute, or None for its text."""
     for child in world.elements():
         for element in (child, *child.elements("sensor")):
             pose = element.first("pose")
