@@ -1,1 +1,1 @@
-"""Worlds and their robots, moved by MuJoCo."""
+"""Simulate worlds and their robots with MuJoCo."""

@@ -1,4 +1,4 @@
-"""Actuators of joints: motors that hold a velocity, servos that hold a position."""
+"""Joint actuators: motors that hold a velocity, and servos that hold a position."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _SERVO_SPEED = 2.0
 
 
 class Actuated(Protocol):
-    """The part of `Simulation` that actuators use; see there."""
+    """The part of the interface of `Simulation` that actuators use."""
 
     @property
     def scene(self) -> Scene:
-        """The scene whose joints are moved."""
+        """The scene whose joints the actuators move."""
 
     @property
     def model(self) -> Any:
@@ -29,20 +29,20 @@ class Actuated(Protocol):
 
     @property
     def revision(self) -> int:
-        """The number of times that model and data were rebuilt."""
+        """The number of times that the model and the data were rebuilt."""
 
     def renew(self) -> None:
         """Compile MuJoCo's model again if the scene has changed."""
 
     def refresh(self) -> None:
-        """Do the work of `renew`, and compute the values that depend on positions."""
+        """Call `renew`, and compute the values that depend on positions."""
 
     def joint_state(self, name: str) -> tuple[float, float]:
-        """Position and velocity of a joint of one axis."""
+        """Return the position and velocity of a joint with one axis."""
 
 
 class Motor:
-    """A motor of a joint that holds a velocity."""
+    """A motor that holds the velocity of a joint."""
 
     def __init__(self, simulation: Actuated, name: str) -> None:
         self._simulation = simulation
@@ -53,7 +53,7 @@ class Motor:
 
     @property
     def target(self) -> float:
-        """The velocity to be held, in rad/s (m/s)."""
+        """The velocity to hold, in rad/s (m/s)."""
         number = self._actuator()
         return float(self._simulation.data.ctrl[number])
 
@@ -66,7 +66,7 @@ class Motor:
             self._gain = 0.0
 
     def release(self) -> None:
-        """Switch the motor off until a target is set; to be called again after the model has changed."""
+        """Switch the motor off until a target is set; call this again after the model has changed."""
         number = self._actuator()
         gain = float(self._simulation.model.actuator_gainprm[number, 0])
         if gain:
@@ -78,7 +78,7 @@ class Motor:
         model.actuator_gainprm[number, 0], model.actuator_biasprm[number, 2] = gain, -gain
 
     def _actuator(self) -> int:
-        """The index of the actuator in MuJoCo's current model."""
+        """Return the index of the actuator in MuJoCo's current model."""
         simulation = self._simulation
         simulation.renew()
         if self._revision != simulation.revision:
@@ -88,15 +88,15 @@ class Motor:
 
 
 class Servo:
-    """Holds a joint of one axis in a position, and moves it to others.
+    """Holds a joint with one axis at a position, and moves it to others.
 
-    It begins with `Simulation.renew`, so that many servos make one new model.
+    A servo calls `Simulation.renew` on first use, so adding many servos compiles the model only once.
 
     Args:
         simulation: the simulation.
         joint: the name of the joint.
-        name: that of the constraint.
-        speed: how fast it may move in rad/s (m/s).
+        name: the name of the constraint that holds the joint.
+        speed: the maximum speed in rad/s (m/s).
     """
 
     def __init__(self, simulation: Actuated, joint: str, name: str, speed: float) -> None:
@@ -109,7 +109,7 @@ class Servo:
 
     @property
     def model(self) -> str:
-        """The name of the model whose joint it holds."""
+        """The name of the model to which the joint belongs."""
         return self._joint.partition(SEPARATOR)[0]
 
     @property
@@ -119,18 +119,18 @@ class Servo:
         return self._position
 
     def restart(self) -> None:
-        """Hold the joint where it is."""
+        """Hold the joint at its current position."""
         self._position = self._simulation.joint_state(self._joint)[0]
         self._hold()
 
     def release(self) -> None:
-        """Switch the servo off until `restart` or `move`."""
+        """Switch the servo off until `restart` or `move` is called."""
         simulation = self._simulation
         simulation.refresh()
         simulation.data.eq_active[simulation.model.equality(self._name).id] = 0
 
     def move(self, target: float, seconds: float) -> None:
-        """Move to a position within the joint's limits, in rad (m), within a number of seconds."""
+        """Move towards a position in rad (m), within the joint's limits, as far as `seconds` allow."""
         self._simulation.renew()
         model = self._simulation.model
         joint = model.joint(self._joint)

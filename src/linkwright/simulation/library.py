@@ -1,4 +1,4 @@
-"""The library MuJoCo, which the extra ``sim`` brings: version 4, and on Python 3.10 the last that has wheels for it."""
+"""The library MuJoCo, which the extra ``sim`` installs: version 4, or on Python 3.10 the last version with wheels."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from linkwright.diagnostics import missing_extra
 
 @cache
 def load_mujoco() -> Any:
-    """Import the module ``mujoco``, which has no types.
+    """Return the module ``mujoco``, which has no type annotations.
 
     Raises:
-        LinkwrightError: SIM101 it is not installed.
+        LinkwrightError: SIM101, MuJoCo is not installed.
     """
     try:
         import mujoco  # type: ignore[import-untyped, unused-ignore]
@@ -24,4 +24,4 @@ def load_mujoco() -> Any:
 
 
 def _unheard(text: str) -> None:
-    """A handler that drops MuJoCo's warnings: callers find them in its data, and report them."""
+    """Discard a MuJoCo warning: callers find the warnings in MuJoCo's data, and report them."""

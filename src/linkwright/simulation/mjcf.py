@@ -1,4 +1,4 @@
-"""Worlds and models as MJCF, the files of MuJoCo."""
+"""Export worlds and models as MJCF, MuJoCo's file format."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _DEFAULT_RGBA = [0.5, 0.5, 0.5, 1.0]
 
 
 def write_mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnostic]]:
-    """Return a world, or the first model, as MJCF with embedded meshes, and the findings about it.
+    """Return a world, or else the first model, as MJCF with embedded meshes, and the findings.
 
     Raises:
         LinkwrightError: CLI321, MuJoCo rejects the model; SIM101, MuJoCo is not installed.
@@ -39,7 +39,7 @@ def write_mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnosti
 
 
 def _take_images_out(spec: Any, model: Any) -> None:
-    """Replace textures by their mean colours: MJCF refers to image files only."""
+    """Replace textures by their mean colours, because MJCF can only refer to image files."""
     means: dict[str, Any] = {}
     for material in spec.materials:
         (texture,) = {int(number) for number in np.atleast_1d(model.mat_texid[model.material(material.name).id])} - {

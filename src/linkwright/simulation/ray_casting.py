@@ -30,16 +30,16 @@ def cast(
 
     Args:
         model: MuJoCo's model.
-        data: its state.
-        origin: where they begin, shape (3,), in m.
-        rays: their directions, of length 1, shape (rays, 3).
-        groups: the groups of geoms that they hit, shape (GROUPS,).
+        data: MuJoCo's data.
+        origin: the common origin of the rays, shape (3,), in m.
+        rays: the unit vectors of their directions, shape (rays, 3).
+        groups: the groups of geoms that they can hit, shape (GROUPS,).
         apart_from: a body whose geoms they pass through; -1 for none.
-        reach: their greatest length, in m.
+        reach: their maximum length, in m.
         normals: if given, receives the normals of the hit surfaces, shape (rays, 3).
 
     Returns:
-        Distances in m, negative for no hit, and the geoms, -1 for none; each of shape (rays,).
+        Distances in m, negative for no hit, and the geoms, -1 for none; both of shape (rays,).
     """
     mujoco = load_mujoco()
     count = len(rays)

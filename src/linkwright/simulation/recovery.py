@@ -1,11 +1,11 @@
-"""Bodies that begin inside each other part slowly.
+"""Separate bodies slowly that overlap at the start.
 
-MuJoCo's contacts are damped springs: a body that begins 0.3 m inside the ground leaves it at 20 m/s. The same holds for
-joints that begin beyond their limits, and for couplings and loops that do not fit yet. Such a spring may accelerate
-bodies only up to a speed within a step: a depth that results in more is replaced by the depth that results in exactly
-that speed. Smaller depths act unchanged, and bodies at rest bear their load.
+MuJoCo's contacts are damped springs: a body that starts 0.3 m inside the ground leaves it at 20 m/s. The same holds for
+joints that start beyond their limits, and for couplings and loops that do not fit yet. Such a spring may accelerate
+bodies only up to a maximum speed within a step: a depth that results in a higher speed is replaced by the depth that
+results in exactly this speed. Smaller depths act unchanged, and bodies at rest bear their load.
 
-gz's engine DART bounds the speed, too, ODE by ``contact_max_correcting_vel``.
+gz's engine DART also bounds the speed, and ODE does so with ``contact_max_correcting_vel``.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _CALM = 100
 
 
 class Recovery:
-    """Bounds the speed at which bodies part that overlap after a jump: at the start, and where they were put.
+    """Bounds the speed at which bodies separate that overlap at the start or after being placed.
 
     Args:
         model: MuJoCo's model.
@@ -44,15 +44,15 @@ class Recovery:
 
     @property
     def is_expected(self) -> bool:
-        """Whether steps are to be made by `step`."""
+        """Whether the caller has to use `step` for the steps."""
         return self._left > 0
 
     def expect(self) -> None:
-        """Look for overlaps from the next step on, until there is none for some steps."""
+        """Check for overlaps from the next step on, until there have been none for several steps."""
         self._left = _CALM
 
     def step(self) -> None:
-        """Make one step."""
+        """Simulate one step."""
         mujoco, model, data = self._mujoco, self._model, self._data
         mujoco.mj_step1(model, data)
         self._left -= 1
@@ -61,7 +61,7 @@ class Recovery:
         mujoco.mj_step2(model, data)
 
     def _bound(self) -> bool:
-        """Reduce too great depths; return whether there was one."""
+        """Reduce depths that are too large; return whether there were any."""
         model, data, kinds = self._model, self._data, self._mujoco.mjtConstraint
         types, numbers, contacts = data.efc_type, data.efc_id, data.contact
         touching = contacts.efc_address >= 0
@@ -80,12 +80,12 @@ class Recovery:
         return bool(deep.any())
 
     def _most(self, solref: Array, speeds: Array, greatest: Array) -> Array:
-        """The depths in m or rad with which springs are not faster after a step than they may be.
+        """Return the depths in m or rad at which springs do not exceed their maximum speeds after a step.
 
         Args:
             solref: time constants in s and damping ratios; where negative, stiffness and damping. Shape (springs, 2).
-            speeds: at which they get less deep now, in m/s or rad/s.
-            greatest: at which they may.
+            speeds: the speeds at which the depths currently decrease, in m/s or rad/s.
+            greatest: the maximum speeds.
         """
         step = self._model.opt.timestep
         first, second = solref.T

@@ -1,11 +1,12 @@
-"""Time steps of MuJoCo, with restitution: bodies that bounce off each other within a step.
+"""Time steps of MuJoCo with restitution: bodies bounce off each other within a step.
 
-MuJoCo's contacts are soft and absorb the speed of a hard impact: at usual time steps none of their settings lets a ball
-rise as high as its coefficient of restitution requires. So bodies that collide get impulses after the step of the
-collision: Newton's law of impact, with Coulomb's friction.
+MuJoCo's contacts are soft and absorb the speed of a hard impact: at usual time steps, no setting lets a ball rise as
+high as its coefficient of restitution requires. Therefore bodies that collide receive impulses after the step of the
+collision, according to Newton's law of impact with Coulomb friction.
 
-Bodies are also moved to the poses that they would have if they had separated at the moment of contact, not at the end
-of the step, in which they penetrate further: else a ball of 0.2 rose a fifth too low from 1 m.
+Bodies are also moved to the poses that they would have if they had separated at the moment of contact, and not at the
+end of the step, in which they penetrate further. Otherwise a ball with a coefficient of 0.2 rose a fifth too low after
+a fall from 1 m.
 
 Source of the figures: drops of balls, boxes, cylinders and capsules from 0.3, 1 and 3 m, with coefficients of 0.2, 0.5
 and 0.9.
@@ -30,10 +31,10 @@ _ROUNDS = 50
 
 
 class Stepper:
-    """Makes the time steps of a model, with bounces.
+    """Simulates the time steps of a model, with bouncing.
 
-    Both shapes that touch must have a coefficient, and that of the pair is their product, as in gz. It bounces above
-    the lesser of their thresholds, as in Gazebo Classic, if there is one; gz has none.
+    Both shapes in a contact need a coefficient of restitution, and their product applies, as in gz. The pair bounces
+    above the lower of their velocity thresholds, as in Gazebo Classic, if there is one; gz has none.
 
     Args:
         model: MuJoCo's model.
@@ -51,11 +52,11 @@ class Stepper:
         self._recovery = Recovery(model, data)
 
     def expect_overlaps(self) -> None:
-        """Let bodies that overlap now part slowly."""
+        """Separate bodies slowly that overlap now."""
         self._recovery.expect()
 
     def make_steps(self, count: int) -> None:
-        """Make a number of time steps."""
+        """Simulate a number of time steps."""
         while count and (self._bounces or self._recovery.is_expected):
             if self._recovery.is_expected:
                 self._recovery.step()
@@ -68,7 +69,7 @@ class Stepper:
             self._mujoco.mj_step(self._model, self._data, count)
 
     def _push_off(self) -> None:
-        """Give bodies that have just hit each other the velocity with which they bounce off."""
+        """Give bodies that have just hit each other the velocity at which they bounce off."""
         contacts, speeds = self._data.contact, self._data.efc_vel
         geoms, rows = contacts.geom, contacts.efc_address
         share = self._coefficients[geoms].prod(axis=1)
@@ -96,10 +97,10 @@ class Stepper:
         struck = [index for index, _ in hits]
         depths = -contacts.dist[struck] - now[::3] * model.opt.timestep
         since = float(np.clip(depths / -speeds[rows[struck]], 0.0, 2.0 * model.opt.timestep).min())
-        self._mujoco.mj_integratePos(model, data.qpos, gained, since)  # as if they had separated at the contact
+        self._mujoco.mj_integratePos(model, data.qpos, gained, since)  # as if separated at the moment of contact
 
     def _ways(self, contact: Any) -> Array:
-        """The Jacobian of a contact along its normal and tangents, shape (3, degrees of freedom)."""
+        """Return the Jacobian of a contact along its normal and tangents, shape (3, degrees of freedom)."""
         model = self._model
         first, second = (np.zeros((3, model.nv)) for _ in range(2))
         for geom, way in zip(contact.geom, (first, second), strict=True):
@@ -109,11 +110,11 @@ class Stepper:
 
 
 def _fitted(response: Array, speeds: Array, wanted: list[tuple[float, float]]) -> Array:
-    """Impulses along the normals and both tangents of contacts.
+    """Return the impulses along the normals and both tangents of contacts.
 
     Args:
         response: the speed in each direction for an impulse in each, shape (3 contacts, 3 contacts).
-        speeds: those that there are, shape (3 contacts,).
+        speeds: the current speeds, shape (3 contacts,).
         wanted: for each contact the speed of separation, and its friction.
     """
     impulses, speeds = np.zeros(len(speeds)), speeds.copy()

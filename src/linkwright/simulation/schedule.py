@@ -14,7 +14,7 @@ class Task:
     Attributes:
         period: nanoseconds from one call to the next.
         function: the function to call.
-        cancelled: whether it is called no more.
+        cancelled: whether it is no longer called.
     """
 
     period: int
@@ -23,10 +23,10 @@ class Task:
 
 
 class Schedule:
-    """Tasks by simulated time; those that are due at the same time are done in the order in which they were added."""
+    """Tasks in simulated time; tasks that are due at the same time run in the order in which they were added."""
 
     def __init__(self) -> None:
-        self._heap: list[tuple[int, int, Task]] = []  # due time, order among tasks of that time, task
+        self._heap: list[tuple[int, int, Task]] = []  # due time, order among tasks with this time, task
         self._count = 0
 
     @property
@@ -44,7 +44,7 @@ class Schedule:
         return task
 
     def run(self, now: int) -> None:
-        """Call the due tasks; one that is due more than once, because of longer time steps, is called once."""
+        """Call the due tasks, each only once even if longer time steps made it due more than once."""
         while self._heap and self._heap[0][0] <= now:
             due, turn, task = self._heap[0]
             if task.cancelled:
@@ -57,6 +57,6 @@ class Schedule:
             task.function()
 
     def restart(self) -> None:
-        """Restart at time 0."""
+        """Reschedule all tasks for a restart at time 0."""
         self._heap = [(task.period, turn, task) for _, turn, task in self._heap]
         heapify(self._heap)

@@ -1,4 +1,4 @@
-"""A simulated world: time, models that are added and removed, and the state of everything."""
+"""A simulated world: its time, the models that are added and removed, and the state of all parts."""
 
 from __future__ import annotations
 
@@ -35,29 +35,29 @@ _SURELY = _BEYOND * _BEYOND
 
 
 class UnstableError(LinkwrightError):
-    """The simulation has become unstable: a position or velocity is not finite, or beyond all bounds (SIM120)."""
+    """Raised when the simulation is unstable: a position or velocity is not finite, or exceeds all bounds (SIM120)."""
 
 
 class Simulation:
     """A simulated world.
 
-    Nothing here waits or knows real time: `advance` computes as fast as it can, and the same calls give the same bits.
-    One thread at a time may use it.
+    The class never waits and does not use real time: `advance` computes as fast as it can, and the same calls give the
+    same bits. Only one thread at a time may use it.
 
     Args:
-        world: with its includes resolved.
+        world: the world, with its includes resolved.
         finder: finds its meshes.
-        step: the time step in s; that of the world by default.
+        step: the time step in s; by default the time step of the world.
 
     Attributes:
         world: the parsed world, with its includes resolved and its saved state applied.
         finder: finds meshes.
         scene: the moving parts.
-        model, data: MuJoCo's current ones; both are replaced when models are added or removed.
-        revision: how often they were rebuilt.
+        model, data: MuJoCo's current model and data; both are replaced when models are added or removed.
+        revision: the number of times that they were rebuilt.
         time: simulated nanoseconds since the start.
         step: the time step in nanoseconds.
-        schedule: calls at simulated times.
+        schedule: calls functions at simulated times.
     """
 
     def __init__(self, world: World, finder: ResourceFinder, *, step: float | None = None) -> None:
@@ -86,27 +86,27 @@ class Simulation:
         self._bodies: dict[str, int] = {}
         self._joints: dict[str, tuple[int, int]] = {}
         self._pushes: dict[str, dict[str, Array]] = {}
-        self._arriving: list[Servo] = []  # not in MuJoCo's model yet
+        self._arriving: list[Servo] = []  # servos that are not in MuJoCo's model yet
         self._changed = False  # whether the scene differs from MuJoCo's model
-        self._is_reshaped = False  # whether its bodies or joints differ
+        self._is_reshaped = False  # whether the scene's bodies or joints differ from the model
         self._current = False
         self._set_model(*made)
 
     @property
     def seconds(self) -> float:
-        """Simulated seconds since the start."""
+        """The simulated seconds since the start."""
         return self.time / NANOSECONDS_PER_SECOND
 
     def spawn(self, model: Model, name: str, pose: Transform = IDENTITY) -> None:
         """Add a model to the world; all others keep their state.
 
         Args:
-            model: with its includes resolved.
+            model: the model, with its includes resolved.
             name: its name, which no other model has.
-            pose: of its frame in the world.
+            pose: the pose of its frame in the world.
 
         Raises:
-            LinkwrightError: SIM102 there is a model of that name.
+            LinkwrightError: SIM102, there is already a model with this name.
             FrameError: a link cannot be placed.
         """
         self.scene.add(model, name, pose)
@@ -116,7 +116,7 @@ class Simulation:
         """Remove a model from the world.
 
         Raises:
-            KeyError: there is none of that name.
+            KeyError: there is no model with this name.
         """
         for held in self.scene.models[name].structure.links:
             self._pushes.pop(held.link.name, None)
@@ -125,11 +125,13 @@ class Simulation:
         self.set_altered()
 
     def set_world(self, world: World, finder: ResourceFinder) -> None:
-        """Take all but the models from another world: gravity, time step, lights, position on earth.
+        """Adopt everything except the models from another world.
+
+        This includes gravity, time step, lights and the position on earth.
 
         Args:
-            world: with its includes resolved.
-            finder: where its meshes are.
+            world: the other world, with its includes resolved.
+            finder: the finder of its meshes.
         """
         before, self.world, self.finder = self.world, as_saved(world), finder
         self._meshes.look_in(finder)
@@ -139,17 +141,17 @@ class Simulation:
             self.set_altered()
 
     def beside(self, world: World, finder: ResourceFinder) -> Simulation:
-        """A simulation of another world, with the same settings as this one."""
+        """Return a separate simulation of another world, with the settings of this one."""
         return Simulation(world, finder, step=self._given_step)
 
     def place(self, poses: Mapping[str, Transform]) -> None:
-        """Set the initial poses of models, and move them there; their joints stay as they are.
+        """Set the initial poses of models, and move the models there; their joint positions stay.
 
         Args:
-            poses: of the frame of each in the world, by their names.
+            poses: the pose of the frame of each model in the world, by the names of the models.
 
         Raises:
-            KeyError: there is none of such a name.
+            KeyError: there is no model with such a name.
             FrameError: a link cannot be placed.
         """
         for name, pose in poses.items():
@@ -166,21 +168,21 @@ class Simulation:
         self._current = False
 
     def set_moved(self) -> None:
-        """Note that positions or velocities of `data` were set; dependent values are computed when needed."""
+        """Record that positions or velocities in `data` were set; dependent values are computed when needed."""
         self._current = False
 
     def _jumped(self, body: Any) -> None:
-        """Note that a body of MuJoCo's model was put elsewhere, where it may overlap with others."""
+        """Record that a body of MuJoCo's model was moved to a place where it may overlap with others."""
         self._stepper.expect_overlaps()
         self._sleep.stir(int(self.model.body_treeid[body]))
         self._current = False
 
     def set_altered(self) -> None:
-        """Note that the specification of `scene` was changed: it is compiled when the model is needed."""
+        """Record that the specification of `scene` was changed; it is compiled when the model is needed."""
         self._changed = self._is_reshaped = True
 
     def free_links(self, name: str) -> list[str]:
-        """The links of a model that move freely, without a joint to a parent.
+        """Return the links of a model that move freely, without a joint to a parent.
 
         Raises:
             KeyError: there is no such model.
@@ -194,27 +196,27 @@ class Simulation:
         return body.jntnum[0] == 1 and bool(self.model.jnt_type[body.jntadr[0]] == self._mujoco.mjtJoint.mjJNT_FREE)
 
     def add_velocity_motor(self, joint: str, gain: float, limit: float) -> Motor:
-        """Give a joint a motor, as `Scene.add_velocity_motor` does."""
+        """Add a motor to a joint, as `Scene.add_velocity_motor` does."""
         name = self.scene.add_velocity_motor(joint, gain, limit)
         self._changed = True
         return Motor(self, name)
 
     def let_roll(self, joint: str) -> None:
-        """Let a wheel roll without slipping, as driven ones do."""
+        """Let a wheel roll without slipping, as driven wheels do."""
         self.scene.let_roll(joint)
         self._changed = True
 
     def let_slide(self, joint: str) -> None:
-        """Let a wheel slide in all directions; a motor only turns it."""
+        """Let a wheel slide in all directions; its motor then only spins it."""
         self.scene.let_slide(joint)
         self._changed = True
 
     def add_servo(self, joint: str, speed: float = inf) -> Servo:
-        """Add a servo, which holds the position of a joint of one axis.
+        """Add a servo, which holds the position of a joint with one axis.
 
         Args:
             joint: the name of the joint.
-            speed: the greatest speed in rad/s (m/s), if its own limit allows that; 2 without either limit.
+            speed: the maximum speed in rad/s (m/s), unless the joint has a lower limit; 2 if neither limits it.
         """
         servo = Servo(self, joint, self.scene.add_servo(joint), speed)
         self._arriving.append(servo)
@@ -222,7 +224,7 @@ class Simulation:
         return servo
 
     def keep_awake(self, link: str) -> None:
-        """Forbid the tree of a link to fall asleep: no forces are computed for sleeping bodies, and sensors need them.
+        """Keep the tree of a link awake for sensors, because forces are not computed for sleeping bodies.
 
         Raises:
             KeyError: there is no such link.
@@ -247,7 +249,7 @@ class Simulation:
                 servo.restart()
 
     def refresh(self) -> None:
-        """Do the work of `renew`, and compute the values that depend on positions."""
+        """Call `renew`, and compute the values that depend on positions."""
         self.renew()
         if not self._current:
             mujoco, model, data = self._mujoco, self.model, self.data
@@ -259,7 +261,7 @@ class Simulation:
             self._current = True
 
     def _set_model(self, model: Any, data: Any) -> None:
-        """Set another model of MuJoCo and its state."""
+        """Replace MuJoCo's model and data."""
         self.model, self.data = model, data
         self._state: tuple[Array, Array] = data.qpos, data.qvel
         self._stepper = Stepper(model, data)
@@ -269,7 +271,7 @@ class Simulation:
     def reset(self) -> None:
         """Restore the initial state; time restarts at 0."""
         self.refresh()
-        self._solving.restart()  # before: MuJoCo places static bodies only where bodies may sleep
+        self._solving.restart()  # first, because MuJoCo places static bodies only where bodies may sleep
         self._mujoco.mj_resetData(self.model, self.data)
         self._stepper.expect_overlaps()
         self._pushes.clear()
@@ -278,13 +280,13 @@ class Simulation:
         self.schedule.restart()
 
     def advance(self, duration: int) -> None:
-        """Advance simulated time, and run the scheduled calls on the way.
+        """Advance simulated time, calling scheduled functions when they are due.
 
         Args:
-            duration: nanoseconds; whole steps are made until at least these have passed.
+            duration: the minimum time in nanoseconds; it is rounded up to whole steps.
 
         Raises:
-            UnstableError: a value in the simulation is not a number any more. The computation stops.
+            UnstableError: a value in the simulation is no longer finite. The computation stops.
         """
         end = self.time + duration
         while self.time < end:
@@ -294,15 +296,15 @@ class Simulation:
             self.schedule.run(self.time)
 
     def call_every(self, period: int, function: Callable[[], None]) -> Task:
-        """Call a function periodically in simulated nanoseconds; 0 for after every step."""
+        """Call a function periodically; the period is in simulated nanoseconds, 0 for after every step."""
         return self.schedule.add(max(period, self.step), function, self.time)
 
     def _make_steps(self, count: int) -> None:
-        """Make steps at once: the less Python there is between two of them, the nearer it is to MuJoCo alone."""
+        """Simulate steps with as little Python between them as possible, to be nearly as fast as MuJoCo alone."""
         if self._changed:
             self.renew()
         mujoco, (positions, velocities) = self._mujoco, self._state
-        before = positions.tobytes(), velocities.tobytes()  # half the time of a copy into arrays
+        before = positions.tobytes(), velocities.tobytes()  # half the time of copying into arrays
         try:
             self._stepper.make_steps(count)
         except mujoco.FatalError as error:
@@ -311,7 +313,7 @@ class Simulation:
                 Diagnostic("SIM121", phrase("MuJoCo gave up: {said}", said=foreign(reason)))
             ) from None
         self._current = False
-        dot = mujoco.mju_dot  # half the time of a comparison; numpy's warns of overflows
+        dot = mujoco.mju_dot  # half the time of a comparison; numpy's dot warns of overflows
         if not (dot(positions, positions) < _SURELY and dot(velocities, velocities) < _SURELY) and not self._is_sound():
             raise self._unstable(count, np.frombuffer(before[0]), np.frombuffer(before[1]))
         self.time += count * self.step
@@ -320,9 +322,9 @@ class Simulation:
         return all(bool((np.abs(state) < _BEYOND).all()) for state in self._state)
 
     def _unstable(self, count: int, positions: Array, velocities: Array) -> UnstableError:
-        """Go back to the last good state, and step by step to the failure: the fastest body there is reported.
+        """Return the error for a failure, found by stepping again from the last good state.
 
-        The state is left at the last step at which all was well.
+        The error names the fastest body at that step. The state is left at the last step before the failure.
         """
         mujoco, model, data, before = self._mujoco, self.model, self.data, (positions, velocities)
         for _ in range(count):
@@ -344,7 +346,7 @@ class Simulation:
         return UnstableError(Diagnostic("SIM120", message, hint=hint))
 
     def body(self, name: str) -> int:
-        """The index of a link's body in MuJoCo's current model.
+        """Return the index of a link's body in MuJoCo's current model.
 
         Raises:
             KeyError: there is no such link.
@@ -355,7 +357,7 @@ class Simulation:
         return self._bodies[name]
 
     def link_pose(self, name: str) -> Transform:
-        """The pose of a link's frame in the world.
+        """Return the pose of a link's frame in the world.
 
         Raises:
             KeyError: there is no such link.
@@ -366,13 +368,16 @@ class Simulation:
         return x, y, z, qx, qy, qz, qw
 
     def link_velocity(self, name: str) -> tuple[Array, Array]:
-        """The linear velocity of a link's origin in m/s and its angular velocity in rad/s, in the axes of the world."""
+        """Return the linear velocity of a link's origin in m/s and the link's angular velocity in rad/s.
+
+        Both are in the axes of the world.
+        """
         body, result = self.body(name), np.zeros(6)
         self._mujoco.mj_objectVelocity(self.model, self.data, self._mujoco.mjtObj.mjOBJ_XBODY, body, result, 0)
         return result[3:], result[:3]
 
     def mass_of(self, name: str) -> float:
-        """The mass of a model in kg: of all that moves with its first link.
+        """Return the mass in kg of everything in a model that moves with its first link.
 
         Raises:
             KeyError: there is no such model.
@@ -381,7 +386,7 @@ class Simulation:
         return float(self.model.body_subtreemass[self.model.body(self._root(name)[0]).id])
 
     def wheel_radius(self, link: str) -> float | None:
-        """The radius in m of a rolling wheel's collisions; None if they are not round.
+        """Return the radius in m of a rolling wheel's collisions; None if they are not round.
 
         Raises:
             KeyError: there is no such link.
@@ -392,7 +397,7 @@ class Simulation:
         for geom in range(body.geomadr[0], body.geomadr[0] + body.geomnum[0]):
             if model.geom_group[geom] != COLLISION_GROUP:
                 continue
-            kind = int(model.geom_type[geom])  # numpy's own integers are never found among MuJoCo's kinds
+            kind = int(model.geom_type[geom])  # numpy's integers are never equal to MuJoCo's enum members
             if kind == kinds.mjGEOM_ELLIPSOID:
                 radii.append(float(np.median(model.geom_size[geom])))
             elif kind in (kinds.mjGEOM_SPHERE, kinds.mjGEOM_CYLINDER):
@@ -400,12 +405,12 @@ class Simulation:
         return max(radii, default=None)
 
     def model_pose(self, name: str) -> Transform:
-        """The pose of a model's frame in the world; it moves with the first link."""
+        """Return the pose of a model's frame in the world; the frame moves with the first link."""
         root, offset = self._root(name)
         return compose(self.link_pose(root), invert(offset))
 
     def moves_freely(self, name: str) -> bool:
-        """Return whether a model is fixed neither to the world nor to another one.
+        """Return whether a model is fixed neither to the world nor to another model.
 
         Raises:
             KeyError: there is no such model.
@@ -414,11 +419,11 @@ class Simulation:
         return self._is_free(self._root(name)[0])
 
     def set_model_pose(self, name: str, pose: Transform) -> None:
-        """Set the pose of a model, with zero velocity. Kinematic links move only so.
+        """Set the pose of a model, with zero velocity. This is the only way to move kinematic links.
 
         Raises:
             KeyError: there is no such model.
-            LinkwrightError: SIM103 it cannot be moved, as it is fixed to the world or hangs on another model.
+            LinkwrightError: SIM103, the model is fixed to the world or attached to another model.
         """
         self.refresh()
         scene_model = self.scene.models[name]
@@ -443,7 +448,7 @@ class Simulation:
         self._jumped(self.body(root))
 
     def set_model_velocity(self, name: str, linear: Vector3, angular: Vector3) -> None:
-        """Set the velocity of the first link of a free model: m/s, rad/s, in the axes of the world.
+        """Set the velocity of the first link of a free model, in m/s and rad/s, in the axes of the world.
 
         Raises:
             KeyError: there is no such model, or it does not move freely.
@@ -456,18 +461,18 @@ class Simulation:
         self._current = False
 
     def _root(self, name: str) -> tuple[str, Transform]:
-        """The first link of a model, and its pose in the frame of the model."""
+        """Return the first link of a model, and its pose in the frame of the model."""
         model = self.scene.models[name]
         first = model.structure.links[0].link
         return first.name, compose(invert(model.pose), first.pose)
 
     def joint_state(self, name: str) -> tuple[float, float]:
-        """Position and velocity of a joint of one axis, in rad and rad/s or m and m/s.
+        """Return the position and velocity of a joint with one axis, in rad and rad/s or m and m/s.
 
         Raises:
             KeyError: there is no such joint, or it does not move.
         """
-        if self._is_reshaped:  # not for motors: each of a hundred robots would recompile the model
+        if self._is_reshaped:  # not for motors: otherwise each of a hundred robots would recompile the model
             self.renew()
         place = self._joints.get(name)
         if place is None:
@@ -477,14 +482,14 @@ class Simulation:
         return positions.item(place[0]), velocities.item(place[1])
 
     def set_joint_position(self, name: str, position: float) -> None:
-        """Set the position of a joint of one axis, with zero velocity."""
+        """Set the position of a joint with one axis, with zero velocity."""
         self.refresh()
         joint = self.data.joint(name)
         joint.qpos[0], joint.qvel[0] = position, 0.0
         self._jumped(self.model.jnt_bodyid[joint.id])
 
     def push_joint(self, name: str, force: float) -> None:
-        """Set the torque in N m (force in N) on a joint of one axis; it acts until it is set again.
+        """Set the torque in N m (force in N) on a joint with one axis; it acts until it is set again.
 
         It is bounded by the joint's ``<effort>``, and by the force that reaches its ``<velocity>`` within a step.
         """
@@ -492,7 +497,10 @@ class Simulation:
         self.data.joint(name).qfrc_applied[0] = self._bounded(name, force)
 
     def _bounded(self, name: str, force: float) -> float:
-        """Return a force on a joint within its limits, as in gz's engine DART; limits of 0 and less do not count."""
+        """Return a joint force within the joint's limits, as in gz's engine DART.
+
+        Limits of 0 or less are ignored.
+        """
         model, speed_limit = self.model, self.scene.speed_limit(name)
         number = model.joint(name).id
         if model.jnt_actfrclimited[number]:
@@ -501,7 +509,7 @@ class Simulation:
         if isfinite(speed_limit):
             _, speed = self.joint_state(name)
             mass = 1.0 / float(model.dof_invweight0[model.jnt_dofadr[number]])
-            needed = mass * NANOSECONDS_PER_SECOND / self.step  # for a difference of 1 rad/s (1 m/s) within a step
+            needed = mass * NANOSECONDS_PER_SECOND / self.step  # for a change of 1 rad/s (1 m/s) within a step
             force = min(max(force, min(-(speed_limit + speed) * needed, 0.0)), max((speed_limit - speed) * needed, 0.0))
         return force
 
@@ -523,7 +531,7 @@ class Simulation:
         self.data.body(link).xfrc_applied[:] = sum(acting.values())
 
     def set_gravity(self, gravity: Vector3) -> None:
-        """Set gravity, in m/s2 in the axes of the world."""
+        """Set the gravity in m/s2, in the axes of the world."""
         self.refresh()
         self.scene.spec.option.gravity = gravity
         self.model.opt.gravity[:] = gravity
@@ -531,5 +539,5 @@ class Simulation:
 
 
 def _outlook(world: World) -> tuple[object, ...]:
-    """Return the properties of a world whose change rebuilds MuJoCo's model, or its images."""
+    """Return the properties of a world that require MuJoCo's model or its images to be rebuilt when they change."""
     return gravity_of(world), physics_of(world).max_step_size, world.scene, world.lights

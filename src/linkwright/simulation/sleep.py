@@ -1,8 +1,9 @@
-"""When bodies may fall asleep: MuJoCo computes nothing for them then, and their velocity is zero.
+"""Decide when bodies may fall asleep: MuJoCo skips them then, and their velocity is zero.
 
-MuJoCo lets bodies sleep as soon as they are slow for ten steps. But a pendulum is slow at its turning point, and so is
-any body that begins to move under a small force. Here a body's pose must not change for a while. A body with contacts
-may move a little in that time, because contacts never come quite to rest; one that hangs, swings or floats may not.
+MuJoCo lets bodies sleep as soon as they are slow for ten steps. However, a pendulum is slow at its turning point, and
+so is any body that starts to move under a small force. Here a body may only sleep if its pose has not changed for a
+while. A body with contacts may move slightly in that time, because contacts never come to rest completely. A body that
+hangs, swings or floats may not move at all.
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ _HARDLY = 1e-30
 
 
 class Sleep:
-    """Allows the trees of bodies of one simulation to fall asleep, or forbids it.
+    """Allows the trees of bodies in a simulation to fall asleep, or keeps them awake.
 
     Args:
-        schedule: that of the simulation.
+        schedule: the schedule of the simulation.
     """
 
     def __init__(self, schedule: Schedule) -> None:
@@ -40,12 +41,12 @@ class Sleep:
         self._data: Any = None
 
     def take(self, model: Any, data: Any, now: int, step: int) -> None:
-        """Set another model and its data.
+        """Use another model and its data.
 
         Args:
             model: MuJoCo's model.
             data: MuJoCo's data.
-            now: simulated nanoseconds.
+            now: the simulated time in nanoseconds.
             step: the time step in nanoseconds.
         """
         self._model, self._data = model, data
@@ -64,27 +65,27 @@ class Sleep:
         self.wake()
 
     def rouse(self) -> None:
-        """Wake all bodies up; resting ones fall asleep again after MuJoCo's ten steps."""
+        """Wake all bodies; bodies at rest fall asleep again after MuJoCo's ten steps."""
         data = self._data
         if self._model.nv:
             resting = (data.tree_asleep >= 0)[self._model.dof_treeid] & (data.qvel == 0.0)
             data.qvel[resting] = _HARDLY
 
     def wake(self) -> None:
-        """Wake all bodies up, and keep them awake until they have been at rest for a while again."""
+        """Wake all bodies, and keep them awake until they have been at rest for a while."""
         self.rouse()
         self._calm[:] = 0
         self._allow()
 
     def stir(self, tree: int) -> None:
-        """Wake a tree up that was put elsewhere or set in motion; -1 for one of the world, which never sleeps."""
+        """Wake a tree that was moved or set in motion; -1 means a static body, which has no tree."""
         if tree >= 0:
             self._calm[tree] = 0
             self._allow()
             self.rouse()
 
     def keep_awake(self, tree: int) -> None:
-        """Forbid a tree to fall asleep, and wake it up."""
+        """Wake a tree, and keep it from falling asleep."""
         self._may[tree] = False
         self.wake()
 
@@ -109,10 +110,10 @@ class Sleep:
         self._allow()
 
     def _are_touching(self) -> Any:
-        """Return whether each tree touches something."""
+        """Return for each tree whether it touches something."""
         model, contacts = self._model, self._data.contact
         geoms = contacts.geom[contacts.efc_address >= 0]
         geoms = geoms[geoms >= 0]
-        touching = np.zeros(model.ntree + 1, dtype=bool)  # the last one is for the world, whose tree is -1
+        touching = np.zeros(model.ntree + 1, dtype=bool)  # the last item is for the world, whose tree is -1
         touching[model.body_treeid[model.geom_bodyid[geoms]]] = True
         return touching[:-1]

@@ -1,7 +1,8 @@
-"""How MuJoCo solves for forces: by islands of bodies in contact, or for all at once where many robots drive.
+"""Choose how MuJoCo solves for forces: by islands of bodies in contact, or for all bodies if many robots drive.
 
-Groups by themselves, "islands", may fall asleep, so that resting bodies cost nothing. But with the discrete integrator
-each of them goes through the motors of all: for a hundred robots that doubles a step. The forces are the same.
+Separate groups, called "islands", may fall asleep, so bodies at rest cost nothing. With the discrete integrator,
+however, MuJoCo processes all motors for each island, which doubles the time of a step with a hundred robots. The forces
+are the same.
 """
 
 from __future__ import annotations
@@ -26,11 +27,11 @@ _TOGETHER = 50
 
 
 class Solving:
-    """Chooses the solver of one simulation, by nothing but its state, so that the same calls give the same bits.
+    """Chooses the solver of a simulation from its state only, so that the same calls give the same bits.
 
     Args:
-        schedule: that of the simulation.
-        sleep: of its bodies.
+        schedule: the schedule of the simulation.
+        sleep: decides when its bodies may sleep.
     """
 
     def __init__(self, schedule: Schedule, sleep: Sleep) -> None:
@@ -42,12 +43,12 @@ class Solving:
         self._data: Any = None
 
     def take(self, model: Any, data: Any, now: int, step: int) -> None:
-        """Set another model, which solves island by island, and its data.
+        """Use another model, which is solved island by island, and its data.
 
         Args:
             model: MuJoCo's model.
             data: MuJoCo's data.
-            now: simulated nanoseconds.
+            now: the simulated time in nanoseconds.
             step: the time step in nanoseconds.
         """
         self._model, self._data, self._left = model, data, 0

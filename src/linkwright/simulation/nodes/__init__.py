@@ -1,1 +1,1 @@
-"""Nodes of gazebo_ros, ros_gz_sim and ros_gz_bridge: spawning models, and bridges."""
+"""Nodes of gazebo_ros, ros_gz_sim and ros_gz_bridge, which spawn models and bridge topics."""

@@ -1,8 +1,8 @@
 """parameter_bridge and static_bridge of ros_gz_bridge, and image_bridge of ros_gz_image.
 
-Topics of gz are topics of the graph here, with the names and types that they have after a bridge. So a bridge has work
-to do only where the two sides have different names or types: it forwards messages from one to the other. It only
-announces the other topics, because programs look for them before the simulation has started or the robot is spawned.
+Topics of gz are topics of the graph here, with the names and types that they have behind a bridge. A bridge therefore
+forwards messages only where the two sides have different names or types. It only announces the other topics, because
+programs look for them before the simulation has started or the robot is spawned.
 """
 
 from __future__ import annotations
@@ -46,10 +46,10 @@ class BridgedTopic:
     """A bridged topic with its name on each side.
 
     Attributes:
-        ros_topic: its name in ROS, which remappings of the bridge apply to.
-        gz_topic: its name in gz.
-        ros_type: such as ``sensor_msgs/msg/Imu``.
-        gz_type: such as ``gz.msgs.IMU``.
+        ros_topic: the name in ROS, to which remappings of the bridge apply.
+        gz_topic: the name in gz.
+        ros_type: the type in ROS, such as ``sensor_msgs/msg/Imu``.
+        gz_type: the type in gz, such as ``gz.msgs.IMU``.
         direction: ``GZ_TO_ROS``, ``ROS_TO_GZ`` or ``BIDIRECTIONAL``.
         publisher_queue, subscriber_queue: the depths of the queues.
         lazy: whether to subscribe only while the other side has a subscriber; None for the node's setting.
@@ -66,7 +66,7 @@ class BridgedTopic:
 
 
 class _Way:
-    """One direction of a bridge: messages from a topic of one node to that of another.
+    """One direction of a bridge, which forwards messages from a topic of one node to a topic of another.
 
     Args:
         listen: creates the subscription.
@@ -78,7 +78,7 @@ class _Way:
         self._subscription = None if lazy else listen()
 
     def matched(self, info: QoSMatchedInfo) -> None:
-        """Subscribe while the other side has subscriptions."""
+        """Subscribe when the output has a subscriber, and unsubscribe when it has none."""
         if info.current_count and self._subscription is None:
             self._subscription = self._listen()
         elif not info.current_count and self._subscription is not None:
@@ -91,14 +91,14 @@ class _Bridge(SingleNode):
     _expands = False
 
     def _connect(self, graph: Graph, topics: Sequence[BridgedTopic]) -> None:
-        # Names of gz are not remapped: that side is a node of its own, hidden.
+        # Remappings do not apply to names in gz, so the gz side has its own, hidden node.
         self._gz_node = graph.create_node(f"_{self._node.get_name()}_gz", namespace=self._node.get_namespace())
         self._publishers: list[Publisher[Any]] = []
         for topic in topics:
             self._join(topic)
 
     def close(self) -> None:
-        """End it."""
+        """Destroy both nodes of the bridge."""
         self._gz_node.destroy_node()
         super().close()
 
@@ -111,13 +111,13 @@ class _Bridge(SingleNode):
         gz_type = TYPES_OF_GZ.get(topic.gz_type, topic.ros_type)
         gz_topic = "/" + self._gz_name(topic.gz_topic).lstrip("/")
         same_name = self._node.resolve_topic_name(topic.ros_topic) == gz_topic
-        if topic.ros_type == _CLOCK:  # the simulation publishes it
+        if topic.ros_type == _CLOCK:  # the simulation publishes /clock
             return
         to_ros, to_gz = (topic.direction in (way, "BIDIRECTIONAL") for way in ("GZ_TO_ROS", "ROS_TO_GZ"))
         if same_name and topic.ros_type == gz_type:
             self._announce(topic, to_ros=to_ros, to_gz=to_gz)
             return
-        if same_name and to_gz:  # in ROS the name is the bridge's, with its type
+        if same_name and to_gz:  # the name belongs to the topic of ROS, with its type
             gz_topic = gz_side(gz_topic)
         ros, gz = (self._node, topic.ros_topic, topic.ros_type), (self._gz_node, gz_topic, gz_type)
         if to_ros and not (same_name and to_gz):
@@ -126,7 +126,7 @@ class _Bridge(SingleNode):
             self._hand_on(topic, ros, gz)
 
     def _announce(self, topic: BridgedTopic, *, to_ros: bool, to_gz: bool) -> None:
-        """Have a topic in the graph before the simulation has it, as with a bridge of gz; nothing is handed on."""
+        """Create the endpoints of a topic before the simulation does, without forwarding messages."""
         if to_ros:
             self._node.create_publisher(topic.ros_type, topic.ros_topic, topic.publisher_queue)
         if to_gz:
@@ -134,11 +134,11 @@ class _Bridge(SingleNode):
             self._node.create_subscription(topic.ros_type, topic.ros_topic, lambda _: None, profile, raw=True)
 
     def _gz_name(self, name: str) -> str:
-        """The name of a topic of gz, in the node's namespace if that is configured."""
+        """Return the name of a gz topic, expanded with the node's namespace if that is configured."""
         return join(self._node.get_namespace(), name) if self._expands and not name.startswith("/") else name
 
     def _hand_on(self, topic: BridgedTopic, source: _Side, target: _Side) -> None:
-        """Bridge a topic in one direction."""
+        """Forward the messages of a topic in one direction."""
         (listening, source_topic, source_type), (sending, target_topic, target_type) = source, target
         convert = conversion(source_type, target_type)
         if convert is None:
@@ -153,7 +153,7 @@ class _Bridge(SingleNode):
             drivers = DriverWatch.of(self._node)
 
         def forward(message: Any, info: MessageInfo) -> None:
-            # A bidirectional bridge receives its own messages.
+            # A bidirectional bridge also receives the messages that it publishes itself.
             if all(info.publisher_gid != publisher.gid for publisher in self._publishers):
                 if commander is not None and drivers is not None:
                     commander.note_publisher(info)
@@ -181,7 +181,7 @@ class _Bridge(SingleNode):
 
 
 class ParameterBridge(_Bridge):
-    """The running bridge: its arguments, or the file of its parameter ``config_file``, name the topics.
+    """The running bridge of the topics in its arguments, or in the file of its parameter ``config_file``.
 
     Raises:
         LinkwrightError: NODE820, an argument or the file is invalid; NODE821, the file cannot be read.
@@ -200,7 +200,10 @@ class ParameterBridge(_Bridge):
             self._connect(graph, topics)
 
     def _is_service(self, word: str) -> bool:
-        """Whether an argument is a service, ``SERVICE@ROS_TYPE``; that it is not bridged is logged."""
+        """Return whether an argument is a service, ``SERVICE@ROS_TYPE``.
+
+        Services are not bridged, which is logged.
+        """
         name, _, types = word.partition("@")
         is_service = "/srv/" in types.partition("@")[0]
         if is_service:
@@ -209,7 +212,7 @@ class ParameterBridge(_Bridge):
 
 
 class StaticBridge(_Bridge):
-    """The running bridge of ``chatter``, the topic of texts in examples."""
+    """The running bridge of ``chatter``, the string topic of the examples."""
 
     DEFAULT_NAME = "ros_gz_bridge"
 
@@ -219,7 +222,7 @@ class StaticBridge(_Bridge):
 
 
 class ImageBridge(_Bridge):
-    """The running bridge of image topics, its arguments; also publishes JPEG while a node subscribes to it."""
+    """The running bridge of the image topics in its arguments; it publishes JPEG images on request, too."""
 
     DEFAULT_NAME = "ros_gz_image"
 
@@ -230,7 +233,7 @@ class ImageBridge(_Bridge):
             self._compress(word)
 
     def _compress(self, topic: str) -> None:
-        """Publish images as JPEG too while a node subscribes to them."""
+        """Publish the images as JPEG, too, while a node subscribes to the compressed topic."""
         name = f"{self._node.resolve_topic_name(topic)}/compressed"
 
         def forward(image: Any) -> None:
@@ -256,10 +259,10 @@ class ImageBridge(_Bridge):
 
 
 def topic_of_word(word: str) -> BridgedTopic:
-    """Parse an argument, ``TOPIC@ROS_TYPE@GZ_TYPE``, with ``[`` or ``]`` for one direction.
+    """Parse an argument ``TOPIC@ROS_TYPE@GZ_TYPE``, where ``[`` or ``]`` restricts the direction.
 
     Raises:
-        LinkwrightError: NODE820, it has another form.
+        LinkwrightError: NODE820, the argument has another form.
     """
     name, at, types = word.partition("@")
     mark = next((part for part in types if part in _DIRECTIONS), "")
@@ -273,10 +276,10 @@ def topic_of_word(word: str) -> BridgedTopic:
 
 
 def topics_of_file(path: str) -> list[BridgedTopic]:
-    """Read the topics of a YAML file.
+    """Read the bridged topics from a YAML file.
 
     Raises:
-        LinkwrightError: NODE821, it cannot be read; NODE820, it is not a list of topics with their types.
+        LinkwrightError: NODE821, the file cannot be read; NODE820, it is not a list of topics with their types.
     """
     try:
         entries = yaml.safe_load(read_text(path))

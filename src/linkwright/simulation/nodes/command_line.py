@@ -1,8 +1,8 @@
-"""Converting the command lines of Gazebo's programs to parameters of the node that replaces them.
+"""Convert the command lines of Gazebo's programs to parameters of the node that replaces them.
 
 Of the many options of `gazebo`, `gzserver` and `gz sim`, only the world, the paused start, the random seed and the ROS
-arguments have an effect here. The parameters of the node are ``world``, ``pause``, ``seed``, and ``gui`` where a window
-comes with the server; the executable is ``gzclient`` for a window alone.
+arguments have an effect here. The node's parameters are ``world``, ``pause`` and ``seed``, and ``gui`` for a server
+with a window. The executable is ``gzclient`` for a window without a server.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _ROS_ARGUMENTS = "--ros-args"
 
 
 def simulator_command(words: Sequence[str]) -> NodeCommand | None:
-    """Parse the command line of a program; None if it is not one of Gazebo's."""
+    """Parse the command line of one of Gazebo's programs; return None for any other program."""
     program, *rest = words
     name = PurePath(program).name
     if name in ("gazebo", "gzserver"):
@@ -50,7 +50,7 @@ def classic_server(words: Sequence[str], *, window: bool = False) -> NodeCommand
 
 
 def gz_server(words: Sequence[str]) -> NodeCommand:
-    """Parse the words after ``gz sim``: without ``-r`` the simulation begins paused."""
+    """Parse the words after ``gz sim``; without ``-r`` the simulation starts paused."""
     own, ros = _divided(words)
     options, others = _read(own, _GZ_VALUES.split())
     if "-g" in options:
@@ -62,16 +62,16 @@ def gz_server(words: Sequence[str]) -> NodeCommand:
 
 
 def _divided(words: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Split into the program's own words, and ROS arguments."""
+    """Split a command line into the program's own arguments and the ROS arguments."""
     at = words.index(_ROS_ARGUMENTS) if _ROS_ARGUMENTS in words else len(words)
     return list(words[:at]), list(words[at:])
 
 
 def _read(words: list[str], with_value: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    """Return the options with their values (empty for flags), and the other words; blank words are dropped.
+    """Return the options with their values (empty for flags), and the other words, without whitespace-only ones.
 
-    A launch file without a world passes ``gzserver`` an empty word, which counts: the words after it do not name a
-    world.
+    A launch file without a world passes ``gzserver`` an empty word. It counts as the world, so the words after it do
+    not name one.
     """
     options, others = {}, []
     rest = [word for word in words if word.strip() or not word]

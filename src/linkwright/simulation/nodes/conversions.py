@@ -1,6 +1,6 @@
-"""Converting messages of bridges whose types differ on their two sides.
+"""Convert messages for bridges that have different types on their two sides.
 
-Source: ros_gz_bridge: which types it makes of one of gz.
+Source: ros_gz_bridge (the ROS types to which each gz type can be converted).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ TYPES_OF_GZ = {
 
 
 def conversion(source: str, target: str) -> Conversion | None:
-    """Return the function that converts messages of one type to another; None if there is none."""
+    """Return the function that converts messages of one type to another, or None if there is none."""
     if source == target:
         return lambda message: message
     inside = _WITH_HEADER.get(source)

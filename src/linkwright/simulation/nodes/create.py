@@ -1,4 +1,4 @@
-"""create of ros_gz_sim: spawns a model."""
+"""create of ros_gz_sim, which spawns a model."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _TRUE = ("", "true", "1", "yes", "t", "y")
 
 
 class Create(EntitySpawner):
-    """The running node: it ends with status 0 when the entity was spawned.
+    """The running node, which ends with status 0 after the entity was spawned.
 
     Raises:
         LinkwrightError: NODE812, neither its command line nor its parameters name a description, or a number is
@@ -37,7 +37,7 @@ class Create(EntitySpawner):
             self._begin({source: str(given[source]) for source in _TEXTS if given.get(source)}, options.environment)
 
     def _from_parameters(self, parameters: dict[str, Any]) -> dict[str, Any]:
-        """The options that are given as parameters."""
+        """Return the options that were given as parameters."""
         known = [name for name in (*_TEXTS, *_NUMBERS, "allow_renaming") if name in parameters]
         for name in known:
             self._node.declare_parameter(name, parameters[name])
@@ -74,7 +74,7 @@ class Create(EntitySpawner):
 
 
 def _renamed(entity: Entity, names: Sequence[str]) -> Entity:
-    """The entity under a free name, numbered as gz does."""
+    """Return the entity with a free name, numbered as gz numbers it."""
     name, number = entity.name, 0
     while name in names:
         name, number = f"{entity.name}_{number}", number + 1
@@ -82,7 +82,7 @@ def _renamed(entity: Entity, names: Sequence[str]) -> Entity:
 
 
 def _options(words: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Parse options as gflags does: one dash or two, a value after ``=`` or as the next word."""
+    """Parse options as gflags does: one or two dashes, and a value after ``=`` or in the next word."""
     rest = list(words)
     while rest:
         word = rest.pop(0)

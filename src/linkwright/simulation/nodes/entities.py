@@ -1,6 +1,6 @@
-"""remove, delete_entity and set_entity_pose of ros_gz_sim: remove and move models of a world.
+"""remove, delete_entity and set_entity_pose of ros_gz_sim, which remove and move models of a world.
 
-Source: ros_gz_sim (parameters, options). There models are also known by numbers, which none has here.
+Source: ros_gz_sim (parameters, options). There, numeric IDs identify models, too; models do not have any here.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class Remove(SimulatorClient):
     """remove: removes the model that its parameter ``entity_name`` names, and ends.
 
     Raises:
-        LinkwrightError: NODE812, it names none.
+        LinkwrightError: NODE812, the parameter is empty.
     """
 
     DEFAULT_NAME = "ros_gz_sim_remove_entity"
@@ -47,7 +47,7 @@ class Remove(SimulatorClient):
         self._ask(_DELETE, "delete_entity", get_service(_DELETE).Request(name=name), self._answered)
 
     def _answered(self, response: Any) -> None:
-        """End with the status of a response with ``success`` and ``status_message``."""
+        """End with the status that corresponds to ``success`` in a response, and log its ``status_message``."""
         if response.success:
             self._log("Result: true")
             self._end(0)
@@ -59,7 +59,7 @@ class DeleteEntity(Remove):
     """delete_entity: removes the model that ``--name`` names, and ends.
 
     Raises:
-        LinkwrightError: NODE812, its command line is none.
+        LinkwrightError: NODE812, the command line is invalid.
     """
 
     DEFAULT_NAME = "entity_deleter"
@@ -75,7 +75,7 @@ class SetEntityPose(Remove):
     """set_entity_pose: sets the pose of the model or link that ``--name`` names, and ends.
 
     Raises:
-        LinkwrightError: NODE812, its command line is none.
+        LinkwrightError: NODE812, the command line is invalid.
     """
 
     DEFAULT_NAME = "entity_pose_setter"

@@ -1,4 +1,4 @@
-"""The files of a running simulation, whoever started it: the simulator loads them when they are saved."""
+"""Reload the files of a running simulation when they are saved, no matter which program started it."""
 
 from __future__ import annotations
 
@@ -17,16 +17,15 @@ _LOAD_WORLD = "simulation_interfaces/srv/LoadWorld"
 
 
 def follow_files(node: Node, server: SimulationServer, services: Services, host: FileFollower) -> None:
-    """Reload the world, and robots that were spawned, when their files are saved.
+    """Reload the world and the spawned robots when their files are saved.
 
-    The viewers show errors in their models.
-
-    A robot is followed where its description is a text that this process has expanded from a file.
+    The viewers show errors in the robots' models. A robot is only followed if this process has expanded its description
+    from a file.
 
     Args:
         node: the simulator's node.
-        server: its simulation.
-        services: its services.
+        server: the simulation of the node.
+        services: the services of the node.
         host: watches the files.
     """
     loop, world = asyncio.get_running_loop(), services.worlds.loaded
@@ -52,7 +51,7 @@ def follow_files(node: Node, server: SimulationServer, services: Services, host:
 
 
 async def _load_world(path: str, launcher: Node, services: Services) -> list[Diagnostic]:
-    """Load a saved world file, unless the page has unsaved changes; returns why not."""
+    """Load a saved world file unless the page has unsaved changes; return the findings that prevent it."""
     if services.worlds.is_unsaved:
         message = phrase("'{path}' has changed; the simulation continues with the edited world instead", path=path)
         hint = phrase("save the edited world as another file, or undo its changes")

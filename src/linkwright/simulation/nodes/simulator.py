@@ -1,7 +1,7 @@
 """gzserver: the node ``gazebo``, a simulated world with its plugins, topics and services.
 
-It follows gzserver of Gazebo classic with the libraries of gazebo_ros; for gz it is the server. Its world is simulated
-in a thread of its own, see `linkwright.simulation.server`.
+It follows the gzserver of Gazebo classic with the libraries of gazebo_ros, and also serves as the server of gz. Its
+world is simulated in a separate thread, see `linkwright.simulation.server`.
 """
 
 from __future__ import annotations
@@ -55,32 +55,32 @@ class Simulator(SingleNode):
     Its parameters:
 
     ``world``
-        the file, also the only argument of the command line besides ROS arguments. ``empty``: a plane.
+        the world file, which may also be given as the only argument apart from ROS arguments; ``empty`` is a plane.
     ``world_sdf_file``, ``world_sdf_string``
-        as gzserver of ros_gz_sim has them: the file, or the text of the world.
+        the world file, or the text of the world, as for the gzserver of ros_gz_sim.
     ``publish_rate``
         the rate of ``/clock`` in simulated time, in Hz.
     ``real_time_factor``
-        the simulated seconds in a real one; 0 for the world's own, negative for as fast as possible.
+        the simulated seconds per real second; 0 for the value of the world, negative for as fast as possible.
     ``step``
-        the time step in s; 0 for that of the world.
+        the time step in s; 0 for the time step of the world.
     ``seed``, ``pause``, ``seconds``
-        the random seed; whether it starts paused; after how many simulated seconds it ends, 0 for never.
+        the random seed; whether to start paused; the simulated seconds after which to end, 0 for never.
     ``gui``
-        whether to open a page with the world; the host of the node does that.
+        whether to open a page with the world, which the host of the node does.
     ``usual_names``
         whether gz topics also have their usual names.
     ``gazebo_mistakes``
-        whether plugins make the known mistakes of Gazebo, too: see docs/simulation.md.
+        whether plugins reproduce the known mistakes of Gazebo, see docs/simulation.md.
     ``robot_description``, ``robot_name``, ``robot_pose``, ``robot_namespace``
-        a robot from the start: URDF or SDF, and x, y, z in m and roll, pitch, yaw in rad. The description may be
-        replaced while it runs: the robot keeps its place and the positions of its joints.
+        a robot that exists from the start: URDF or SDF, and x, y, z in m and roll, pitch, yaw in rad. The
+        description may be replaced while the node runs: the robot keeps its pose and its joint positions.
 
     Attributes:
-        finished: receives status 0 after the seconds, and 1 if the simulation failed.
+        finished: receives status 0 after ``seconds``, or 1 if the simulation failed.
 
     Raises:
-        LinkwrightError: SIM150 there is no such world; SIM101 MuJoCo is missing; an error in the world or the robot.
+        LinkwrightError: SIM150, there is no such world; SIM101, MuJoCo is missing; an error in the world or the robot.
     """
 
     DEFAULT_NAME = "gazebo"
@@ -144,23 +144,23 @@ class Simulator(SingleNode):
             self.runner.start()
 
     def follow_files(self, host: FileFollower) -> None:
-        """Reload the world, and robots that were spawned, when their files are saved."""
+        """Reload the world and the spawned robots when their files are saved."""
         from linkwright.simulation.nodes.saved_files import follow_files
 
         follow_files(self._node, self.server, self.services, host)
 
     def close(self) -> None:
-        """End it."""
+        """Stop the simulation, and destroy the node."""
         self.runner.close()
         self.server.close()
         super().close()
 
     def _systems(self) -> Sequence[Plugin]:
-        """The plugins of a world that names none."""
+        """Return the plugins for a world that does not name any."""
         return ()
 
     def _renew(self, robot: str, parameters: Sequence[Parameter]) -> SetParametersResult:
-        """Replace the robot by a changed description, in its present state; an invalid one is refused."""
+        """Replace the robot by its changed description, keeping its state; refuse an invalid description."""
         from linkwright.simulation.plugins.entities import in_one_line
 
         for parameter in parameters:
@@ -179,7 +179,7 @@ class Simulator(SingleNode):
         self._reports.publish_state(paused=self.runner.paused)
 
     def _log(self, findings: Iterable[Diagnostic]) -> None:
-        """Log the findings on the world and its parts that are not simulated, each once."""
+        """Log each finding about the world and its parts that are not simulated once."""
         logger = self._node.get_logger()
         first: dict[str, Diagnostic] = {}
         for finding in findings:
@@ -195,7 +195,7 @@ class Simulator(SingleNode):
 
 
 class GzServer(Simulator):
-    """The running node in the place of gz's server: a world without plugins gets those that gz gives it."""
+    """The running node in place of the server of gz, which gives a world without plugins the defaults of gz."""
 
     def _systems(self) -> Sequence[Plugin]:
         from linkwright.simulation.plugins.registry import SYSTEMS_OF_GZ

@@ -1,4 +1,4 @@
-"""spawn_entity.py of gazebo_ros: spawns a model by the service ``/spawn_entity``."""
+"""spawn_entity.py of gazebo_ros, which spawns a model with the service ``/spawn_entity``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, text_at, 
 
 
 class SpawnEntity(EntitySpawner):
-    """The running node: it ends with status 0 when the entity was spawned.
+    """The running node, which ends with status 0 after the entity was spawned.
 
     Raises:
         LinkwrightError: NODE810, the command line is invalid; NODE811, the file cannot be read.
@@ -43,7 +43,7 @@ class SpawnEntity(EntitySpawner):
                 self._look_for(wanted.wait)
 
     def close(self) -> None:
-        """Close it; with ``-b`` the entity is deleted."""
+        """Close the node, and delete the entity if ``-b`` was given."""
         if self._arguments.b and self._described and not self.finished.done():
             kind = get_service("gazebo_msgs/srv/DeleteEntity")
             client = self._node.create_client(kind, f"{self._service_namespace}/delete_entity")
@@ -91,10 +91,10 @@ class SpawnEntity(EntitySpawner):
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
-    """Parse the options of a command line, which are long ones after a single dash.
+    """Parse the options of a command line: long options after a single dash.
 
     Raises:
-        LinkwrightError: NODE810, it cannot be understood.
+        LinkwrightError: NODE810, the command line is invalid.
     """
     parser = argparse.ArgumentParser(prog="spawn_entity.py", add_help=False, exit_on_error=False, allow_abbrev=False)
     source = parser.add_mutually_exclusive_group(required=True)
@@ -113,7 +113,7 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
         parser.add_argument(name, type=float, default=0.0)
     parser.add_argument("-package_to_model", action="store_true")
     parser.add_argument("-b", action="store_true")
-    # argparse ends the program where a required option is missing, in Python up to 3.12 also with exit_on_error=False.
+    # argparse ends the program if a required option is missing, and up to Python 3.12 even with exit_on_error=False.
     parser.error = _refuse  # type: ignore[method-assign]  # on purpose, see above
     try:
         return parser.parse_args(words)

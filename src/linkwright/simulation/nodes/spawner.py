@@ -1,4 +1,4 @@
-"""The base of programs that call a simulator's services: spawn_entity.py of gazebo_ros, create of ros_gz_sim."""
+"""The base classes of programs that call a simulator's services: spawn_entity.py and create of ros_gz_sim."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _LIST = "gazebo_msgs/srv/GetModelList"
 
 @dataclass(frozen=True)
 class Entity:
-    """The name, text and pose of an entity to be spawned.
+    """The name, pose and namespace of an entity to spawn.
 
     Attributes:
         name: the name of the model in the world.
@@ -42,7 +42,7 @@ class Entity:
 
 
 def spawn_request(entity: Entity, text: str) -> Any:
-    """The request of the service ``/spawn_entity`` for an entity; `text` is its URDF or SDF."""
+    """Return the request of the service ``/spawn_entity`` for an entity; `text` is its URDF or SDF."""
     request = get_service(SPAWN_SERVICE).Request(
         name=entity.name, xml=text, robot_namespace=entity.namespace, reference_frame=entity.reference_frame
     )
@@ -53,20 +53,21 @@ def spawn_request(entity: Entity, text: str) -> Any:
 
 
 class SimulatorClient(SingleNode):
-    """A node that calls a service of the simulator and ends; its status is 1 if that failed.
+    """A node that calls a service of the simulator and ends, with status 1 if the call failed.
 
-    Derived classes make `_node` and call `_connect`.
+    Derived classes create `_node` and call `_connect`.
     """
 
     finished: asyncio.Future[int]
 
     def _connect(self, node: Node, *, service_namespace: str = "", timeout: float | None = None) -> None:
-        """Set the node, and where the simulator's services are.
+        """Set the node and the namespace of the simulator's services.
 
         Args:
             node: the node.
-            service_namespace: where the simulator's services are.
-            timeout: seconds to wait for the service at most, on the clock of the machine; None for any time.
+            service_namespace: the namespace of the simulator's services.
+            timeout: the maximum seconds to wait for the service, on the clock of the machine; None to wait without a
+                limit.
         """
         self._node = node
         self._timeout = timeout
@@ -74,10 +75,10 @@ class SimulatorClient(SingleNode):
         self.finished = asyncio.get_running_loop().create_future()
 
     def _ask(self, kind: str, name: str, request: Any, then: Callable[[Any], None]) -> None:
-        """Call a service of the simulator; its response is passed to a function."""
+        """Call a service of the simulator, and pass the response to a function."""
         path = f"{self._service_namespace}/{name}"
         client = self._node.create_client(get_service(kind), path)
-        future = client.call_async(request)  # it waits until there is a server
+        future = client.call_async(request)  # the call waits until there is a server
         future.add_done_callback(lambda done: then(done.result()))
         if client.service_is_ready():
             return
@@ -110,7 +111,7 @@ class SimulatorClient(SingleNode):
 class EntitySpawner(SimulatorClient):
     """A node that spawns one entity and ends.
 
-    Derived classes make `_node`, and call `_prepare` and one of the ways to a description.
+    Derived classes create `_node`, call `_prepare`, and then one of the methods that get a description.
     """
 
     _entity: Entity
@@ -118,15 +119,15 @@ class EntitySpawner(SimulatorClient):
     def _prepare(
         self, node: Node, entity: Entity, *, service_namespace: str = "", timeout: float | None = None
     ) -> None:
-        """Set the entity to be spawned, and the rest as `_connect` does."""
+        """Set the entity to spawn, and connect to the simulator as `_connect` does."""
         self._connect(node, service_namespace=service_namespace, timeout=timeout)
         self._entity = entity
         self._described = False
 
-    # --- ways to a description ------------------------------------------------------------------------------------
+    # --- getting a description ------------------------------------------------------------------------------------
 
     def _wait_for(self, topic: str) -> None:
-        """Take the description from a topic, also one that was published before."""
+        """Receive the description from a topic, including a latched one that was published before."""
         self._log(f"Waiting for entity xml on {topic}")
         self._node.create_subscription(String, topic, lambda message: self._spawn(message.data), DESCRIPTION_QOS)
 
@@ -140,7 +141,7 @@ class EntitySpawner(SimulatorClient):
         self._ask(SPAWN_SERVICE, "spawn_entity", spawn_request(self._entity, text), self._answered)
 
     def _ask_for_names(self, then: Callable[[list[str]], None]) -> None:
-        """Ask for the names of the world's models."""
+        """Request the names of the world's models, and pass them to a function."""
         self._ask(_LIST, "get_model_list", get_service(_LIST).Request(), lambda answer: then(list(answer.model_names)))
 
     def _answered(self, response: Any) -> None:
@@ -151,19 +152,19 @@ class EntitySpawner(SimulatorClient):
         self._spawned()
 
     def _spawned(self) -> None:
-        """Log that the entity was spawned, and end."""
+        """End with status 0 after the entity was spawned."""
         self._end(0)
 
 
 def text_at(address: str, environment: Mapping[str, str]) -> str:
-    """Read the description at a path or URI: ``file://``, ``package://``, ``model://``, or of a model on Fuel.
+    """Read the description at a path or URI (``file://``, ``package://``, ``model://``), or of a model on Fuel.
 
     Args:
-        address: as written.
-        environment: the environment variables with the paths of files.
+        address: the path or URI as the user wrote it.
+        environment: the environment variables with the search paths.
 
     Raises:
-        LinkwrightError: NODE811, there is none, or it cannot be read.
+        LinkwrightError: NODE811, there is no such description, or it cannot be read.
     """
     found = ResourceFinder(current_finder(), environment).model(address, Path.cwd())
     if isinstance(found, Missing):

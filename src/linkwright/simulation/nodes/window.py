@@ -1,4 +1,4 @@
-"""A substitute for Gazebo's window: a node that logs where the world can be viewed."""
+"""A substitute for Gazebo's window: a node that logs the address where the world can be viewed."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 
 class Window(SingleNode):
-    """The running node, which does nothing until it is closed: launch files end all when the window is closed."""
+    """The running node, which does nothing until it is closed; launch files then end all processes."""
 
-    DEFAULT_NAME = "_gzclient"  # hidden: gzclient is not a node
+    DEFAULT_NAME = "_gzclient"  # hidden, because gzclient is not a node
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)

@@ -1,1 +1,1 @@
-"""Page features of simulated worlds: controlling time, moving models, editing the world."""
+"""Page features of simulated worlds: control time, move models, and edit the world."""

@@ -1,4 +1,4 @@
-"""The simulation bar, and moving models of a simulated world: only through topics and services.
+"""The simulation bar, and the moving of models in a simulated world, only through topics and services.
 
 Source of their names: gazebo_ros and simulation_interfaces.
 """
@@ -55,7 +55,7 @@ _ACTIONS = {
 
 @dataclass(slots=True)
 class _Drag:
-    """A model that a page moves: its original pose, once that is known, and the newest one not sent yet."""
+    """A model that a page moves: its original pose, once known, and the newest pose that was not sent yet."""
 
     model: str
     start: Any = None
@@ -64,7 +64,7 @@ class _Drag:
 
 
 class SimulationFeature(PageFeature):
-    """Sends pages the state of a simulation, and forwards their requests; subscribes while there are pages."""
+    """Sends the state of a simulation to pages and forwards their requests; subscribes while there are pages."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -77,7 +77,7 @@ class SimulationFeature(PageFeature):
         self._spawning: set[asyncio.Task[None]] = set()
 
     def opening(self) -> list[ServerMessage]:
-        """Return the state of the simulation."""
+        """Return the messages with the state of the simulation for a new page."""
         if not self._listening and not self._recorded:
             self._listening = True
             self.context.graph_changes.watch(self._review)
@@ -85,7 +85,7 @@ class SimulationFeature(PageFeature):
         return [self._status]
 
     def recording_shown(self) -> None:
-        """Hide the bar: the recorded simulation cannot be controlled."""
+        """Hide the simulation bar, because a recorded simulation cannot be controlled."""
         self._recorded = True
         self._stop()
 
@@ -96,13 +96,13 @@ class SimulationFeature(PageFeature):
             self._stop()
 
     def close(self) -> None:
-        """End for good."""
+        """Stop the feature permanently."""
         self._stop()
         for task in self._spawning:
             task.cancel()
 
     def receive(self, page: Page, message: Any) -> None:
-        """Carry out a request."""
+        """Carry out the request of a page."""
         match message:
             case ControlSimulation(action):
                 kind, name = _ACTIONS[action]
@@ -119,7 +119,7 @@ class SimulationFeature(PageFeature):
             case PushLink():
                 self._push(page, message)
 
-    # --- how it goes -------------------------------------------------------------------------------------------
+    # --- state of the simulation -------------------------------------------------------------------------------
 
     def _review(self) -> None:
         present = bool(self.context.node.get_publishers_info_by_topic(_STATE))
@@ -170,7 +170,7 @@ class SimulationFeature(PageFeature):
         self._subscriptions.clear()
         self._drags.clear()
 
-    # --- what it is asked for ----------------------------------------------------------------------------------
+    # --- requests of pages ------------------------------------------------------------------------------------
 
     async def _spawn(self, page: Page, address: str, position: list[float]) -> None:
         try:
@@ -199,12 +199,12 @@ class SimulationFeature(PageFeature):
         self._services.ask(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, listed)
 
     def _model_at(self, address: str) -> tuple[str, str] | None:
-        """Return name and description of the model at an address; None for a world without one.
+        """Return the name and description of the model at an address; None for a world without a model.
 
         Raises:
-            LinkwrightError: it cannot be found or read.
+            LinkwrightError: the address cannot be found or read.
         """
-        from linkwright.sdf.resources import ResourceFinder  # here, because few viewers show a world
+        from linkwright.sdf.resources import ResourceFinder  # imported here, because few viewers show a world
         from linkwright.sdf.writer import save
 
         finder = self.context.finder
@@ -235,7 +235,7 @@ class SimulationFeature(PageFeature):
             self._put(page, drag)
 
     def _put(self, page: Page, drag: _Drag) -> None:
-        """Send the newest pose, after the simulation has answered the request before."""
+        """Send the newest pose after the simulation has answered the previous request."""
         if drag.start is None or drag.target is None or drag.calling:
             return
         start = drag.start.pose.position
@@ -264,7 +264,7 @@ class SimulationFeature(PageFeature):
 
 
 def _report_added(page: Page, name: str, free: str, response: Any) -> None:
-    """Tell a page that a model was added, and that it was renamed if its name was taken."""
+    """Notify a page that a model was added, and that it was renamed if its name was already used."""
     if response is None or not response.success:
         return
     page.send(ModelAdded(free))

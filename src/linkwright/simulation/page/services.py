@@ -1,4 +1,4 @@
-"""Calls services of a simulation for pages, and reports failures to them."""
+"""Call the services of a simulation for pages, and report failures to them."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from linkwright.rviz.context import ViewerContext
 
 
 class SimulationServices:
-    """Clients of services, each created on first use.
+    """Service clients, each created on first use.
 
     Args:
-        context: the context of the viewer, whose node calls services.
+        context: the context of the viewer, whose node calls the services.
     """
 
     def __init__(self, context: ViewerContext) -> None:
@@ -34,14 +34,14 @@ class SimulationServices:
         answered: Callable[[Any], None] = lambda _: None,
         refused: Phrase | None = None,
     ) -> None:
-        """Call a service; the page receives an error if there is none, or if it refuses.
+        """Call a service; the page receives an error if there is no such service, or if it refuses.
 
         Args:
-            page: the page that requests it.
+            page: the page that requests the call.
             kind: the service's type.
-            name: its name.
+            name: the service's name.
             fields: the fields of the request.
-            answered: called with the response; None if there is no such service.
+            answered: called with the response, or with None if there is no such service.
             refused: the text for the page if the response gives no reason.
         """
         client = self._clients.get(name)

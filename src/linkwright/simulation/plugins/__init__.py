@@ -1,1 +1,1 @@
-"""Plugins and sensors of models, found through entry points: the work of Gazebo classic's and gz's libraries."""
+"""Plugins and sensors of models, found through entry points; they replace the libraries of Gazebo classic and gz."""

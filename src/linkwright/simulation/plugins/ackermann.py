@@ -1,8 +1,8 @@
 """Ackermann steering of Gazebo classic: ``libgazebo_ros_ackermann_drive.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 (parameters, topics, defaults, the angles of the wheels; ``angular.z`` of a command is
-the angle of steering). Other than there the front wheels are held at their angles, the gains of steering change
-nothing, and the rear wheels hold their velocity with no more than the torque at which they would slip.
+the steering angle). Unlike in gazebo_ros_pkgs, the front wheels are held at their angles, the steering gains have no
+effect, and the rear wheels hold their velocity with no more than the torque at which they would slip.
 """
 
 from __future__ import annotations
@@ -58,10 +58,11 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
     )
 
     def start(self) -> None:
-        """Give the wheels motors and servos, and listen.
+        """Create motors and servos for the wheels, and subscribe to the commands.
 
         Raises:
-            LinkwrightError: SIM134 a joint does not exist; SIM160 a wheel has no size, or axles are in one place.
+            LinkwrightError: SIM134, a joint does not exist; SIM160, a wheel has no size, or both axles have the same
+                position.
         """
         parameters, node, simulation = self.parameters, self.node, self.simulation
         front = [self.joint(name) for name in (parameters.front_left_joint, parameters.front_right_joint)]
@@ -93,7 +94,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._time = self.simulation.time
 
     def reset(self) -> None:
-        """Stop, with the wheels straight ahead."""
+        """Stop the car, with the wheels straight ahead."""
         self._begin()
         for servo in self._servos:
             servo.restart()
@@ -112,7 +113,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         return radius
 
     def _measure(self, front: list[str], rear: list[str]) -> None:
-        """The distances of the front wheels and of the axles in m."""
+        """Measure the track of the front wheels and the wheelbase, in m."""
         simulation = self.simulation
         left, right, back_left, back_right = (
             simulation.link_pose(simulation.scene.joints[joint].child)[:3] for joint in (*front, *rear)
@@ -132,7 +133,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._angle = min(max(angle, -parameters.max_steer), parameters.max_steer)
 
     def _rest(self) -> bool:
-        """Stop, with the wheels steered as they are; return whether a motion was commanded."""
+        """Stop the car without changing the steering; return whether a motion was commanded."""
         before, self._speed = self._speed, 0.0
         return before != 0.0
 
@@ -148,7 +149,10 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
             self._way.publish(get_message("std_msgs/msg/Float32")(data=self._distance))
 
     def _drive(self, seconds: float) -> None:
-        """Turn the wheels: the inner one is steered further, so that both roll about one point."""
+        """Turn and steer the wheels for the commanded motion.
+
+        The inner front wheel is steered further, so that both roll about one point.
+        """
         for motor in self._motors:
             motor.target = self._speed / self._radius
         slope = tan(self._angle)

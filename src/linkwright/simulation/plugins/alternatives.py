@@ -1,4 +1,4 @@
-"""Alternatives to plugins and sensors that are not simulated, if another plugin does their work."""
+"""Alternatives to plugins and sensors that are not simulated, where another plugin does the same work."""
 
 from __future__ import annotations
 
@@ -32,5 +32,5 @@ _ALTERNATIVES = {
 
 
 def alternative_to(name: str) -> Phrase | None:
-    """Return the alternative to a plugin's library or a type of sensor; None if there is none."""
+    """Return the alternative to a plugin's library or a sensor type, or None if there is none."""
     return _ALTERNATIVES.get(library_name(name))

@@ -1,8 +1,8 @@
-"""Topics of gz whose name a bridge takes in ROS with another type.
+"""gz topics whose names a bridge uses in ROS with another type.
 
-Topics of gz are topics of the graph under their names. A bridge from ``geometry_msgs/msg/TwistStamped`` to
-``gz.msgs.Twist`` of one name, as Jazzy's robots have it, would make a topic with two types of that. So the side of gz
-has a hidden name as soon as there is such a bridge, in this process or in another one.
+Topics of gz are topics of the graph under their own names. A bridge from ``geometry_msgs/msg/TwistStamped`` to
+``gz.msgs.Twist`` with one name for both sides, as Jazzy's robots have it, would give this topic two types. Therefore
+the gz side gets a hidden name as soon as there is such a bridge, in this process or in another one.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ _HIDDEN = "/_gz"
 
 
 def gz_side(topic: str) -> str:
-    """The hidden name under which a topic of gz has its own type; absolute names."""
+    """Return the hidden name under which a gz topic has its own type; both names are absolute."""
     return _HIDDEN + topic
 
 
 class BridgedTopics:
-    """Notifies the plugins of a simulation when a bridge takes the name of a topic to which they subscribe.
+    """Notifies the plugins of a simulation when a bridge starts to use the name of a topic they subscribe to.
 
     Args:
-        node: that of the simulator.
-        exchange: carries the notice into the thread of the simulation.
+        node: the simulator's node.
+        exchange: passes the notification to the simulation thread.
     """
 
     def __init__(self, node: Node, exchange: Exchange) -> None:
@@ -36,7 +36,7 @@ class BridgedTopics:
         self._graph.watch(self._changed)
 
     def close(self) -> None:
-        """Stop watching the graph, and stop notifying."""
+        """Stop watching the graph and notifying the plugins."""
         self._graph.unwatch(self._changed)
 
     def has(self, topic: str) -> bool:
@@ -48,7 +48,7 @@ class BridgedTopics:
         self._moves.setdefault(topic, []).append(move)
 
     def forget(self, topic: str, move: Callable[[], None]) -> None:
-        """Unregister a function."""
+        """Unregister a function that was registered with `notify`."""
         moves = self._moves.get(topic, [])
         if move in moves:
             moves.remove(move)
@@ -67,7 +67,7 @@ class BridgedTopics:
                 move()
 
     def _bridged(self, topics: list[str]) -> list[str]:
-        """The topics whose hidden names have publishers."""
+        """Return the topics whose hidden names have publishers."""
         outside = {
             remote_endpoint.name
             for remote_endpoint in self._graph.remote_endpoints()

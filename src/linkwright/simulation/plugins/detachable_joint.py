@@ -1,7 +1,7 @@
 """A joint that holds a link of another model until it is detached: ``gz-sim-detachable-joint-system``.
 
-Source: gz-sim (parameters, topics and their names; the state is published when it changes). As in gz, an attached link
-does not collide with the model that holds it.
+Source: gz-sim (parameters, topic names; the state is published when it changes). As in gz, an attached link does not
+collide with the model that holds it.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
     PARAMETERS = DetachableJointParameters
 
     def start(self) -> None:
-        """Find the parent link, attach the child if it exists, and subscribe.
+        """Find the parent link, attach the child if it exists, and subscribe to the topics.
 
         Raises:
-            LinkwrightError: SIM133 the model has no such link.
+            LinkwrightError: SIM133, the model does not have this link.
         """
         parameters, begin = self.parameters, f"/model/{self.place.path}/detachable_joint"
         self._is_attached, self._is_wanted = False, parameters.initial_attach
@@ -60,14 +60,14 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         self.every(_LOOKS, self._look)
 
     def reset(self) -> None:
-        """Restore the state of the start: attached or not."""
+        """Restore the initial state, attached or detached."""
         self._detach()
         self._is_wanted = self.parameters.initial_attach
         if self._is_wanted and self._found_child():
             self._attach()
 
     def resume(self, before: SimulatedPlugin[DetachableJointParameters]) -> None:
-        """Hold the child that the previous instance held."""
+        """Attach the child that the previous instance held."""
         assert isinstance(before, GzDetachableJoint)
         if before._is_attached or before._is_wanted:
             self._hold(None)
@@ -75,7 +75,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             self._detach()
 
     def stop(self) -> None:
-        """Detach: the model may be about to leave."""
+        """Detach the child, because the model may be about to be removed."""
         self._unweld()
 
     def _hold(self, _: Any) -> None:
@@ -87,7 +87,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         self._detach()
 
     def _look(self) -> None:
-        """Attach the child that is to be attached, once it is in the world, or again after it was replaced."""
+        """Attach the child, if requested, once it is in the world, or again after it was replaced."""
         if self._is_attached and not self.simulation.scene.is_welded(self._parent, self._child):
             self._is_attached, self._is_wanted = False, True
         if not self._is_wanted:
@@ -101,7 +101,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             self.node.logger.warning(message)
 
     def _found_child(self) -> bool:
-        """Find the child link, in a model of the world or in a nested model; return whether it exists."""
+        """Find the child link in a model of the world or in a nested model; return whether it exists."""
         parameters, bodies = self.parameters, self.simulation.scene.bodies
         model = self.place.path if parameters.child_model == _OWN else parameters.child_model
         link = f"{model}{SEPARATOR}{parameters.child_link}"

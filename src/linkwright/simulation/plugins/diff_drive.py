@@ -1,7 +1,7 @@
 """Differential drive: ``libgazebo_ros_diff_drive.so`` of ROS 2 and ROS 1, and ``gz-sim-diff-drive-system``.
 
-Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults, the limiter, odometry). Other than there a
-robot that drives backward has a negative velocity in its odometry of wheels, unless Gazebo's mistakes are asked for.
+Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults, the limiter, odometry). Unlike there, a
+robot that drives backward has a negative velocity in its wheel odometry, unless Gazebo's mistakes are requested.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class GzParameters(GzDriveParameters):
 
 @dataclass(frozen=True, slots=True)
 class _Pair:
-    """Two wheels on one axis: motors, the joints' names in the simulation, and how they move the robot."""
+    """Two wheels on one axis: their motors, their joint names in the simulation, and how they move the robot."""
 
     left: Motor
     right: Motor
@@ -89,7 +89,7 @@ class _Pair:
 
 
 class _DiffDrive(SimulatedPlugin[P], Generic[P]):
-    """A differential drive: wheel speeds from the commanded velocity, and odometry from the wheels' rotation."""
+    """A differential drive: sets wheel speeds from the commanded velocity, and odometry from the wheels' rotation."""
 
     CARRIED: ClassVar[tuple[str, ...]] = ("_wanted", "_now", "_place")
     _pairs: tuple[_Pair, ...]
@@ -103,7 +103,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     def _fit_wheels(
         self, left: tuple[str, ...], right: tuple[str, ...], sizes: list[tuple[float, float]], torque: float
     ) -> None:
-        """Give the wheels motors; `sizes` has the separation and the radius of each pair, in m."""
+        """Create motors for the wheels; `sizes` holds the separation and the radius of each pair, in m."""
         if len(left) != len(right):
             message = phrase(
                 "plugin '{plugin}' has {left} left wheels and {right} right ones",
@@ -128,7 +128,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         self._wanted = (float(twist.linear.x), float(twist.angular.z))
 
     def _rest(self) -> bool:
-        """Stop; whether a motion was commanded."""
+        """Stop the robot; return whether a motion was commanded."""
         before, self._wanted = self._wanted, (0.0, 0.0)
         return before != self._wanted
 
@@ -138,25 +138,25 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
             pair.left.target, pair.right.target = pair.drive.wheel_speeds(forward, angular)
 
     def _angles(self) -> tuple[float, float]:
-        """The angles of the first pair of wheels in rad; their velocities are kept for `_speeds`."""
+        """Return the angles of the first pair of wheels in rad, and store their velocities for `_speeds`."""
         state, (left, right) = self.simulation.joint_state, self._pairs[0].joints
         (left_angle, left_speed), (right_angle, right_speed) = state(left), state(right)
         self._rolling = left_speed, right_speed
         return left_angle, right_angle
 
     def _speeds(self) -> tuple[float, float]:
-        """The velocity forward in m/s and around z in rad/s that the first pair of wheels rolled with when measured."""
+        """Return the measured forward velocity in m/s and yaw rate in rad/s of the first pair of wheels."""
         return self._pairs[0].drive.motion(*self._rolling)
 
     def _measure(self) -> None:
-        """Update the odometry by the rotation of the first pair of wheels."""
+        """Update the odometry from the rotation of the first pair of wheels."""
         pair, (left, right), self._turned = self._pairs[0], self._turned, self._angles()
         new_left, new_right = self._turned
         way, turn = pair.drive.motion(new_left - left, new_right - right)
         self._place.advance(way, 0.0, turn)
 
     def reset(self) -> None:
-        """Stop, with the odometry at its origin."""
+        """Stop the robot, and reset the odometry to its origin."""
         self._begin()
         self._turn_wheels()
 
@@ -168,7 +168,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
     CARRIED: ClassVar[tuple[str, ...]] = (*_DiffDrive.CARRIED, "_wheel_speeds")
 
     def start(self) -> None:
-        """Give the wheels motors, and subscribe to the commands."""
+        """Create motors for the wheels, and subscribe to the commands."""
         parameters, node = self.parameters, self.node
         count = max(len(parameters.left_joint), len(parameters.right_joint))
         separations, diameters = (
@@ -201,7 +201,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             self.every(parameters.update_rate, partial(self._publish_wheels, transforms or transforms_topic(node)))
 
     def _publish_wheels(self, output: Output) -> None:
-        """Publish the poses of the wheels in the links that carry them."""
+        """Publish the transforms of the wheels in the frames of the links that carry them."""
         for joint in [joint for pair in self._pairs for joint in pair.joints]:
             placed = self.simulation.scene.joints[joint]
             pose = compose(invert(self.simulation.link_pose(placed.parent)), self.simulation.link_pose(placed.child))
@@ -209,7 +209,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             output.publish(transform_message(Header(self.stamp(), parent), child, pose))
 
     def reset(self) -> None:
-        """Stop, with the odometry at its origin."""
+        """Stop the robot, and reset the odometry to its origin."""
         self._wheel_speeds = [(0.0, 0.0)] * len(self._pairs)
         super().reset()
 
@@ -228,7 +228,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             self._topics.publish(stamp, self._place.transform, published, 0.0, angular)
 
     def _drive(self) -> None:
-        """Accelerate the wheels towards the command, by no more than the limit in m/s2 at their rims."""
+        """Accelerate the wheels towards the command, within the acceleration limit in m/s2 at their rims."""
         forward, angular = self._wanted
         for number, pair in enumerate(self._pairs):
             wanted, now = pair.drive.wheel_speeds(forward, angular), self._wheel_speeds[number]
@@ -265,7 +265,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
     PARAMETERS = GzParameters
 
     def start(self) -> None:
-        """Give the wheels motors, and subscribe to the commands."""
+        """Create motors for the wheels, and subscribe to the commands."""
         parameters = self.parameters
         count = max(len(parameters.left_joint), len(parameters.right_joint))
         sizes = [(parameters.wheel_separation, parameters.wheel_radius)] * count
@@ -277,7 +277,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         self.every(parameters.odom_publish_frequency, self._publish)
 
     def reset(self) -> None:
-        """Stop, with the odometry at its origin."""
+        """Stop the robot, and reset the odometry to its origin."""
         self._commands.restart()
         super().reset()
 
@@ -302,10 +302,10 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
 
 
 def _nearer(now: float, to: float, greatest: float) -> float:
-    """A value moved towards another one, by no more than the greatest change."""
+    """Return a value moved towards another one, by no more than the maximum change."""
     return min(max(to, now - greatest), now + greatest)
 
 
 def _as_many(values: tuple[float, ...], count: int) -> tuple[float, ...]:
-    """The values, one for each pair; the last one is repeated where some are missing."""
+    """Return one value for each pair; the last value is repeated where some are missing."""
     return (*values, *(values[-1:] * count))[:count]

@@ -1,4 +1,4 @@
-"""Poses and velocities of models and links, by the names that the services of gazebo_ros take.
+"""Poses and velocities of models and links, by the names that the services of gazebo_ros use.
 
 Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_state``) and its messages.
 """
@@ -20,46 +20,50 @@ _WHOLE_WORLD = ("", WORLD, "map", "/map")
 
 
 class Entities:
-    """Models and links of a simulation, by the names that the services of gazebo_ros take.
+    """Models and links of a simulation, by the names that the services of gazebo_ros use.
 
     Args:
-        simulation: the world.
+        simulation: the simulation of the world.
     """
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
 
     def link(self, name: str) -> str:
-        """Find a link by its full name, ``model::link``, or by its own where only one model has such a link.
+        """Find a link by its full name, ``model::link``, or by its unique link name.
+
+        The link name is sufficient if only one model has such a link.
 
         Raises:
-            LinkwrightError: SIM141 there is none.
+            LinkwrightError: SIM141, there is no such link.
         """
         return self._one(name, self._simulation.scene.bodies)
 
     def joint(self, name: str) -> str:
-        """Find a joint by its full name, ``model::joint``, or by its own where only one model has such a joint.
+        """Find a joint by its full name, ``model::joint``, or by its unique joint name.
+
+        The joint name is sufficient if only one model has such a joint.
 
         Raises:
-            LinkwrightError: SIM141 there is none.
+            LinkwrightError: SIM141, there is no such joint.
         """
         return self._one(name, self._simulation.scene.joints)
 
     def model(self, name: str) -> str:
-        """Find a model.
+        """Find a model by its name.
 
         Raises:
-            LinkwrightError: SIM141 there is none.
+            LinkwrightError: SIM141, there is no such model.
         """
         if name not in self._simulation.scene.models:
             raise _nothing(name, self._simulation.scene.models)
         return name
 
     def frame(self, name: str) -> Transform:
-        """The pose of a model or link in the world.
+        """Return the pose of a model or link in the world.
 
         Raises:
-            LinkwrightError: SIM141 there is no such entity.
+            LinkwrightError: SIM141, there is no such entity.
         """
         if name in _WHOLE_WORLD:
             return IDENTITY
@@ -68,14 +72,14 @@ class Entities:
         return self._simulation.link_pose(self.link(name))
 
     def state(self, name: str, reference: str = "") -> Any:
-        """Return the pose and the twist of a model or link: a message ``gazebo_msgs/msg/EntityState``.
+        """Return the pose and twist of a model or link as a message ``gazebo_msgs/msg/EntityState``.
 
         Args:
-            name: of the model or link.
-            reference: the model or link whose frame the state refers to.
+            name: the name of the model or link.
+            reference: the model or link in whose frame the state is expressed.
 
         Raises:
-            LinkwrightError: SIM141 there is no such entity.
+            LinkwrightError: SIM141, there is no such entity.
         """
         simulation = self._simulation
         is_model = name in simulation.scene.models
@@ -90,10 +94,10 @@ class Entities:
         return message
 
     def put(self, state: Any) -> None:
-        """Set pose and twist of a model from a message ``gazebo_msgs/msg/EntityState``.
+        """Set the pose and twist of a model from a message ``gazebo_msgs/msg/EntityState``.
 
         Raises:
-            LinkwrightError: SIM141 there is no such entity; SIM103 it is fixed to the world.
+            LinkwrightError: SIM141, there is no such entity; SIM103, it is fixed to the world.
         """
         name, frame = self.model(state.name), self.frame(state.reference_frame)
         self._simulation.set_model_pose(name, compose(frame, transform_in(state.pose)))
@@ -101,7 +105,10 @@ class Entities:
         self._simulation.set_model_velocity(name, linear, angular)
 
     def answer_get(self, service: str, request: Any, response: Any, log: Callable[[Phrase], object]) -> Any:
-        """Answer ``gazebo_msgs/srv/GetEntityState``; `log`, such as a logger, receives the reason of a failure."""
+        """Answer ``gazebo_msgs/srv/GetEntityState``.
+
+        `log`, such as a logger's method, receives the reason for a failure.
+        """
         response.header = Header(Time.from_nanoseconds(self._simulation.time), request.reference_frame or WORLD)
 
         def get() -> None:
@@ -110,7 +117,10 @@ class Entities:
         return _answered_without_text(response, get, service, log)
 
     def answer_set(self, service: str, request: Any, response: Any, log: Callable[[Phrase], object]) -> Any:
-        """Answer ``gazebo_msgs/srv/SetEntityState``; `log`, such as a logger, receives the reason of a failure."""
+        """Answer ``gazebo_msgs/srv/SetEntityState``.
+
+        `log`, such as a logger's method, receives the reason for a failure.
+        """
         return _answered_without_text(response, partial(self.put, request.state), service, log)
 
     def _one(self, name: str, known: Collection[str]) -> str:
@@ -128,7 +138,7 @@ def _nothing(name: str, known: Collection[str]) -> LinkwrightError:
 
 
 def answered(response: Any, work: Callable[[], str]) -> Any:
-    """Return a response with `success` and `status_message`, the reason of a failure."""
+    """Do the work, and return the response with `success` and `status_message`, the reason for a failure."""
     try:
         response.success, response.status_message = True, work()
     except LinkwrightError as error:
@@ -139,7 +149,7 @@ def answered(response: Any, work: Callable[[], str]) -> Any:
 def _answered_without_text(
     response: Any, work: Callable[[], object], service: str, log: Callable[[Phrase], object]
 ) -> Any:
-    """Return a response with `success` alone; `log`, such as a logger, receives the reason of a failure."""
+    """Do the work, and return the response with `success`; `log` receives the reason for a failure."""
     try:
         work()
         response.success = True
@@ -150,7 +160,7 @@ def _answered_without_text(
 
 
 def refused(service: str, error: LinkwrightError) -> Phrase:
-    """The reason for refusing a request, in one text."""
+    """Return the reason for refusing a request as one text."""
     finding = error.diagnostics[0]
     if finding.hint:
         return phrase("{service}: {problem} ({hint})", service=service, problem=finding.message, hint=finding.hint)
@@ -158,20 +168,20 @@ def refused(service: str, error: LinkwrightError) -> Phrase:
 
 
 def in_one_line(finding: Diagnostic) -> str:
-    """Return a finding in one line: place, message and hint."""
+    """Return a finding on one line: place, message and hint."""
     place = f"{finding.span}: " if finding.span else ""
     hint = f" ({finding.hint})" if finding.hint else ""
     return f"{place}{finding.message}{hint}"
 
 
 def pose_message(pose: Transform) -> Any:
-    """A pose as a message ``geometry_msgs/msg/Pose``."""
+    """Return a pose as a message ``geometry_msgs/msg/Pose``."""
     point = get_message("geometry_msgs/msg/Point")(*pose[:3])
     return get_message("geometry_msgs/msg/Pose")(point, Quaternion(*pose[3:]))
 
 
 def transform_in(message: Any) -> Transform:
-    """Return the pose in a message; a quaternion of zeros means no rotation."""
+    """Return the pose in a message as a transform; a quaternion of zeros means no rotation."""
     turn = message.orientation
     quaternion = (turn.x, turn.y, turn.z, turn.w)
     if not any(quaternion):
@@ -180,5 +190,5 @@ def transform_in(message: Any) -> Transform:
 
 
 def numbers(vector: Any) -> tuple[float, float, float]:
-    """The x, y and z of a message."""
+    """Return the x, y and z of a message as numbers."""
     return vector.x, vector.y, vector.z

@@ -10,12 +10,13 @@ from linkwright.xmltree import Element
 
 
 def findings_of(error: Exception, name: str, element: Element | None) -> list[Diagnostic]:
-    """The findings for an error of a plugin.
+    """Return the findings for an error of a plugin or sensor.
 
     Args:
-        error: its exception: a `LinkwrightError` is reported as it is, any other one as a fault of its code (SIM138).
-        name: the plugin's or sensor's.
-        element: where it is declared, if anywhere.
+        error: the exception; the findings of a `LinkwrightError` are reported unchanged, any other exception is
+            reported as a fault of the plugin's code (SIM138).
+        name: the name of the plugin or sensor.
+        element: the element that declares it; None if there is none.
     """
     if isinstance(error, LinkwrightError):
         return list(error.diagnostics)

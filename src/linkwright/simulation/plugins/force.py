@@ -1,4 +1,4 @@
-"""A force on a link, commanded by a topic: ``libgazebo_ros_force.so``.
+"""A force on a link, commanded on a topic: ``libgazebo_ros_force.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topic; before each step the force of the last message is added
 at the centre of mass, in the axes of the world or of the link).
@@ -34,10 +34,10 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
     CARRIED = ("_wrench",)
 
     def start(self) -> None:
-        """Find the link, and subscribe.
+        """Find the link, and subscribe to the force.
 
         Raises:
-            LinkwrightError: SIM133 there is no such link; SIM160 the frame is neither that of the world nor the link's.
+            LinkwrightError: SIM133, there is no such link; SIM160, the frame is neither the world's nor the link's.
         """
         parameters = self.parameters
         self._link = self.link(parameters.link_name)
@@ -54,7 +54,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self.every(0.0, self._push)
 
     def reset(self) -> None:
-        """Clear the force."""
+        """Set the force to zero."""
         self._wrench = _STILL
         self._push()
 
@@ -63,7 +63,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self._push()
 
     def _rest(self) -> bool:
-        """Clear the force; return whether there was one."""
+        """Set the force to zero; return whether it was nonzero."""
         before = self._wrench
         self.reset()
         return before != _STILL

@@ -60,16 +60,16 @@ class GzOdometryParameters:
 
 
 class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
-    """``libgazebo_ros_p3d.so``: the pose of a link in the world or in the frame of another link.
+    """``libgazebo_ros_p3d.so``: publishes the pose of a link in the world or in the frame of another link.
 
-    Velocities are in the axes of the world, or of that other link; gazebo_ros_p3d turns those the wrong way, which is
-    done where Gazebo's mistakes are asked for.
+    Velocities are expressed in the axes of the world or of the other link. gazebo_ros_p3d rotates the latter the wrong
+    way, which is reproduced where Gazebo's mistakes are requested.
     """
 
     PARAMETERS = ClassicPoseParameters
 
     def start(self) -> None:
-        """Find the links."""
+        """Find the links, and create the topic."""
         parameters = self.parameters
         self._link = self.link(parameters.body_name)
         self._reference = "" if parameters.frame_name in _WORLD else self.link(parameters.frame_name)
@@ -79,7 +79,7 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
         self.every(parameters.update_rate, self._publish)
 
     def reset(self) -> None:
-        """Restart the noise."""
+        """Restart the noise generator."""
         self._random = self.random
 
     def _publish(self) -> None:
@@ -104,12 +104,14 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
 
 
 class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
-    """``gz-sim-odometry-publisher-system``: the pose of a model in the world, with velocities in its own axes."""
+    """``gz-sim-odometry-publisher-system``: publishes the pose of a model in the world, and its velocity in its own
+    axes.
+    """
 
     PARAMETERS = GzOdometryParameters
 
     def start(self) -> None:
-        """Make the topics."""
+        """Create the topics."""
         parameters, model, node = self.parameters, self.place.path, self.node
         self._child = parameters.robot_base_frame or f"{model}/base_footprint"
         self._frame = parameters.odom_frame or f"{model}/odom"
@@ -125,7 +127,7 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         self.every(parameters.odom_publish_frequency, self._publish)
 
     def reset(self) -> None:
-        """Restart the noise."""
+        """Restart the noise generator."""
         self._random = self.random
 
     def _publish(self) -> None:
@@ -148,13 +150,13 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
 
 
 def _turned_back(frame: Transform, vector: Array) -> Array:
-    """A vector in the axes of the world, expressed in those of a frame."""
+    """Express a vector given in the axes of the world in the axes of a frame."""
     x, y, z = vector
     return np.array(rotate(quaternion_inverse(frame[3:]), (float(x), float(y), float(z))))
 
 
 def _turned_on(frame: Transform, vector: Array) -> Array:
-    """A vector rotated by the orientation of a frame."""
+    """Rotate a vector by the orientation of a frame."""
     x, y, z = vector
     return np.array(rotate(frame[3:], (float(x), float(y), float(z))))
 
@@ -166,7 +168,7 @@ def _with_noise(random: np.random.Generator, deviation: float, linear: Array, an
 
 
 def _odometry(header: Header, child: str, pose: Transform, linear: Array, angular: Array, variance: float) -> Any:
-    """Return odometry with one variance for all measured values."""
+    """Return an odometry message that has the same variance for all measured values."""
     message = get_message("nav_msgs/msg/Odometry")(header=header, child_frame_id=child)
     x, y, z, *rotation = pose
     message.pose.pose.position.x, message.pose.pose.position.y, message.pose.pose.position.z = x, y, z

@@ -1,7 +1,7 @@
 """Ackermann steering of gz: ``gz-sim-ackermann-steering-system``.
 
-Source: gz-sim (parameters, topics, defaults, the angles of the wheels, odometry; ``angular.z`` of a command is how fast
-the car turns). Unlike there, the gain determines how fast a wheel is steered to its angle, under any load.
+Source: gz-sim (parameters, topics, defaults, the angles of the wheels, odometry; ``angular.z`` of a command is the yaw
+rate of the car). Unlike in gz-sim, the gain determines how fast a wheel is steered to its angle, under any load.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class SteeringParameters(GzDriveParameters):
 
 
 class GzAckermann(SimulatedPlugin[SteeringParameters]):
-    """``gz-sim-ackermann-steering-system``: a car, or its steering alone."""
+    """``gz-sim-ackermann-steering-system``: a car, or only its steering."""
 
     PARAMETERS = SteeringParameters
     CARRIED = ("_angle", "_place")
@@ -59,10 +59,10 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     )
 
     def start(self) -> None:
-        """Give the wheels motors and servos, and subscribe to the commands.
+        """Create motors and servos for the wheels, and subscribe to the commands.
 
         Raises:
-            LinkwrightError: SIM134 a joint does not exist; SIM160 a measure is not positive, or no wheel is named.
+            LinkwrightError: SIM134, a joint does not exist; SIM160, a dimension is not positive, or no wheel is named.
         """
         parameters, simulation = self.parameters, self.simulation
         sizes = (parameters.wheel_separation, parameters.wheel_base, parameters.wheel_radius)
@@ -118,7 +118,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._angles = self._wheel_angles()
 
     def reset(self) -> None:
-        """Stop, with the wheels straight ahead."""
+        """Stop the car, with the wheels straight ahead."""
         self._begin()
         self._commands.restart()
         self._limiter.restart()
@@ -136,7 +136,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     # --- the wheels ---------------------------------------------------------------------------------------------------
 
     def _drive(self) -> None:
-        """Drive and steer by the command: the inner wheels slower, and steered further."""
+        """Drive and steer as commanded; the inner wheels turn more slowly and are steered further."""
         self._measure()
         parameters = self.parameters
         forward, _, angular = self._commands.follow()
@@ -146,7 +146,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._steer(*steered_apart(parameters.wheel_base * curvature, parameters.kingpin_width * curvature))
 
     def _curvature(self, forward: float, angular: float) -> float:
-        """The commanded curvature in 1/m, to the left positive; no tighter than the limit."""
+        """Return the commanded curvature in 1/m, positive to the left, no tighter than the limit."""
         parameters = self.parameters
         greatest = sin(parameters.steering_limit) / parameters.wheel_base
         if abs(angular) < _SLOW:
@@ -184,12 +184,12 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
 
     @property
     def _turn(self) -> float:
-        """The yaw in rad for each m driven, by the steering angles now."""
+        """The yaw in rad per metre driven, at the current steering angles."""
         left, right = (self.simulation.joint_state(joint)[0] for joint in self._steering)
         return tan((left + right) / 2.0) / self.parameters.wheel_base
 
     def _measure(self) -> None:
-        """Update the odometry by the rotation of the first wheel of each side."""
+        """Update the odometry from the rotation of the first wheel on each side."""
         before, self._angles = self._angles, self._wheel_angles()
         way = sum(new - old for new, old in zip(self._angles, before, strict=True)) / 2.0 * self.parameters.wheel_radius
         self._place.advance(way, 0.0, way * self._turn)

@@ -1,4 +1,4 @@
-"""Commands, odometry topics and frames of the drives of gz.
+"""Commands, odometry topics and frames that the drives of gz have in common.
 
 Source: gz-sim (parameters, topics, defaults).
 """
@@ -23,7 +23,7 @@ MOTOR_GAIN = 20.0
 
 @dataclass(frozen=True, kw_only=True)
 class GzDriveParameters(SpeedLimits):
-    """Parameters that all drives of gz have."""
+    """Parameters that all drives of gz have in common."""
 
     topic: str = ""
     odom_topic: str = ""
@@ -34,13 +34,13 @@ class GzDriveParameters(SpeedLimits):
 
 
 class DriveCommands:
-    """The commanded velocity within its limits: forward and to the left in m/s, around z in rad/s.
+    """The limited commanded velocity: forward and to the left in m/s, around z in rad/s.
 
     Args:
-        limits: limits of velocity, acceleration and jerk.
+        limits: the limits of velocity, acceleration and jerk.
 
     Attributes:
-        is_enabled: whether it accepts commands; otherwise it slows down to rest.
+        is_enabled: whether commands are accepted; otherwise the velocity decreases to zero.
     """
 
     def __init__(self, limits: SpeedLimits) -> None:
@@ -49,13 +49,13 @@ class DriveCommands:
         self.restart()
 
     def restart(self) -> None:
-        """Set the velocity to zero, and forget the command."""
+        """Set the velocity to zero, and drop the command."""
         self._wanted = (0.0, 0.0, 0.0)
         for limiter in self._limiters:
             limiter.restart()
 
     def resume(self, before: DriveCommands) -> None:
-        """Take over the velocity of another one with the same limits."""
+        """Take over the velocity of other commands with the same limits."""
         self.is_enabled, self._wanted, self._limiters = before.is_enabled, before._wanted, before._limiters
 
     def take(self, twist: Any) -> None:
@@ -64,25 +64,25 @@ class DriveCommands:
             self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
 
     def rest(self) -> bool:
-        """Command a stop; return whether a motion was commanded."""
+        """Set the command to zero; return whether a motion was commanded."""
         before, self._wanted = self._wanted, (0.0, 0.0, 0.0)
         return before != self._wanted
 
     def enable(self, message: Any) -> None:
-        """Enable, or disable and stop, by a ``std_msgs/msg/Bool``."""
+        """Enable the drive, or disable and stop it, as a ``std_msgs/msg/Bool`` requests."""
         self.is_enabled = bool(message.data)
         if not self.is_enabled:
             self.rest()
 
     def follow(self) -> tuple[float, float, float]:
-        """The velocity to drive with now, within the limits; to be called `GZ_RATE` times a second."""
+        """Return the next velocity within the limits; call this `GZ_RATE` times per simulated second."""
         pairs = zip(self._limiters, self._wanted, strict=True)
         forward, sideways, angular = (limiter.follow(wanted, 1.0 / GZ_RATE) for limiter, wanted in pairs)
         return forward, sideways, angular
 
 
 def connected(plugin: SimulatedPlugin[Any], parameters: GzDriveParameters, commands: DriveCommands) -> OdometryTopics:
-    """Make the odometry topics of a drive, and subscribe to its commands."""
+    """Create the odometry topics of a drive, subscribe to its commands, and return the topics."""
     model, node = plugin.place.path, plugin.node
     frame = parameters.frame_id or f"{model}/odom"
     child = parameters.child_frame_id or f"{model}/{plugin.first_link.rpartition(SEPARATOR)[2]}"

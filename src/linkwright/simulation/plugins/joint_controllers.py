@@ -1,7 +1,7 @@
 """Joint controllers of gz: ``gz-sim-joint-position-controller-system`` and ``gz-sim-joint-controller-system``.
 
-Source: gz-sim (parameters, topics, defaults, meaning of velocity commands). Commands are ``std_msgs/msg/Float64``, of
-which a bridge makes the messages of gz.
+Source: gz-sim (parameters, topics, defaults, meaning of velocity commands). Commands are ``std_msgs/msg/Float64``,
+which a bridge converts to messages of gz.
 """
 
 from __future__ import annotations
@@ -76,18 +76,18 @@ P = TypeVar("P", bound=ControllerParameters)
 
 
 class _JointController(SimulatedPlugin[P], Generic[P]):
-    """Holds joints at the value that a topic commands, `_wanted`."""
+    """Holds joints at the commanded value `_wanted`, which it receives on a topic."""
 
     IGNORED = ("use_actuator_msg", "actuatorNumber")
 
     _wanted: float
 
     def _begin(self) -> None:
-        """Hold the joints as at the start."""
+        """Create the PID controllers of the joints."""
         self._controllers = [Pid(self.parameters.gains) for _ in self._joints]
 
     def reset(self) -> None:
-        """Hold the joints as at the start."""
+        """Restore the initial command, with new PID controllers."""
         self._begin()
 
     def _find_joints(self) -> None:
@@ -98,7 +98,7 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
             simulation.keep_awake(simulation.scene.joints[joint].child)
 
     def _listen(self, leaf: str) -> None:
-        """Subscribe to the commands: to the topic of the parameters, or to one named after the first joint."""
+        """Subscribe to the commands, on the topic of the parameters or on one named after the first joint."""
         parameters = self.parameters
         topic = (
             parameters.topic
@@ -112,11 +112,11 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
         self._wanted = float(message.data)
 
     def _rest(self) -> bool:
-        """Stop an endless motion; return whether there was one. A position is held."""
+        """Stop a motion that would not end on its own; return whether there was one. A position is held."""
         return False
 
     def _push(self, derivative: int) -> None:
-        """Apply the PID controller's force for a step: to the errors of positions (0) or velocities (1)."""
+        """Apply the PID forces of one step, for errors of the positions (0) or the velocities (1)."""
         seconds = self.simulation.step / NANOSECONDS_PER_SECOND
         for joint, controller in zip(self._joints, self._controllers, strict=True):
             error = self._wanted - self.simulation.joint_state(joint)[derivative]
@@ -126,15 +126,15 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
 class GzJointPosition(_JointController[PositionParameters]):
     """``gz-sim-joint-position-controller-system``.
 
-    With ``use_velocity_commands`` a joint goes straight to where it shall be, as fast as its limit and ``cmd_max``
-    allow, and stays there whatever pulls at it. Without it a PID controller pushes it.
+    With ``use_velocity_commands`` a joint moves straight to the commanded position, as fast as its limit and
+    ``cmd_max`` allow, and stays there under any load. Without it, a PID controller applies forces to the joint.
     """
 
     PARAMETERS = PositionParameters
     CARRIED = ("_wanted",)
 
     def start(self) -> None:
-        """Find the joints, and hold them."""
+        """Find the joints, and hold them at the initial position."""
         parameters, simulation = self.parameters, self.simulation
         if parameters.joint_index:
             raise self.refused(
@@ -162,12 +162,12 @@ class GzJointPosition(_JointController[PositionParameters]):
 
 
 class GzJointVelocity(_JointController[VelocityParameters]):
-    """``gz-sim-joint-controller-system``: a motor holds a velocity, or a PID controller pushes the joint."""
+    """``gz-sim-joint-controller-system``: a motor holds a velocity, or a PID controller applies forces to the joint."""
 
     PARAMETERS = VelocityParameters
 
     def start(self) -> None:
-        """Find the joints, and give them motors."""
+        """Find the joints, and create their motors."""
         self._find_joints()
         self._motors = []
         if not self.parameters.use_force_commands:

@@ -1,7 +1,7 @@
-"""A force on a joint, commanded by a topic: ``gz-sim-apply-joint-force-system``.
+"""A force on a joint, commanded on a topic: ``gz-sim-apply-joint-force-system``.
 
-Source: gz-sim (parameter, topic; the last command acts before each step). Commands are ``std_msgs/msg/Float64``, of
-which a bridge makes the messages of gz.
+Source: gz-sim (parameter, topic; the last command acts in each step). Commands are ``std_msgs/msg/Float64``, which a
+bridge converts to messages of gz.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class GzJointForce(SimulatedPlugin[JointForceParameters]):
         self.every(0.0, self._push)
 
     def reset(self) -> None:
-        """Clear the force."""
+        """Set the force to zero."""
         self._force = 0.0
         self._push()
 
@@ -46,7 +46,7 @@ class GzJointForce(SimulatedPlugin[JointForceParameters]):
         self._force = float(message.data)
 
     def _rest(self) -> bool:
-        """Clear the force; return whether there was one."""
+        """Set the force to zero; return whether it was nonzero."""
         before = self._force
         self.reset()
         return before != 0.0

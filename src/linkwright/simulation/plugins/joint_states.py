@@ -1,7 +1,7 @@
 """Joint states: ``libgazebo_ros_joint_state_publisher.so``, and ``gz-sim-joint-state-publisher-system``.
 
-Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults). What gz sends is its message Model, of
-which a bridge makes this one.
+Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults). gz sends its message Model, which a bridge
+converts to the message published here.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class GzParameters:
 
 
 class _JointStates(SimulatedPlugin[P], Generic[P]):
-    """Publishes positions and velocities of joints of one axis."""
+    """Publishes the positions and velocities of joints with one axis."""
 
     def _publish_joints(self, names: list[str], joints: list[str], rate: float, topic: str, usual: str = "") -> None:
         self._names, self._joints = names, joints
@@ -59,7 +59,7 @@ class ClassicJointStates(_JointStates[ClassicParameters]):
     PARAMETERS = ClassicParameters
 
     def start(self) -> None:
-        """Find the joints; a fixed one is left out with a warning."""
+        """Find the joints; omit fixed joints with a warning."""
         asked = [name for entry in self.parameters.joint_name for name in entry.replace(",", " ").split()]
         found = [(name, joint) for name in asked if (joint := self._joint(name)) is not None]
         names, joints = [name for name, _ in found], [joint for _, joint in found]
@@ -80,7 +80,7 @@ class GzJointStates(_JointStates[GzParameters]):
     PARAMETERS = GzParameters
 
     def start(self) -> None:
-        """Find the joints: those that are named, else all that move."""
+        """Find the joints that are named, or all movable joints if none is named."""
         begin = f"{self.place.path}::"
         moving = [
             name for name, placed in self.simulation.scene.joints.items() if name.startswith(begin) and placed.axes

@@ -1,7 +1,7 @@
 """Joints that follow a trajectory: ``gz-sim-joint-trajectory-controller-system``.
 
-Source: gz-sim (parameters, topics, defaults, when a point is the one to go to). Joints are held at a point until the
-next one is due; nothing is interpolated between two.
+Source: gz-sim (parameters, topics, defaults, when each point is approached). Joints are held at a point until the next
+one is due; positions between two points are not interpolated.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Many = tuple[float, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class TrajectoryParameters:
-    """Parameters of ``gz-sim-joint-trajectory-controller-system``; lists are in the order of the joints."""
+    """Parameters of ``gz-sim-joint-trajectory-controller-system``; lists have one item for each joint, in order."""
 
     joint_name: tuple[str, ...] = ()
     topic: str = ""
@@ -46,7 +46,10 @@ class TrajectoryParameters:
     velocity_cmd_offset: Many = ()
 
     def gains(self, kind: str, number: int) -> Gains:
-        """The gains of one joint for ``position`` or ``velocity``; without any a controller does nothing."""
+        """Return the gains of one joint for ``position`` or ``velocity``.
+
+        Without gains, the controller has no effect.
+        """
 
         def value(name: str, default: float) -> float:
             return _nth(getattr(self, f"{kind}_{name}"), number, default)
@@ -64,7 +67,7 @@ class TrajectoryParameters:
 
 
 class _Joint:
-    """A joint and its targets: rad or m, rad/s or m/s, N m or N."""
+    """A joint and its targets: position in rad (m), velocity in rad/s (m/s), effort in N m (N)."""
 
     def __init__(self, name: str, number: int, parameters: TrajectoryParameters) -> None:
         self.name = name
@@ -74,20 +77,23 @@ class _Joint:
         self._by_velocity = Pid(parameters.gains("velocity", number))
 
     def aim(self, point: Any, number: int) -> None:
-        """Set the targets from a point, in which the joint has a number; values that the point omits stay."""
+        """Set the targets from item `number` of a point's lists; values that the point omits remain."""
         self.position = _nth(point.positions, number, self.position)
         self.velocity = _nth(point.velocities, number, self.velocity)
         self.effort = _nth(point.effort, number, self.effort)
 
     def force(self, position: float, velocity: float, seconds: float) -> float:
-        """The force in N m (N) for a position and a velocity, `seconds` after the last call."""
+        """Return the force in N m (N) for a position and a velocity, `seconds` after the last call."""
         force = self._by_position.force(self.position - position, seconds)
         return force + self._by_velocity.force(self.velocity - velocity, seconds) + self.effort
 
 
 @dataclass(slots=True)
 class _Trajectory:
-    """A trajectory that is being followed, begun at a time in ns; `index` is the point that is being approached."""
+    """A trajectory that is being followed.
+
+    `start` is its start time in ns, and `index` the index of the point that is being approached.
+    """
 
     message: Any
     start: int

@@ -1,4 +1,4 @@
-"""Limits of velocity, acceleration and jerk, as parameters of the drives of gz.
+"""Limits of velocity, acceleration and jerk, as parameters of gz's drives.
 
 Source: gz-sim's drives.
 """
@@ -13,7 +13,10 @@ from linkwright.kinematics.limits import SpeedLimiter
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedLimits:
-    """Limits in m/s and rad/s, m/s2 and rad/s2, m/s3 and rad/s3; those of one kind come before those of both."""
+    """Limits in m/s and rad/s, m/s2 and rad/s2, m/s3 and rad/s3.
+
+    A linear or angular limit takes precedence over the limit for both kinds.
+    """
 
     min_velocity: float = -inf
     max_velocity: float = inf
@@ -35,7 +38,7 @@ class SpeedLimits:
     max_angular_jerk: float | None = None
 
     def limiter(self, kind: str) -> SpeedLimiter:
-        """The limiter of one kind of velocity, ``linear`` or ``angular``."""
+        """Return the limiter of one kind of velocity, ``linear`` or ``angular``."""
         return SpeedLimiter(*(self._bounds(kind, item) for item in ("velocity", "acceleration", "jerk")))
 
     def _bounds(self, kind: str, derivative: str) -> tuple[float, float]:

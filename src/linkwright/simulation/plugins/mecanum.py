@@ -1,8 +1,8 @@
 """Mecanum drive of gz: ``gz-sim-mecanum-drive-system``.
 
-Source: gz-sim (parameters, topics, defaults, which wheel turns how fast; odometry from the wheels). Other than there
-rollers are not simulated by friction that differs with the direction: the wheels slide, and the robot has the velocity
-that turning wheels of that kind give it, as `planar_move` holds a velocity.
+Source: gz-sim (parameters, topics, defaults, wheel speeds, wheel odometry). Unlike in gz-sim, rollers are not simulated
+by anisotropic friction: the wheels slide, and the robot gets the velocity that mecanum wheels would give it, in the way
+that `planar_move` holds a velocity.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
     CARRIED = ("_place",)
 
     def start(self) -> None:
-        """Give the wheels motors, and subscribe to the commands.
+        """Create motors for the wheels, and subscribe to the commands.
 
         Raises:
-            LinkwrightError: SIM134 a joint does not exist; SIM160 a measure is not positive, or the model is fixed.
+            LinkwrightError: SIM134, a joint does not exist; SIM160, a dimension is not positive, or the model is fixed.
         """
         parameters, simulation = self.parameters, self.simulation
         if not (min(parameters.wheel_separation, parameters.wheelbase) > 0.0 and parameters.wheel_radius > 0.0):
@@ -84,7 +84,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         self._angles = self._states(0)
 
     def reset(self) -> None:
-        """Stop, with the odometry at its origin."""
+        """Stop the robot, and reset the odometry to its origin."""
         self._commands.restart()
         self._begin()
         self._turn_wheels((0.0, 0.0, 0.0))
@@ -104,11 +104,11 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
                 motor.target = speed
 
     def _states(self, derivative: int) -> list[float]:
-        """The positions of the four wheels in rad, or their velocities in rad/s."""
+        """Return the positions of the four wheels in rad, or their velocities in rad/s."""
         return [self.simulation.joint_state(joint)[derivative] for joint in self._wheels]
 
     def _rolled(self, turned: list[float]) -> tuple[float, float, float]:
-        """The displacement (or velocity) of the robot from the rotation (or velocity) of its wheels."""
+        """Return the displacement (or velocity) of the robot for a rotation (or velocity) of its wheels."""
         return self._drive_train.motion(*turned)
 
     def _move(self) -> None:

@@ -1,7 +1,8 @@
-"""Multicopters: ``gz-sim-multicopter-motor-model-system``, and ``gz-sim-multicopter-control-system`` for velocities.
+"""Multicopters: ``gz-sim-multicopter-motor-model-system`` and ``gz-sim-multicopter-control-system``.
 
-A rotor pulls along the z axis of its link with the square of its speed, turns its parent link the other way, and has
-drag in the air that it moves through. The controller tilts the model so that it reaches the commanded velocity.
+The thrust of a rotor acts along the z axis of its link and grows with the square of its speed. The rotor turns its
+parent link the opposite way, and has drag in the air that it moves through. The controller tilts the model so that it
+reaches the commanded velocity.
 
 Source: gz-sim (parameters, topics, formulas); T. Lee, M. Leok, N. H. McClamroch, "Geometric tracking control of a
 quadrotor UAV on SE(3)", 2010.
@@ -54,13 +55,13 @@ class MotorParameters:
 
 
 class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
-    """A rotor; it follows the speed commands of a controller or a topic, with the delay of a motor.
+    """A rotor that follows the speed commands of a controller or a topic, with the delay of a motor.
 
-    The topic has the speeds of all rotors, in rad/s; where a controller flies the model, that one is obeyed.
+    The topic carries the speeds of all rotors, in rad/s. In a model with a controller, the controller's commands apply.
 
     Attributes:
         wanted: the commanded speed, in rad/s.
-        speed: how fast it turns.
+        speed: the current speed, in rad/s.
     """
 
     PARAMETERS = MotorParameters
@@ -68,10 +69,10 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
     CARRIED = ("wanted", "speed")
 
     def start(self) -> None:
-        """Find the rotor, and subscribe to its speed.
+        """Find the rotor, and subscribe to its speed commands.
 
         Raises:
-            LinkwrightError: SIM133, SIM134 there is no such link or joint; SIM160 the motor is of another type.
+            LinkwrightError: SIM133, SIM134, there is no such link or joint; SIM160, the motor is of another type.
         """
         parameters = self.parameters
         if parameters.motor_type != "velocity":
@@ -135,7 +136,7 @@ class ControlParameters:
 
 
 class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
-    """``gz-sim-multicopter-control-system``: flies with a commanded velocity; hovers when the sender is lost."""
+    """``gz-sim-multicopter-control-system``: flies at a commanded velocity, and hovers when the sender is lost."""
 
     PARAMETERS = ControlParameters
     IGNORED = (
@@ -151,7 +152,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         """Find the rotors, and subscribe to the commands.
 
         Raises:
-            LinkwrightError: SIM133, SIM134 there is no such link or joint; SIM160 its rotors cannot hold the model.
+            LinkwrightError: SIM133, SIM134, there is no such link or joint; SIM160, its rotors cannot hold the model.
         """
         parameters, element = self.parameters, self.place.element
         self._body = self.link(parameters.com_link_name)
@@ -169,12 +170,12 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self.every(0.0, self._fly)
 
     def reset(self) -> None:
-        """Wait for the first command."""
+        """Drop the command, and enable the controller."""
         self._wanted: tuple[Array, float] | None = None
         self._is_enabled = True
 
     def _find_rotors(self, element: Element | None) -> None:
-        """Find the rotors, and work out which of their speeds give which torque and thrust."""
+        """Find the rotors, and compute the rotor speeds that produce a given torque and thrust."""
         simulation = self.simulation
         configuration = None if element is None else element.first("rotorConfiguration")
         rotors = [] if configuration is None else list(configuration.elements("rotor"))
@@ -210,7 +211,10 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
             raise self.refused(message) from error
 
     def _inertial(self) -> tuple[float, Array]:
-        """Mass of the model in kg, and its inertia about its centre of mass in the axes of its body, in kg m2."""
+        """Return the model's mass in kg, and its inertia tensor in kg m2.
+
+        The tensor is about the centre of mass, in the axes of the body.
+        """
         simulation = self.simulation
         model, data = simulation.model, simulation.data
         body = simulation.body(self._body)
@@ -254,8 +258,8 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
                     motors[joint].wanted = float(speed)
 
     def _motors(self) -> dict[str, GzMulticopterMotor]:
-        """The rotors of the model, by joint."""
-        if len(self._rotors) < len(self._joints):  # plugins of a model start one after the other
+        """Return the motors of the model, by joint."""
+        if len(self._rotors) < len(self._joints):  # the other motors have not started yet
             found = self._environment.plugins(self.place.path.partition(SEPARATOR)[0])
             motors = [
                 simulated_plugin for simulated_plugin in found if isinstance(simulated_plugin, GzMulticopterMotor)
@@ -264,7 +268,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         return self._rotors
 
     def _speeds(self, linear: Array, yaw_rate: float) -> Array:
-        """The speed of each rotor in rad/s, for this moment."""
+        """Return the current target speed of each rotor, in rad/s."""
         parameters, simulation = self.parameters, self.simulation
         turn = rotation_matrix(simulation.link_pose(self._body)[3:])
         velocity, rates = simulation.link_velocity(self._body)
@@ -283,7 +287,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
 
 
 def _attitude(turn: Array, acceleration: Array) -> Array:
-    """The axes of a body whose thrust gives an acceleration, and whose heading stays."""
+    """Return the axes of a body whose thrust produces an acceleration, with the heading unchanged."""
     up = -acceleration / max(float(np.linalg.norm(acceleration)), 1e-9)
     ahead = next((item for item in turn.T if np.sum(np.cross(item, up) ** 2) >= _PARALLEL), turn[:, 0])
     left = np.cross(up, ahead)

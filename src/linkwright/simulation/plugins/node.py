@@ -23,17 +23,17 @@ _FIRST_DIGIT = re.compile(r"(?<=/)(?=[0-9])")
 
 
 class PluginNode(SteppedNode):
-    """The node of a plugin: its own for those of Gazebo classic, that of the simulation for those of gz.
+    """The node of a plugin: a separate node for Gazebo classic, the simulation's node for gz.
 
     Args:
         node: the node.
-        exchange: that of the simulation.
-        owned: whether the node is the plugin's own, and ends with it.
+        exchange: the exchange of the simulation.
+        owned: whether the node belongs to the plugin alone, and ends with it.
         qos: overrides of QoS profiles (`NodeDescription.qos`).
-        usual: the default names of topics that are still free; None where topics have their own names only.
-        bridged: for plugins of gz, the topics that a bridge has under another type.
-        now_ns: returns the time of the simulated motion, in nanoseconds; by default that of the node's clock.
-        calls: calls its callbacks; by default an error of one is logged.
+        usual: the default topic names that are still free; None if topics are only published under their own names.
+        bridged: for plugins of gz, the topics that a bridge offers under another type.
+        now_ns: returns the simulated time in nanoseconds; by default the time of the node's clock.
+        calls: calls the node's callbacks; by default an error in a callback is logged.
     """
 
     def __init__(
@@ -56,14 +56,14 @@ class PluginNode(SteppedNode):
         self._names: list[str] = []
 
     def publisher(self, msg_type: Any, topic: str, qos: QoSProfile | int = 10, *, usual: str = "") -> Output:
-        """A topic to publish.
+        """Create a topic for publishing.
 
         Args:
             msg_type: the class of its messages, or the name of the type.
-            topic: relative, absolute or private name. Characters that gz allows and ROS does not are replaced.
-            qos: the quality of service; a number is a depth.
-            usual: for topics of gz, the name that they have on robots: it is published under that one too, where the
-                simulation is asked for it and no other plugin has it.
+            topic: a relative, absolute or private name. Characters that gz allows and ROS does not are replaced.
+            qos: the QoS profile; a number is a depth.
+            usual: for topics of gz, the usual name on robots. The topic is published under this name, too, if the
+                simulation has this option enabled and no other plugin uses the name.
         """
         return self._publish_as(msg_type, self._both(topic, usual), qos)
 
@@ -83,7 +83,7 @@ class PluginNode(SteppedNode):
         self._subscribe_to(msg_type, self._both(topic, usual), received, qos, commander)
 
     def close(self) -> None:
-        """Remove everything that was made from the graph."""
+        """Remove all endpoints of the plugin from the graph."""
         for forget in self._forgetting:
             forget()
         super().close()

@@ -1,4 +1,4 @@
-"""Parameters of plugins: a dataclass is the table of their names, types and defaults.
+"""Parameters of plugins, declared by a dataclass with their names, types and defaults.
 
     @dataclass(frozen=True, kw_only=True)
     class Parameters:
@@ -7,9 +7,9 @@
         update_rate: float = 100.0
         publish_odom: bool = False
 
-A name is that of the child element of ``<plugin>``. The types are ``str``, ``float``, ``int``, ``bool``, `Vector3`, and
-``tuple[str, ...]`` or ``tuple[float, ...]`` for elements that may be there several times. ``bool | None``,
-``float | None`` and ``Vector3 | None`` are for those whose defaults depend on others.
+Each field is named after a child element of ``<plugin>``. The types are ``str``, ``float``, ``int``, ``bool``,
+`Vector3`, and ``tuple[str, ...]`` or ``tuple[float, ...]`` for elements that may occur several times. ``bool | None``,
+``float | None`` and ``Vector3 | None`` are for parameters whose defaults depend on other parameters.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ _TRUTHS = {"true": True, "1": True, "false": False, "0": False}
 
 @dataclass(frozen=True)
 class NoParameters:
-    """For plugins without parameters."""
+    """The parameters of a plugin that has none."""
 
 
 def parameter(default: Any = MISSING, *, aliases: Sequence[str] = ()) -> Any:
-    """A parameter with a default, if it has one, and its names in older simulators."""
+    """Declare a parameter with its default, if it has one, and its names in older simulators."""
     return field(default=default, metadata={_ALIASES: tuple(aliases)})
 
 
@@ -52,15 +52,15 @@ def parameters_from(
     """Read the parameters of a plugin from its element.
 
     Args:
-        table: a dataclass, see above.
-        element: the plugin as written; None for a sensor without a plugin.
-        ignored: names that are known and change nothing here.
+        table: the dataclass of the parameters, as described in this module.
+        element: the element of the plugin; None for a sensor without a plugin.
+        ignored: names that are known but have no effect here.
 
     Returns:
-        The parameters; and warnings for unknown names, and for invalid values, which get their defaults.
+        The parameters, and warnings for unknown names and for invalid values, which are replaced by their defaults.
 
     Raises:
-        LinkwrightError: SIM132 one without a default is missing.
+        LinkwrightError: SIM132, a parameter without a default is missing.
     """
     findings: list[Diagnostic] = []
     given: dict[str, list[Element]] = {}
@@ -97,7 +97,7 @@ def _types(table: Hashable) -> Mapping[str, Any]:
 
 
 def _read(known: Field[Any], kind: Any, written: list[Element], findings: list[Diagnostic]) -> Any:
-    """Read the value of a parameter; None if there is no valid one."""
+    """Read the value of a parameter; return None if there is no valid one."""
     many = kind in (tuple[str, ...], tuple[float, ...])
     convert = _CONVERTERS[str if kind == tuple[str, ...] else float if kind == tuple[float, ...] else kind]
     values = []

@@ -1,4 +1,4 @@
-"""The parts of a model that have poses: nested models, links, and parts that are fixed to links."""
+"""The parts of a model that have poses: nested models, links, and objects that are fixed to links."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ class PartKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """Something with a pose.
+    """A part of a model that has a pose.
 
     Attributes:
-        kind: its kind.
-        name: with the models and the link that it is in, ``robot::arm::link``.
-        parent: the name of the model, link or world that its pose is given in.
-        pose: gives that pose now.
+        kind: the kind of the part.
+        name: the name with the models and the link that contain the part, such as ``robot::arm::link``.
+        parent: the name of the model, link or world in whose frame the pose is expressed.
+        pose: returns the current pose.
     """
 
     kind: PartKind
@@ -45,12 +45,12 @@ class Part:
 
 
 def parts_of(simulation: Simulation, model: Model, path: str) -> Iterator[Part]:
-    """The parts of a model of a simulation, each model and link before its parts.
+    """Yield the parts of a model of a simulation, each model and link before its own parts.
 
     Args:
-        simulation: the world that the model is in.
-        model: with its includes resolved.
-        path: its name in the world; one of a nested model, ``robot::arm``, is itself no part.
+        simulation: the simulation that contains the model.
+        model: the model, with its includes resolved.
+        path: the model's name in the world; a nested model such as ``robot::arm`` does not yield itself.
     """
     place = _frame_of(simulation, model, path)
     if SEPARATOR not in path:
@@ -59,10 +59,10 @@ def parts_of(simulation: Simulation, model: Model, path: str) -> Iterator[Part]:
 
 
 def _frame_of(simulation: Simulation, model: Model, path: str) -> Pose:
-    """The pose in the world of a model's frame."""
+    """Return a function for the pose of a model's frame in the world."""
     top, _, inside = path.partition(SEPARATOR)
     whole = simulation.scene.models[top]
-    if not whole.structure.links:  # nothing of it moves
+    if not whole.structure.links:  # none of its parts move
         return partial(_same, whole.pose)
     if not inside or not model.links:
         return lambda: simulation.model_pose(top)
@@ -71,13 +71,13 @@ def _frame_of(simulation: Simulation, model: Model, path: str) -> Pose:
 
 
 def _moving_with(simulation: Simulation, link: str, place: Transform) -> Pose:
-    """The pose in the world of a frame that is fixed to a link."""
+    """Return a function for the pose in the world of a frame that is fixed to a link."""
     back = invert(place)
     return lambda: compose(simulation.link_pose(link), back)
 
 
 def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, place: Pose) -> Iterator[Part]:
-    """The parts in a model whose frame is at a place in the world."""
+    """Yield the parts of a model whose frame has a given pose in the world."""
     for link in model.links:
         name = f"{path}{SEPARATOR}{link.name}"
         yield Part(PartKind.LINK, name, path, partial(_between, place, partial(simulation.link_pose, name)))
@@ -104,5 +104,5 @@ def _same(pose: Transform) -> Transform:
 
 
 def _between(outer: Pose, inner: Pose) -> Transform:
-    """The pose of one part in the frame of another."""
+    """Return the pose of one part in the frame of another."""
     return compose(invert(outer()), inner())

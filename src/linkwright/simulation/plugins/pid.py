@@ -1,6 +1,6 @@
 """The PID controller of gz's systems.
 
-Source: gz-math's PID: a bound whose least is more than its greatest bounds nothing.
+Source: gz-math's PID (a bound whose minimum exceeds its maximum has no effect).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class Gains:
-    """Gains of a controller, and bounds of the integral's share and of the command."""
+    """Gains of a PID controller, and bounds of its integral term and of its command."""
 
     p: float
     i: float
@@ -31,7 +31,7 @@ class Pid:
         self._before: float | None = None
 
     def force(self, error: float, seconds: float) -> float:
-        """The force in N m (N) for an error, `seconds` after the last call."""
+        """Return the force in N m (N) for an error, `seconds` after the last call."""
         gains = self._gains
         self._sum = _bounded(self._sum + gains.i * error * seconds, gains.i_min, gains.i_max)
         change = 0.0 if self._before is None else (error - self._before) / seconds

@@ -1,4 +1,4 @@
-"""Collecting the plugins and sensors of a model or world, each with its place in it."""
+"""Collect the plugins and sensors of a model or world, each with its place in it."""
 
 from __future__ import annotations
 
@@ -16,23 +16,25 @@ from linkwright.simulation.plugins.registry import needs_nothing
 
 
 def of_world(world: World, systems: Sequence[Plugin] = ()) -> Iterator[PluginPlace]:
-    """The plugins of a world itself.
+    """Yield the plugins of a world itself.
 
     Args:
         world: the world, as it was read.
-        systems: the plugins of a world that names none.
+        systems: the plugins to use for a world that does not name any.
     """
     for plugin in world.plugins or systems:
         yield PluginPlace(plugin.name or plugin.filename, plugin, world, None, "", None)
 
 
 def of_model(world: World, model: Model, path: str) -> Iterator[PluginPlace]:
-    """The plugins of a model, of its sensors, and its sensors without plugins; then those of the models in it.
+    """Yield the plugins of a model and of its sensors, and its sensors without plugins.
+
+    The plugins and sensors of nested models follow.
 
     Args:
         world: the world, as it was read.
-        model: with its includes resolved.
-        path: its name in the world.
+        model: the model, with its includes resolved.
+        path: the model's name in the world.
     """
     frames = Frames(model)
     yield from _of_model(world, model, path, frames)
@@ -45,7 +47,7 @@ def _of_model(world: World, model: Model, path: str, frames: Frames) -> Iterator
         plugins = placed.sensor.plugins
         for plugin in plugins:
             yield PluginPlace(plugin.name or placed.sensor.name, plugin, world, model, path, placed)
-        if all(needs_nothing(plugin.filename) for plugin in plugins):  # sensors contain gz's systems, too
+        if all(needs_nothing(plugin.filename) for plugin in plugins):  # plugins in sensors include the systems of gz
             yield PluginPlace(placed.sensor.name, None, world, model, path, placed)
     for inner in model.models:
         yield from _of_model(world, inner, f"{path}{SEPARATOR}{inner.name}", frames.inside(inner.name))

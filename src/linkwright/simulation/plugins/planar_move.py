@@ -1,7 +1,7 @@
-"""Motion in a plane: ``libgazebo_ros_planar_move.so``, with the names of ROS 1 too.
+"""Motion in a plane: ``libgazebo_ros_planar_move.so``, including its names in ROS 1.
 
-Source: gazebo_ros_pkgs (parameters, topics, defaults). Other than there the velocity holds after each step, so that
-wheels that grip slow the robot down hardly at all, and the robot falls and tilts as it would by itself.
+Source: gazebo_ros_pkgs (parameters, topics, defaults). Unlike there, the velocity is set after each step. Wheels with
+grip therefore hardly slow the robot down, and it still falls and tilts freely.
 """
 
 from __future__ import annotations
@@ -41,13 +41,13 @@ class PlanarMoveParameters:
 
 
 class PlanarDrive(SimulatedPlugin[P], Generic[P]):
-    """Sets the velocity of a model in its plane."""
+    """Sets the velocity of a model in its horizontal plane."""
 
     def be_free(self) -> None:
         """Check that the model can move, and keep it awake.
 
         Raises:
-            LinkwrightError: SIM160 it is fixed to the world.
+            LinkwrightError: SIM160, the model is fixed to the world.
         """
         if not self.simulation.moves_freely(self.place.path):
             raise self.refused(
@@ -56,7 +56,7 @@ class PlanarDrive(SimulatedPlugin[P], Generic[P]):
         self.simulation.keep_awake(self.first_link)
 
     def hold(self, forward: float, sideways: float, yaw_rate: float) -> None:
-        """Set velocities in m/s and rad/s for the next step; those out of the plane stay."""
+        """Set the planar velocities in m/s and rad/s for the next step; the other components remain."""
         yaw = yaw_of(self.simulation.model_pose(self.place.path))
         linear, angular = self.simulation.link_velocity(self.first_link)
         along = (forward * cos(yaw) - sideways * sin(yaw), forward * sin(yaw) + sideways * cos(yaw), float(linear[2]))
@@ -74,7 +74,7 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         """Subscribe to the commands, and hold the velocity.
 
         Raises:
-            LinkwrightError: SIM160 the model is fixed to the world.
+            LinkwrightError: SIM160, the model is fixed to the world.
         """
         parameters, node = self.parameters, self.node
         self.be_free()
@@ -117,5 +117,5 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         )
 
     def reset(self) -> None:
-        """Stop."""
+        """Stop the robot."""
         self._rest()

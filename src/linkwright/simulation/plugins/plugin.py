@@ -1,6 +1,6 @@
 """Base classes of plugins and sensors.
 
-How to write one. A class for each plugin or type of sensor, declared as an entry point (`registry`):
+To add a plugin or a type of sensor, write a class and declare it as an entry point (`registry`):
 
     class JointStatePublisher(SimulatedPlugin[Parameters]):
         PARAMETERS = Parameters  # a dataclass, see `parameters`
@@ -14,15 +14,16 @@ How to write one. A class for each plugin or type of sensor, declared as an entr
             positions = [self.simulation.joint_state(joint)[0] for joint in self._joints]
             self._output.publish(JointState(Header(self.stamp()), ..., positions, ...))
 
-For a sensor, `sensor` is the measured sensor with its pose. The class is the same for a sensor with a plugin in its
-``<sensor>``, which ``linkwright.simulated_plugins`` finds by its library, and for a sensor alone, which
-``linkwright.simulated_sensors`` finds by its type. Noise is drawn from `random`, so that the same seed gives the same
-bits. Make costly messages only if ``output.is_wanted``.
+For a sensor, `sensor` is the sensor to measure, with its pose. The same class serves a sensor with a plugin in its
+``<sensor>``, which ``linkwright.simulated_plugins`` finds by its library, and a sensor without a plugin, which
+``linkwright.simulated_sensors`` finds by its type. Noise is drawn from `random`, so the same seed gives the same bits.
+Create costly messages only if ``output.is_wanted``.
 
-Everything is called in the simulation's thread: `start` after the model is added, functions passed to `every` at their
-simulated times, callbacks of topics and services between two chunks of time, `reset` after time restarts, `stop` before
-the model is removed. A model whose file was saved is replaced where it is; `resume` takes over the lasting state.
-An exception, wherever it is raised, is logged and ends that plugin or sensor; everything else continues (`calls`).
+All methods are called in the simulation's thread: `start` after the model is added, functions passed to `every` at
+their simulated times, callbacks of topics and services between two chunks of time, `reset` after time restarts, and
+`stop` before the model is removed. A model whose file was saved is replaced at its current pose, and `resume` takes
+over the state that lasts. An exception, wherever it is raised, is logged and ends that plugin or sensor; the others
+continue (`calls`).
 """
 
 from __future__ import annotations
@@ -57,11 +58,11 @@ class PlacedSensor:
     """A sensor of a model.
 
     Attributes:
-        name: with the models, the link or the joint that it is in: ``robot::head::camera``.
+        name: the name with the models and the link or joint that contain it: ``robot::head::camera``.
         sensor: the parsed sensor.
-        link: the link that carries it, named as in the simulation; of one in a joint the child of that.
-        joint: the joint that it is in; empty for a sensor of a link.
-        pose: where it is in the frame of `link`.
+        link: the link that carries it, named as in the simulation; for a sensor in a joint, the child link.
+        joint: the joint that contains it; empty for a sensor of a link.
+        pose: its pose in the frame of `link`.
     """
 
     name: str
@@ -76,12 +77,12 @@ class PluginPlace:
     """The place of a plugin in a model, and its element.
 
     Attributes:
-        name: its own name, or that of the sensor without a plugin.
-        plugin: as written; None for a sensor without one.
+        name: the name of the plugin, or of the sensor without a plugin.
+        plugin: the plugin as written; None for a sensor without one.
         world: the world, as it was read.
-        model: the model that it is in; None for a plugin of the world.
+        model: the model that contains the plugin; None for a plugin of the world.
         path: the name of that model, ``robot`` or ``robot::arm``; empty for the world.
-        sensor: the sensor that it is in, or is.
+        sensor: the sensor that contains the plugin, or that has none; None for other plugins.
     """
 
     name: str
@@ -93,7 +94,7 @@ class PluginPlace:
 
     @property
     def element(self) -> Element | None:
-        """The element that declares it."""
+        """The element that declares the plugin or sensor."""
         if self.plugin is not None:
             return self.plugin.element
         return None if self.sensor is None else self.sensor.sensor.element
@@ -108,31 +109,31 @@ class Environment(Protocol):
 
     @property
     def gazebo_mistakes(self) -> bool:
-        """Whether known mistakes of Gazebo are reproduced."""
+        """Whether plugins reproduce known mistakes of Gazebo."""
 
     @property
     def left(self) -> dict[str, Any]:
-        """Values that plugins leave under names of their choice, for their successors in a changed model."""
+        """Values that plugins store, under names of their choice, for their successors in a changed model."""
 
     def random(self, name: str) -> np.random.Generator:
-        """A generator of random numbers for a name; it depends on nothing but the name and the seed."""
+        """Return a random number generator for a name, determined only by the name and the seed."""
 
     def plugins(self, model: str) -> tuple[SimulatedPlugin[Any], ...]:
-        """The running plugins and sensors of a model."""
+        """Return the running plugins and sensors of a model."""
 
 
 class SimulatedPlugin(Generic[P]):
-    """A plugin or a sensor that runs.
+    """A running plugin or sensor.
 
     Attributes:
         PARAMETERS: the dataclass with its parameters.
-        IGNORED: names of parameters that are known and change nothing here.
-        CARRIED: names of the attributes that a replaced model's plugin passes on, if the plugin has not changed.
+        IGNORED: names of parameters that are known but have no effect here.
+        CARRIED: names of the attributes that are passed on to an unchanged plugin when its model is replaced.
         place: its place in the world.
         node: its part of the ROS graph.
         parameters: its parameters.
         simulation: the simulation.
-        gazebo_mistakes: whether to reproduce known errors of Gazebo; each is named where it is.
+        gazebo_mistakes: whether to reproduce known mistakes of Gazebo; each is documented where it is reproduced.
     """
 
     PARAMETERS: ClassVar[type[Any]] = NoParameters
@@ -151,99 +152,101 @@ class SimulatedPlugin(Generic[P]):
     # --- methods for plugins to override ------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Find links and joints, make topics, register with `every`.
+        """Find links and joints, create topics, and register functions with `every`.
 
         Raises:
-            LinkwrightError: it cannot work; this is logged, and it does not run.
+            LinkwrightError: the plugin cannot work; this is logged, and the plugin does not run.
         """
 
     def reset(self) -> None:
-        """Restore the state of the start; simulated time restarts."""
+        """Restore the initial state, because simulated time restarts."""
 
     def resume(self, before: SimulatedPlugin[P]) -> None:
-        """Take over the state of a predecessor with the same parameters (its model was replaced); called after `start`.
+        """Take over the state of a predecessor with the same parameters.
+
+        Called after `start` when a model was replaced.
 
         Args:
-            before: that one, which has ended.
+            before: the predecessor, which has ended.
         """
         for name in self.CARRIED:
             setattr(self, name, getattr(before, name))
 
     def is_like(self, other: SimulatedPlugin[Any]) -> bool:
-        """Return whether another one has the same place in its model and the same parameters."""
+        """Return whether another plugin has the same place in its model and the same parameters."""
         one, two = self.place, other.place
         same_place = (one.path, one.name) == (two.path, two.name)
         return type(self) is type(other) and same_place and bool(self.parameters == other.parameters)
 
     def stop(self) -> None:
-        """Clean up; its node, and functions registered with `every`, are removed automatically."""
+        """Clean up; the node and the functions registered with `every` are removed automatically."""
 
     @property
     def left(self) -> dict[str, Any]:
-        """Values that predecessors left under names of their choice, when the model was changed."""
+        """Values that predecessors stored under names of their choice before the model was changed."""
         return self._environment.left
 
     # --- methods for plugins to call ----------------------------------------------------------------------------------
 
     @property
     def sensor(self) -> PlacedSensor:
-        """The sensor, for a plugin that is a sensor or belongs to one."""
+        """The sensor itself, for a plugin that is a sensor or belongs to one."""
         assert self.place.sensor is not None
         return self.place.sensor
 
     @property
     def random(self) -> np.random.Generator:
-        """Its own generator of random numbers: keep it, and fetch it again in `reset`."""
+        """The plugin's own random number generator: store it, and get it again in `reset`."""
         owner = self.sensor.name if self.place.sensor is not None else f"{self.place.path}::{self.place.name}"
         return self._environment.random(owner)
 
     def every(self, rate: float, function: Callable[[], None]) -> None:
-        """Register a function to be called a number of times a simulated second; 0 for after each step."""
+        """Register a function to be called `rate` times per simulated second; 0 means after each step."""
         period = round(NANOSECONDS_PER_SECOND / rate) if rate > 0 else 0
         self._tasks.append(self.simulation.call_every(period, partial(self.node.calls.make, function)))
 
     def stamp(self) -> Time:
-        """The simulated time, for headers."""
+        """Return the simulated time, for headers."""
         return Time.from_nanoseconds(self.simulation.time)
 
     def link(self, name: str) -> str:
-        """The name in the simulation of a link of its model.
+        """Return the name in the simulation of a link of the plugin's model.
 
         Raises:
-            LinkwrightError: SIM133 there is none.
+            LinkwrightError: SIM133, there is no such link.
         """
         return self._found(name, self.simulation.scene.bodies, "SIM133")
 
     def joint(self, name: str) -> str:
-        """The name in the simulation of a joint of its model that moves.
+        """Return the name in the simulation of a movable joint of the plugin's model.
 
         Raises:
-            LinkwrightError: SIM134 there is none.
+            LinkwrightError: SIM134, there is no such joint.
         """
         return self._found(name, self.simulation.scene.joints, "SIM134")
 
     @property
     def first_link(self) -> str:
-        """The name in the simulation of the first link of its model: the model moves with it."""
+        """The name in the simulation of the first link of the plugin's model, with which the model moves."""
         top, _, _ = self.place.path.partition(SEPARATOR)
         return self.simulation.scene.models[top].structure.links[0].link.name
 
     def refused(self, message: Phrase) -> LinkwrightError:
-        """The error to raise in `start` where parameters fit neither each other nor the model (SIM160)."""
+        """Return the error (SIM160) to raise in `start` if the parameters contradict each other or the model."""
         element = self.place.element
         if element is None:
             return LinkwrightError(Diagnostic("SIM160", message))
         return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
 
     def close(self, on_error: Callable[[Exception], object]) -> None:
-        """Remove it: `stop`, and everything that it made; an error of `stop` is reported."""
+        """Call `stop`, and remove everything that the plugin created; report an error of `stop`."""
         for task in self._tasks:
             task.cancelled = True
         self.node.calls.close(self.stop, on_error)
         self.node.close()
 
     def _found(self, name: str, known: Collection[str], code: str) -> str:
-        """Find a name as it is, below the model, or below one of the nested models."""
+        """Find a name as written, in the model, or in one of the nested models."""
         begin = f"{self.place.path}{SEPARATOR}" if self.place.path else ""
         mine = [name for name in known if name.startswith(begin)]
         for candidate in (f"{begin}{name}", name):

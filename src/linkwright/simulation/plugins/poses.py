@@ -1,8 +1,8 @@
 """Poses of the parts of a model: ``gz-sim-pose-publisher-system``.
 
-Source: gz-sim (parameters, topics, defaults, which parts are on the topic of those that stay). Messages and the names
-of frames are those that a bridge makes: ``tf2_msgs/msg/TFMessage`` of gz's Pose_V,
-``geometry_msgs/msg/TransformStamped`` of its Pose, and ``robot/link`` of ``robot::link``.
+Source: gz-sim (parameters, topics, defaults, which parts the topic of static poses contains). Messages and frame names
+are the ones that a bridge produces: ``tf2_msgs/msg/TFMessage`` for gz's Pose_V, ``geometry_msgs/msg/TransformStamped``
+for its Pose, and ``robot/link`` for ``robot::link``.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
     PARAMETERS = PoseParameters
 
     def start(self) -> None:
-        """Find the parts, and make the topics."""
+        """Find the parts, and create the topics."""
         parameters, model, path = self.parameters, self.place.model, self.place.path
         if model is None:
             return
@@ -61,7 +61,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
         self._publish_at(parameters.update_frequency, topic, parts)
 
     def _kinds(self) -> set[PartKind]:
-        """The kinds of parts that are published."""
+        """Return the kinds of parts that are published."""
         parameters = self.parameters
         nested = parameters.publish_nested_model_pose
         wanted = {
@@ -93,7 +93,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
             output.publish(message)
 
     def _moved_by_joints(self, model: Model) -> set[str]:
-        """The links with joints, without the one that the model's frame moves with."""
+        """Return the links with joints, except the link with which the model's frame moves."""
         begin = f"{self.place.path}{SEPARATOR}"
         moving = {
             link

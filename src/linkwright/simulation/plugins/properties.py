@@ -1,7 +1,7 @@
 """Services that get and set physical properties of models, links and joints: ``libgazebo_ros_properties.so``.
 
-Source: gazebo_ros_pkgs for ROS 2 (services and their answers). The services neither return nor set
-lights, and settings that only the physics engine ODE has.
+Source: gazebo_ros_pkgs for ROS 2 (services and their responses). The services do not cover lights, nor settings that
+only the physics engine ODE has.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ _FAR = 1e9
 
 
 class ClassicProperties(SimulatedPlugin[NoParameters]):
-    """``libgazebo_ros_properties.so``, of a world."""
+    """``libgazebo_ros_properties.so``, a plugin of a world."""
 
     def start(self) -> None:
-        """Make the services."""
+        """Create the services."""
         self._entities = Entities(self.simulation)
         for name, callback in (
             ("GetModelProperties", self._model),
@@ -105,7 +105,10 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
         return answered(response, put)
 
     def _set_joint(self, request: Any, response: Any) -> Any:
-        """Set damping and limits of the first axis; other properties are ODE's own and have no effect."""
+        """Set the damping and the limits of the first axis.
+
+        Other properties are specific to ODE and have no effect.
+        """
 
         def put() -> str:
             self.simulation.refresh()
@@ -138,6 +141,6 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
 
 
 def _is_possible(ixx: float, iyy: float, izz: float, ixy: float, ixz: float, iyz: float) -> bool:
-    """Return whether a body can have this inertia."""
+    """Return whether an inertia tensor is physically possible."""
     tensor = np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
     return bool(np.isfinite(tensor).all()) and is_positive_definite(tensor) and triangle_excess(tensor) <= TOLERANCE

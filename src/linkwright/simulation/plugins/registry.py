@@ -1,13 +1,13 @@
-"""Finding the classes that simulate plugins and sensors, by entry points.
+"""Find the classes that simulate plugins and sensors, through entry points.
 
-They are found through two groups of entry points, ours and those of other packages, each naming a subclass of
+There are two groups of entry points, in this package and in others. Each entry point names a subclass of
 `linkwright.simulation.plugins.plugin.SimulatedPlugin`:
 
 ``linkwright.simulated_plugins``
-    by library: ``gazebo_ros_diff_drive``, ``gz-sim-diff-drive-system``, in the form of `library_name`.
+    by library, in the form of `library_name`: ``gazebo_ros_diff_drive``, ``gz-sim-diff-drive-system``.
 
 ``linkwright.simulated_sensors``
-    by type of sensor (``gpu_lidar``), for sensors that no plugin of their own publishes, as those of gz.
+    by type of sensor (``gpu_lidar``), for sensors that have no publishing plugin, such as the sensors of gz.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ SYSTEMS_OF_GZ = tuple(Plugin(f"gz-sim-{name}-system") for name in ("physics", "u
 
 
 def is_of_gz(filename: str) -> bool:
-    """Return whether a library is one of gz, whose plugins have no node of their own."""
+    """Return whether a library belongs to gz, whose plugins do not have separate nodes."""
     return library_name(filename).startswith("gz-sim-")
 
 
@@ -65,19 +65,19 @@ def needs_nothing(filename: str) -> bool:
 
 
 def plugin_class(library: str) -> PluginClass | None:
-    """The class that simulates the plugin in a library, given by its `library_name`; None where there is none.
+    """Return the class that simulates the plugin in a library (`library_name`), or None if there is none.
 
     Raises:
-        LinkwrightError: SIM136 the package that brings it cannot be imported.
+        LinkwrightError: SIM136, the package that provides it cannot be imported.
     """
     return _loaded(PLUGINS, library)
 
 
 def sensor_class(kind: str) -> PluginClass | None:
-    """The class that simulates a sensor without a plugin, by its type; None where there is none.
+    """Return the class that simulates a sensor type without a plugin, or None if there is none.
 
     Raises:
-        LinkwrightError: SIM136 the package that brings it cannot be imported.
+        LinkwrightError: SIM136, the package that provides it cannot be imported.
     """
     return _loaded(SENSORS, kind)
 

@@ -1,4 +1,4 @@
-"""``<ros>`` of a plugin of Gazebo classic: node name, namespace, remappings, parameters, quality of service.
+"""``<ros>`` of a plugin of Gazebo classic: node name, namespace, remappings, parameters and QoS.
 
 Source: ``gazebo_ros::Node`` of gazebo_ros_pkgs for ROS 2.
 """
@@ -24,11 +24,11 @@ class NodeDescription:
     """The name, namespace and arguments of a plugin's node.
 
     Attributes:
-        name: its name.
-        namespace: where it lives.
-        parameters: values by name.
+        name: the node's name.
+        namespace: the node's namespace.
+        parameters: the values of parameters, by name.
         remappings: rules ``(from, to)``.
-        qos: by topic as written, and ``publisher`` or ``subscriber``, the elements that override its policies.
+        qos: the elements that override QoS policies, by topic as written and ``publisher`` or ``subscriber``.
     """
 
     name: str
@@ -48,12 +48,12 @@ def node_of(name: str, element: Element | None, namespace: str) -> NodeDescripti
     """Read the description of a plugin's node.
 
     Args:
-        name: of the plugin; characters that a node name cannot have become underscores.
-        element: the plugin as written.
+        name: the name of the plugin; characters that a node name cannot contain become underscores.
+        element: the element of the plugin.
         namespace: the default namespace.
 
     Raises:
-        LinkwrightError: an ``<argument>`` is none of ROS's.
+        LinkwrightError: an ``<argument>`` is not a ROS argument.
     """
     node = NodeDescription(_as_name(name), _namespace(element) or namespace)
     ros = element.first("ros") if element is not None else None
@@ -78,7 +78,7 @@ def node_of(name: str, element: Element | None, namespace: str) -> NodeDescripti
 
 
 def overridden(profile: QoSProfile, element: Element) -> QoSProfile:
-    """A quality of service with the settings of an element; words that are none of them leave it as it is."""
+    """Return a QoS profile with the settings of an element applied; unknown words have no effect."""
     result = QoSProfile(profile.depth, profile.reliability, profile.durability, profile.history)
     for child in element.elements():
         word = child.text().strip().upper()
@@ -94,7 +94,7 @@ def overridden(profile: QoSProfile, element: Element) -> QoSProfile:
 
 
 def _namespace(element: Element | None) -> str:
-    """The namespace of ``<ros>``, or, as in ROS 1, of the plugin itself; empty where there is none."""
+    """Return the namespace of ``<ros>``, or of the plugin itself as in ROS 1; empty if there is none."""
     for text in _namespaces(element):
         if text.strip("/ "):
             return "/" + text.strip("/ ")

@@ -1,8 +1,9 @@
-"""Poses of everything in a world: ``gz-sim-scene-broadcaster-system``.
+"""Poses of all entities in a world: ``gz-sim-scene-broadcaster-system``.
 
-Source: gz-sim (topics, their order and rates, parameters). Entities have their own names, without those of the models
-that they are in, and poses in what they are in. As with a bridge, ``frame_id`` stays empty: a listener to tf that is
-given these topics leaves them out, where frames of links would have two parents otherwise (decision 0096).
+Source: gz-sim (topics, their order and rates, parameters). Entities have their local names, without those of the models
+that contain them, and poses relative to their parents. As with a bridge, ``frame_id`` stays empty. A tf listener that
+is given these topics ignores such transforms, because otherwise the frames of links would have two parents (decision
+0096).
 """
 
 from __future__ import annotations
@@ -38,11 +39,11 @@ class SceneParameters:
 
 @dataclass(frozen=True, slots=True)
 class _Entities:
-    """Entities whose poses are published together.
+    """Entities whose poses are published in one message.
 
     Attributes:
-        names: their names.
-        poses: poses of static entities, and functions for the others.
+        names: the names of the entities.
+        poses: constant poses for static entities, and functions that return the pose for the others.
     """
 
     names: tuple[str, ...]
@@ -56,7 +57,7 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
     IGNORED = ("state_hertz",)
 
     def start(self) -> None:
-        """Make the topics of the world."""
+        """Create the topics of the world."""
         begin = f"/world/{self.place.world.name}"
         self._revision = -1
         self._all = self._dynamic = _Entities((), ())
@@ -76,7 +77,7 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
         output.publish(TFMessage(batch=TransformBatch(("",) * count, entities.names, self.simulation.time, poses)))
 
     def _collect(self) -> None:
-        """Find the entities of the current world; the poses of static ones are constant."""
+        """Find the entities of the current world; static ones get constant poses."""
         self.simulation.refresh()
         self._revision = self.simulation.revision
         models = self.simulation.scene.models.values()

@@ -1,6 +1,6 @@
 """Skid steering: ``libgazebo_ros_skid_steer_drive.so`` of ROS 1, a differential drive with two pairs of wheels.
 
-Source: gazebo_ros_pkgs for ROS 1 (parameters, topics, defaults; odometry is where the robot is in the world).
+Source: gazebo_ros_pkgs for ROS 1 (parameters, topics, defaults; the odometry is the robot's true pose in the world).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class SkidSteerParameters:
     covariance_yaw: float = 1e-2
 
     def as_diff_drive(self) -> ClassicParameters:
-        """The same as parameters of the differential drive."""
+        """Return the equivalent parameters of the differential drive."""
         return ClassicParameters(
             left_joint=(self.left_front_joint, self.left_rear_joint),
             right_joint=(self.right_front_joint, self.right_rear_joint),

@@ -23,7 +23,7 @@ class VelocityControlParameters:
 
 
 class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
-    """``gz-sim-velocity-control-system`` for models; links are not controlled one by one."""
+    """``gz-sim-velocity-control-system`` for models; individual links are not controlled."""
 
     PARAMETERS = VelocityControlParameters
     IGNORED = ("link_name",)
@@ -33,7 +33,7 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         """Subscribe to the commands.
 
         Raises:
-            LinkwrightError: SIM160 the model is fixed to the world.
+            LinkwrightError: SIM160, the model is fixed to the world.
         """
         self.be_free()
         self.reset()

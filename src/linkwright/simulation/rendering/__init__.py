@@ -1,1 +1,1 @@
-"""Images of a simulated world: by OpenGL on the system's graphics library, or by ray casting where it has none."""
+"""Images of a simulated world, from OpenGL in the system's graphics library, or from ray casting if there is none."""

@@ -1,4 +1,4 @@
-"""The choice of the renderer: the first one that works here."""
+"""Choose the first renderer that works on this machine."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ WAYS = (*BACKENDS, "embree", "mujoco")
 
 
 def make_renderer(simulation: Simulation, way: str = "") -> Renderer:
-    """Make a renderer of a simulation, for use in this thread.
+    """Create a renderer of a simulation, for use in this thread.
 
     Args:
-        simulation: the world.
-        way: one of `WAYS`; by default the one that the environment variable ``MUJOCO_GL`` names, else the first
-            that works here.
+        simulation: the simulation of the world.
+        way: one of `WAYS`; by default the one that the environment variable ``MUJOCO_GL`` names, or else the first that
+            works on this machine.
 
     Raises:
-        Exception: of any class, where a way is asked for that does not work here.
+        Exception: of any class, if the requested way does not work on this machine.
     """
     if way:
         return _made(simulation, way)

@@ -1,4 +1,4 @@
-"""Lights of a world as renderers need them."""
+"""Lights of a world in the form that renderers need."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class PlacedLight:
 
     Attributes:
         light: the parsed light.
-        position: in m, shape (3,).
-        direction: where it shines, a unit vector of shape (3,).
-        colour: red, green, blue from 0 to 1, with its intensity: shape (3,).
+        position: its position in m, shape (3,).
+        direction: the unit vector of its direction, shape (3,).
+        colour: red, green and blue from 0 to 1, scaled by its intensity, shape (3,).
     """
 
     light: Light
@@ -36,10 +36,10 @@ class PlacedLight:
 
 
 def lights_of(simulation: Simulation, forwards: Array) -> list[PlacedLight]:
-    """Return the lights of a world and of its links, at their current poses; a sun if there is none.
+    """Return the lights of a world and of its links, at their current poses; a sun if there are none.
 
-    A faint light comes from the camera, which looks along `forwards`: it replaces indirect light, without which
-    everything in the shade would have one colour.
+    A faint light at the camera, which looks along `forwards`, replaces indirect light. Without it, everything in the
+    shade would have the same colour.
     """
     lights = [*_of_world(simulation), *_of_links(simulation)]
     if not lights:

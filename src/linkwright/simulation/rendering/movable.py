@@ -1,4 +1,4 @@
-"""Geoms that may move: which of them rest, and which of the others are in an image."""
+"""Movable geoms: which of them are at rest, and which of the others are visible in an image."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class View:
     """The pose and the optics of a camera.
 
     Attributes:
-        optics: the camera.
-        origin: where it is, in m, shape (3,).
+        optics: the projection of the camera.
+        origin: its position in m, shape (3,).
         axes: right, down and forwards, as columns.
-        rays: where its pixels look, as long along the optical axis as 1: shape (n, 3), float32.
+        rays: the rays of its pixels, scaled to length 1 along the optical axis, shape (n, 3), float32.
     """
 
     optics: Optics
@@ -41,14 +41,14 @@ class View:
 
 
 class MovableGeoms:
-    """Geoms that may move, by their indices in MuJoCo's model.
+    """Movable geoms, by their indices in MuJoCo's model.
 
     Args:
-        simulation: the world.
-        meshes: their triangles.
+        simulation: the simulation of the world.
+        meshes: the triangles of the geoms.
 
     Attributes:
-        resting: those that have not moved for a while.
+        resting: the geoms that have not moved for a while.
     """
 
     def __init__(self, simulation: Simulation, meshes: dict[int, Mesh]) -> None:
@@ -65,13 +65,13 @@ class MovableGeoms:
         self._hollow: Any = np.zeros(count, dtype=bool)
 
     def settle(self, origin: Array) -> bool:
-        """Find out which geoms rest, for a camera; return whether they changed.
+        """Update `resting` for a camera; return whether it has changed.
 
-        A box with a camera in it never rests: it is not seen by that camera, but by others.
+        A box that contains a camera never rests: other cameras see it, but this one does not.
         """
         data, now = self._simulation.data, self._simulation.time
         poses = np.concatenate([data.geom_xpos[self._geoms], data.geom_xmat[self._geoms]], axis=1)
-        moved = (poses != self._poses).any(axis=1) | (self._since > now)  # time may have restarted
+        moved = (poses != self._poses).any(axis=1) | (self._since > now)  # simulated time may have restarted
         self._poses = poses
         self._since[moved] = now
         self._hollow |= self._around(origin)
@@ -83,10 +83,10 @@ class MovableGeoms:
         return True
 
     def in_view(self, view: View) -> dict[int, Array]:
-        """Return the moving geoms in an image, without those whose bounding box contains the camera.
+        """Return the moving geoms in an image, except geoms whose bounding box contains the camera.
 
         Returns:
-            For each the corners of a box around it: to the right, down and ahead in m, shape (8, 3).
+            For each geom the corners of its bounding box: to the right, down and ahead in m, shape (8, 3).
         """
         data, chosen = self._simulation.data, np.flatnonzero(~(self._rests | self._around(view.origin)))
         geoms = self._geoms[chosen]
@@ -106,11 +106,11 @@ class MovableGeoms:
 
 
 def pixels_towards(optics: Optics, boxes: list[Array]) -> Any:
-    """The indices of the pixels in which bounding boxes may appear; None for all.
+    """Return the indices of the pixels in which bounding boxes may appear; None for all pixels.
 
     Args:
-        optics: the camera.
-        boxes: as `MovableGeoms.in_view` returns them.
+        optics: the projection of the camera.
+        boxes: the corners of the boxes, as `MovableGeoms.in_view` returns them.
     """
     if len(boxes) > _FEW or any(corners[:, 2].min() <= optics.near for corners in boxes):
         return None
@@ -126,7 +126,7 @@ def pixels_towards(optics: Optics, boxes: list[Array]) -> Any:
 
 
 def _corners(points: Array) -> Array:
-    """The corners of bounding boxes: shape (8, 3)."""
+    """Return the corners of the bounding boxes of points, shape (8, 3)."""
     ends = np.stack([points.min(axis=0), points.max(axis=0)])
     corners: Array = np.array([[ends[x, 0], ends[y, 1], ends[z, 2]] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
     return corners

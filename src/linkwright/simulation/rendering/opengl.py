@@ -1,7 +1,7 @@
-"""Rendering by OpenGL: MuJoCo's classic renderer, off the screen, on EGL or OSMesa.
+"""Rendering by OpenGL: MuJoCo's classic renderer, offscreen, on EGL or OSMesa.
 
-MuJoCo's defaults (four samples a pixel, shadow maps of 4096 pixels, reflections) take twenty times as long on a
-processor as the settings here.
+MuJoCo's defaults (four samples per pixel, shadow maps of 4096 pixels, reflections) take twenty times as long on a CPU
+as the settings used here.
 """
 
 from __future__ import annotations
@@ -52,14 +52,14 @@ _SPARE_GEOMS = 100
 class OpenGlRenderer:
     """Renders images by OpenGL.
 
-    Its context belongs to the thread that made it.
+    The OpenGL context belongs to the thread that created the renderer.
 
     Args:
-        simulation: the world.
+        simulation: the simulation of the world.
         backend: one of `BACKENDS`.
 
     Raises:
-        Exception: of any class; this backend does not work here.
+        Exception: of any class, if this backend does not work.
     """
 
     def __init__(self, simulation: Simulation, backend: str) -> None:
@@ -114,7 +114,7 @@ class OpenGlRenderer:
         )
 
     def close(self) -> None:
-        """Free the OpenGL context, in the thread that made it."""
+        """Free the OpenGL context; call this in the thread that created it."""
         if self._thread == threading.get_ident():
             self._gl.make_current()
             if self._draw_context is not None:
@@ -153,8 +153,8 @@ class OpenGlRenderer:
     def _simplify_round_shapes(self) -> None:
         """Draw spheres, and cylinders in uniform light, with fewer vertices than MuJoCo does.
 
-        MuJoCo draws each square by itself, and cuts the sides of cylinders into stacks and their ends into rings, which
-        show only where a lamp lights their vertices. The image is the same.
+        MuJoCo draws each quad separately, and divides the sides of cylinders into stacks and their ends into rings.
+        These divisions are visible only where a lamp lights their vertices. The image is the same.
         """
         turns, rises = np.linspace(0.0, 2.0 * np.pi, _SLICES + 1), np.linspace(-0.5 * np.pi, 0.5 * np.pi, _STACKS + 1)
         circle = [*zip(np.cos(turns).tolist(), np.sin(turns).tolist(), strict=True)]
@@ -168,7 +168,10 @@ class OpenGlRenderer:
             self._redraw(_CYLINDER, [tube, *ends])
 
     def _redraw(self, shape: int, pieces: list[tuple[int, list[tuple[Vector3, Vector3]]]]) -> None:
-        """Replace a display list of MuJoCo: kinds of primitives, and the normals and places of their corners."""
+        """Replace a display list of MuJoCo by primitives.
+
+        Each primitive has a kind, and the normals and positions of its vertices.
+        """
         gl = self._functions
         gl.glNewList(self._draw_context.baseBuiltin + shape, _COMPILE)
         for kind, corners in pieces:
@@ -188,7 +191,7 @@ class OpenGlRenderer:
     def _update(self, hole: Optics, pose: Transform) -> None:
         simulation, mujoco = self._simulation, self._mujoco
         model, axes = simulation.model, axes_of(pose)
-        model.vis.map.zfar = hole.far  # the extent of infinite planes
+        model.vis.map.zfar = hole.far  # zfar limits the extent of infinite planes
         groups = model.geom_group.copy()
         model.geom_group[_beside(simulation, hole, np.array(pose[:3]), axes)] = COLLISION_GROUP
         catches = mujoco.mjtCatBit.mjCAT_ALL.value
@@ -211,9 +214,9 @@ class OpenGlRenderer:
             camera.frustum_width = hole.width / 2 * scale
 
     def _flatten_planes(self, hole: Optics, origin: Array) -> None:
-        """Draw infinite planes, seen from above, as the tops of boxes: MuJoCo's have 40 000 squares each.
+        """Draw infinite planes, seen from above, as the tops of boxes: MuJoCo's planes have 40 000 squares each.
 
-        That is for light which is not the same everywhere, and for textures.
+        This is done for nonuniform light and for textures.
         """
         kinds, data, left = self._mujoco.mjtGeom, self._simulation.data, len(self._endless)
         for geom in self._scene.geoms[: self._scene.ngeom]:
@@ -235,7 +238,7 @@ class OpenGlRenderer:
         ambient = np.array(self._simulation.world.scene.ambient[:3])
         for light, placed in zip(scene.lights, lights[:_LIGHTS], strict=False):
             description = placed.light
-            directional = description.type == "directional"  # a point light is a spot light in all directions
+            directional = description.type == "directional"  # point lights are spot lights in all directions
             light.type = (kinds.mjLIGHT_DIRECTIONAL if directional else kinds.mjLIGHT_SPOT).value
             light.pos[:], light.dir[:] = placed.position, placed.direction
             light.attenuation[:] = (
@@ -274,7 +277,7 @@ class OpenGlRenderer:
         if colour is not None:
             background = np.clip(np.array(self._simulation.world.scene.background[:3]), 0, 1) * 255
             for channel, shade in enumerate(np.round(background).astype(np.uint8)):
-                np.copyto(colour[:, :, channel], shade, where=nothing)  # a tenth of the time of all three at once
+                np.copyto(colour[:, :, channel], shade, where=nothing)  # a tenth of the time of copying all three
             colour = np.ascontiguousarray(colour[::-1])
         if Channels.DEPTH not in channels:
             return colour, None
@@ -316,7 +319,10 @@ class OpenGlRenderer:
 
 
 def _beside(simulation: Simulation, hole: Optics, origin: Array, axes: Array) -> Any:
-    """Return whether geoms are outside the image, shape (geoms,): OpenGL would compute each of their vertices."""
+    """Return which geoms are outside the image, shape (geoms,).
+
+    OpenGL would process each of their vertices.
+    """
     normals, places = hole.bounds
     reach = simulation.model.geom_rbound * (1 + _ROUNDING)
     beyond = normals @ axes.T @ (simulation.data.geom_xpos - origin).T
@@ -346,7 +352,7 @@ def _context_class(backend: str) -> Any:
 
 
 def _picked(pixels: Pixels, optics: Optics) -> Pixels:
-    """Resample a pinhole's image for a lens by nearest pixels."""
+    """Resample a pinhole image for a lens with nearest-neighbour interpolation."""
     column, row = optics.sources
     column = np.clip(np.round(column).astype(int), 0, optics.pinhole.width - 1)
     row = np.clip(np.round(row).astype(int), 0, optics.pinhole.height - 1)
@@ -355,7 +361,7 @@ def _picked(pixels: Pixels, optics: Optics) -> Pixels:
 
 
 def _warped(pixels: Pixels, optics: Optics) -> Pixels:
-    """Resample a pinhole's colours for a lens by interpolation."""
+    """Resample the colours of a pinhole image for a lens with interpolation."""
     column = np.clip(optics.sources[0], 0, optics.pinhole.width - 1.001)
     row = np.clip(optics.sources[1], 0, optics.pinhole.height - 1.001)
     left, top = column.astype(int), row.astype(int)

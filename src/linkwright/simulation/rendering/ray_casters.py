@@ -1,4 +1,4 @@
-"""Ray casting against everything that is visible: by Embree, or by MuJoCo itself."""
+"""Ray casting against all visible geoms, by Embree or by MuJoCo itself."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Hits:
     """The first hits of rays.
 
     Attributes:
-        distances: in lengths of the ray, inf for nothing: shape (n,), float32.
-        geoms: of MuJoCo's model, -1 for none: shape (n,), int32.
-        normals: of the surface, unit vectors to either side: shape (n, 3), float32; None if not requested.
+        distances: in multiples of the ray's length, inf for no hit: shape (n,), float32.
+        geoms: the indices in MuJoCo's model, -1 for no hit: shape (n,), int32.
+        normals: unit normals of the surface, facing either side: shape (n, 3), float32; None if not requested.
     """
 
     distances: Any
@@ -33,12 +33,12 @@ class Hits:
 
 
 class Caster(Protocol):
-    """The interface of ray casting for images."""
+    """The interface of ray casters for images."""
 
     way: Phrase
 
     def cast(self, view: View, *, normals: bool) -> Hits:
-        """Cast the rays of an image into the current world, from the camera's near clip on.
+        """Cast the rays of an image into the current world, starting at the camera's near clip plane.
 
         Args:
             view: the view of the image.
@@ -47,7 +47,7 @@ class Caster(Protocol):
 
 
 class MujocoCaster:
-    """Ray casting by MuJoCo: exact and slow."""
+    """Ray casting by MuJoCo, which is exact and slow."""
 
     way = phrase("rays of MuJoCo, as there is neither EGL nor OSMesa nor embreex: slow")
 
@@ -59,7 +59,7 @@ class MujocoCaster:
 
     def cast(self, view: View, *, normals: bool) -> Hits:
         """Cast the rays of an image."""
-        del normals  # they come with the rest
+        del normals  # MuJoCo returns normals in any case
         origin, rays, start = view.origin, view.rays, view.optics.near
         simulation = self._simulation
         simulation.refresh()
@@ -79,7 +79,7 @@ class MujocoCaster:
         return Hits(reached.astype(np.float32), geoms, sides.astype(np.float32))
 
     def _beyond(self, origin: Array, ray: Array, length: float, start: float) -> tuple[int, float, Array]:
-        """The first visible hit of one ray: the geom, the distance in m, and the normal."""
+        """Return the first visible hit of one ray: the geom, the distance in m, and the normal."""
         model, data, geom, normal = self._simulation.model, self._simulation.data, np.zeros(1, np.int32), np.zeros(3)
         begin, along = origin + start * ray, ray / length
         further = self._mujoco.mj_ray(model, data, begin, along, self._groups, 1, -1, geom, normal)
@@ -87,7 +87,7 @@ class MujocoCaster:
 
 
 class _Triangles:
-    """Triangles of geoms in the world, and Embree's tree of them."""
+    """Triangles of geoms in the world, with their Embree tree."""
 
     def __init__(self, meshes: dict[int, Mesh], data: Any) -> None:
         from embreex.mesh_construction import TriangleMesh  # type: ignore[import-not-found, import-untyped, unused-ignore]
@@ -109,14 +109,14 @@ class _Triangles:
         self._normals = across / np.maximum(np.linalg.norm(across, axis=1), 1e-20)[:, None].astype(np.float32)
 
     def cast_into(self, hits: Hits, origins: Any, rays: Any, start: float, numbers: Any = None) -> None:
-        """Record the hits that are nearer than the recorded ones, of rays from `start`.
+        """Record hits of rays from `start` on that are nearer than the hits recorded so far.
 
         Args:
             hits: the hits so far.
-            origins: where each ray begins.
+            origins: the origin of each ray.
             rays: the direction of each ray.
             start: the distance from the camera to the origin along the ray.
-            numbers: the rays to cast; None for all.
+            numbers: the indices of the rays to cast; None for all.
         """
         if numbers is not None:
             origins, rays = origins[numbers], rays[numbers]
@@ -133,7 +133,7 @@ class _Triangles:
 
 
 class EmbreeCaster:
-    """Ray casting by Embree against triangles; the tree of all static geoms is kept.
+    """Ray casting by Embree against triangles; the tree of all static geoms is reused.
 
     Raises:
         ImportError: embreex is not installed.
@@ -203,7 +203,7 @@ class EmbreeCaster:
     def _release_changed(self) -> None:
         """Move changed geoms out of the static tree.
 
-        A dataset thereby has another scene for each image.
+        This happens when a data set is generated, which has a different scene for each image.
         """
         model = self._simulation.model
         still = np.array(list(self._fixed), dtype=np.int64)
@@ -247,7 +247,7 @@ class EmbreeCaster:
 
 
 def is_invisible(model: Any, geom: int) -> bool:
-    """Return whether a geom is not drawn."""
+    """Return whether a geom is invisible."""
     material = model.geom_matid[geom]
     rgba = model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]
     return bool(rgba[3] == 0)

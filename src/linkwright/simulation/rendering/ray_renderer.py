@@ -1,4 +1,4 @@
-"""Rendering by ray casting: one ray a pixel, flat shading, no shadows."""
+"""Rendering by ray casting: one ray per pixel, flat shading, no shadows."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _UNSET = (0.5, 0.5, 0.5, 1.0)
 
 
 class RayRenderer:
-    """Renders images by rays.
+    """Renders images by ray casting.
 
     Args:
-        simulation: the world.
+        simulation: the simulation of the world.
         caster: casts the rays.
     """
 
@@ -53,11 +53,11 @@ class RayRenderer:
         )
 
     def close(self) -> None:
-        """Do nothing: it holds nothing of the system."""
+        """Do nothing: the renderer does not hold system resources."""
 
     def _shaded(self, hits: Hits, origin: Array, rays: Any, forwards: Array) -> Any:
         simulation = self._simulation
-        paints = simulation.model.geom_rgba, simulation.model.geom_matid  # a dataset changes them for each image
+        paints = simulation.model.geom_rgba, simulation.model.geom_matid  # a data set changes them for each image
         if self._revision != simulation.revision or not all(map(np.array_equal, paints, self._paints)):
             self._colours = geom_colours(simulation.model)
             self._paints = tuple(paint.copy() for paint in paints)
@@ -83,11 +83,11 @@ def _background(colour: Sequence[float]) -> Any:
 
 
 def _share(placed: PlacedLight, hits: Hits, turned: Any, origin: Array, rays: Any) -> Any:
-    """The share of a light's brightness that surfaces receive: shape (n,)."""
+    """Return the share of a light's brightness that each surface receives, shape (n,)."""
     if placed.light.type == "directional":
         share = (hits.normals @ -placed.direction.astype(np.float32)) * turned
         return np.maximum(share, 0, out=share)
-    with np.errstate(invalid="ignore"):  # where nothing is hit
+    with np.errstate(invalid="ignore"):  # for rays without a hit
         away = placed.position.astype(np.float32) - (origin.astype(np.float32) + rays * hits.distances[:, None])
         distance = np.linalg.norm(away, axis=1)
         away /= np.maximum(distance, 1e-9)[:, None]
@@ -102,7 +102,10 @@ def _share(placed: PlacedLight, hits: Hits, turned: Any, origin: Array, rays: An
 
 
 def geom_colours(model: Any) -> Any:
-    """The colour of each geom, from 0 to 1, with the mean of its texture: shape (geoms, 3), float32."""
+    """Return the colour of each geom, from 0 to 1, shape (geoms, 3), float32.
+
+    The colour includes the mean of the geom's texture.
+    """
     colours = np.array(model.geom_rgba[:, :3], dtype=np.float64)
     for geom in np.nonzero(model.geom_matid >= 0)[0]:
         material = model.geom_matid[geom]
@@ -116,7 +119,7 @@ def geom_colours(model: Any) -> Any:
 
 
 def mean_colour(model: Any, texture: int) -> Array:
-    """The mean colour of a texture of a model of MuJoCo: red, green, blue from 0 to 1."""
+    """Return the mean colour of a texture in a MuJoCo model: red, green and blue from 0 to 1."""
     first, channels = model.tex_adr[texture], model.tex_nchannel[texture]
     count = model.tex_width[texture] * model.tex_height[texture] * channels
     mean: Array = model.tex_data[first : first + count].reshape(-1, channels).mean(axis=0) / 255

@@ -1,4 +1,4 @@
-"""The interface of renderers, and their images."""
+"""The interface of renderers, and the images that they return."""
 
 from __future__ import annotations
 
@@ -29,12 +29,13 @@ class Channels(Flag):
 
 @dataclass(frozen=True, slots=True)
 class RenderedImage:
-    """An image; None for parts that were not requested.
+    """An image; parts that were not requested are None.
 
     Attributes:
         colour: red, green, blue: shape (height, width, 3), uint8.
-        depth: distance along the optical axis in m, inf where nothing is nearer than `far`: shape (height, width).
-        geoms: the geom of MuJoCo's model, -1 for none: shape (height, width).
+        depth: distance along the optical axis in m, inf where there is nothing nearer than `far`: shape (height,
+            width).
+        geoms: the index of the geom in MuJoCo's model, -1 for none: shape (height, width).
     """
 
     colour: Pixels | None
@@ -52,16 +53,16 @@ class Renderer(Protocol):
         """Render the current view of a camera.
 
         Args:
-            optics: how it projects.
-            pose: where it is in the world; it looks along x, with z up.
+            optics: the projection of the camera.
+            pose: the pose of the camera in the world; it looks along x, with z up.
             channels: the requested parts.
         """
 
     def close(self) -> None:
-        """Free the system's resources."""
+        """Free the system resources."""
 
 
 def axes_of(pose: Transform) -> Array:
-    """Return the axes of a camera's image in the world, as columns: right, down, forwards."""
+    """Return the axes of a camera's image in the world as columns: right, down, forwards."""
     axes: Array = rotation_matrix(np.array(pose[3:])) @ _INTO_LINK
     return axes

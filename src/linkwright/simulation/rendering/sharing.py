@@ -1,4 +1,4 @@
-"""One renderer for all cameras of a simulation."""
+"""Share one renderer among all cameras of a simulation."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _shared: WeakKeyDictionary[Simulation, SharedRenderer] = WeakKeyDictionary()
 
 
 class SharedRenderer:
-    """The renderer that all cameras of a simulation share; made with the first image, in the thread of that."""
+    """The renderer that all cameras of a simulation share, created in the thread of the first image."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
@@ -29,7 +29,7 @@ class SharedRenderer:
     def render(
         self, optics: Optics, pose: Transform, channels: Channels, report: Callable[[Phrase], object]
     ) -> RenderedImage:
-        """Render the camera's current view; before the first image, call `report` with the kind of renderer."""
+        """Render a camera's current view; before the first image, call `report` with the kind of renderer."""
         if self._renderer is None or self._thread != threading.get_ident():
             self._renderer, self._thread = make_renderer(self._simulation), threading.get_ident()
         if not self._reported:
@@ -38,7 +38,7 @@ class SharedRenderer:
         return self._renderer.render(optics, pose, channels)
 
     def release(self) -> None:
-        """Count one camera fewer; with the last one the renderer is closed."""
+        """Unregister a camera, and close the renderer after the last one."""
         self._users -= 1
         if self._users == 0:
             if self._renderer is not None:
@@ -47,13 +47,13 @@ class SharedRenderer:
             _shared.pop(self._simulation, None)
 
     def use(self) -> SharedRenderer:
-        """Count one camera more, which is to call `release` in the end."""
+        """Register a camera, which has to call `release` when it stops."""
         self._users += 1
         return self
 
 
 def shared_renderer(simulation: Simulation) -> SharedRenderer:
-    """The shared renderer of a simulation, with one camera more counted."""
+    """Return the shared renderer of a simulation, with one more camera registered."""
     if simulation not in _shared:
         _shared[simulation] = SharedRenderer(simulation)
     return _shared[simulation].use()

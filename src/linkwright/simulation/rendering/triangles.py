@@ -23,7 +23,7 @@ def is_endless(model: Any, geom: int) -> bool:
 
 
 def triangles_of(model: Any, geom: int) -> Mesh | None:
-    """The triangles of a geom in its own frame; None for one that has none, such as an infinite plane."""
+    """Return the triangles of a geom in its own frame, or None if it has none, like an infinite plane."""
     kinds = load_mujoco().mjtGeom
     kind, size = model.geom_type[geom], model.geom_size[geom]
     if kind == kinds.mjGEOM_BOX:
@@ -53,7 +53,7 @@ def _box(half: Array) -> Mesh:
 
 
 def _grid(rows: int, columns: int, *, closed: bool) -> Any:
-    """Triangles between rows of vertices; closed, the last column is followed by the first."""
+    """Return the triangles between rows of vertices; if closed, the first column follows the last one."""
     row, column = np.meshgrid(np.arange(rows - 1), np.arange(columns if closed else columns - 1), indexing="ij")
     right = (column + 1) % columns
     a, b = row * columns + column, row * columns + right
@@ -62,7 +62,7 @@ def _grid(rows: int, columns: int, *, closed: bool) -> Any:
 
 
 def _round(radii: Array, half: float) -> Mesh:
-    """An ellipsoid, whose upper and lower half are moved apart for a capsule."""
+    """Return the mesh of an ellipsoid, with its upper and lower halves moved apart for a capsule."""
     up = np.linspace(-np.pi / 2, np.pi / 2, _ALONG)
     around = np.linspace(0, 2 * np.pi, _AROUND, endpoint=False)
     rise, turn = np.meshgrid(up, around, indexing="ij")

@@ -1,1 +1,1 @@
-"""Worlds and models as MuJoCo's specification of bodies, joints and shapes."""
+"""Worlds and models as a MuJoCo specification of bodies, joints and shapes."""

@@ -1,4 +1,4 @@
-"""Links as bodies of MuJoCo: mass, joints, collision and visual geoms."""
+"""Links as bodies of MuJoCo: mass, joints, collision geoms and visual geoms."""
 
 from __future__ import annotations
 
@@ -54,12 +54,12 @@ class BodyWriter:
     """Writes links into a specification.
 
     Args:
-        meshes: where meshes come from.
+        meshes: the library of meshes.
 
     Attributes:
         diagnostics: findings on parts that cannot be simulated.
-        unspecified: names of the colliding geoms without a given friction.
-        grips: how much they grip where a motor turns them, by the names of the geoms.
+        unspecified: names of the colliding geoms whose friction is not specified.
+        grips: the friction of geoms when a motor turns them, by the names of the geoms.
     """
 
     def __init__(self, meshes: MeshLibrary) -> None:
@@ -70,7 +70,7 @@ class BodyWriter:
         self._mujoco = load_mujoco()
 
     def give_mass(self, body: Any, link: Link, frames: Frames) -> None:
-        """Give a body the mass properties of its link; 1 kg and 1 kg m2 if it has none, as in SDF."""
+        """Set the mass properties of a body from its link; 1 kg and 1 kg m2 if it has none, as in SDF."""
         inertial = link.inertial or _USUAL_INERTIAL
         if inertial.auto:
             inertial = _worked_out(link, frames) or _USUAL_INERTIAL
@@ -105,7 +105,7 @@ class BodyWriter:
                 "no body has the inertia of link '{name}'; it moves with the mean of its moments", name=link.name
             )
             self._warn("SIM111", message, inertial.element or link.element)
-        elif excess > -_FLAT:  # MuJoCo treats the mean of flat bodies as a rounding error
+        elif excess > -_FLAT:  # for flat bodies, a rounding error would make MuJoCo use the mean of the moments
             tensor = tensor + np.eye(3) * np.trace(tensor) / 2 * (max(excess, 0.0) + _FLAT)
         least = float(np.linalg.eigvalsh(tensor)[0])
         if least < _LEAST_MOMENT:
@@ -119,7 +119,7 @@ class BodyWriter:
         """Add MuJoCo's joints for a joint to the body of its child.
 
         Args:
-            body: that of the child link.
+            body: the body of the child link.
             placed: the joint.
             child: the pose of the child link in the world.
         """
@@ -189,7 +189,7 @@ class BodyWriter:
     def _geoms(
         self, body: Any, part: Visual | Collision, pose: Transform, counts: Counter[str], *, fixed: bool
     ) -> Iterable[Any]:
-        """The geoms of a shape, with their names; `counts` numbers those of one name."""
+        """Return the geoms of a shape with their names; `counts` numbers geoms of the same name."""
         collision = isinstance(part, Collision)
         geoms = [] if isinstance(part, Collision) else self._meshes.wrapped(body, part, pose)
         simple = None if geoms else add_shape(body, part.geometry, pose, fixed=fixed)
@@ -213,7 +213,7 @@ class BodyWriter:
 
 
 def _worked_out(link: Link, frames: Frames) -> Inertial | None:
-    """The mass properties of a link by the shapes and densities of its collisions; None where they have no volume."""
+    """Return a link's mass properties computed from its collisions; None if they have no volume."""
     assert link.inertial is not None
     parts = []
     for collision in link.collisions:
@@ -236,7 +236,7 @@ def _colour(visual: Visual, usual: Color) -> list[float]:
 
 
 def set_first(element: Any, name: str, value: float) -> None:
-    """Set a coefficient; since version 4 MuJoCo has polynomials for some, and this sets the first term."""
+    """Set a coefficient of an element; some are polynomials since MuJoCo 4, whose first term is set."""
     held = getattr(element, name)
     if np.ndim(held):
         held[0] = value
@@ -245,7 +245,10 @@ def set_first(element: Any, name: str, value: float) -> None:
 
 
 def hinge_anchors(placed: PlacedJoint, distance: float) -> list[Vector3]:
-    """Two points on the axis of a joint, in the world, which hold it where nothing turns about another axis."""
+    """Return two points in the world on the axis of a joint.
+
+    They hold the joint if nothing turns about another axis.
+    """
     x, y, z = placed.pose[:3]
     _, direction = placed.axes[0]
     dx, dy, dz = (distance * value for value in rotate(placed.pose[3:], direction))

@@ -1,4 +1,4 @@
-"""Compiling a scene to MuJoCo's model, and finding out which models MuJoCo refuses."""
+"""Compile a scene to MuJoCo's model, and find the models that MuJoCo refuses."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _BYTES_A_PAIR, _BYTES = 3, 1 << 28
 
 
 def count_links(models: Iterable[Model]) -> int:
-    """Return the number of links of models, if that many can be simulated.
+    """Return the number of links of models, provided that so many can be simulated.
 
     Raises:
-        LinkwrightError: SIM105 they are too many.
+        LinkwrightError: SIM105, there are too many links.
     """
     count = sum(_links_in(model) for model in models)
     if count > MOST_LINKS:
@@ -36,7 +36,7 @@ def count_links(models: Iterable[Model]) -> int:
 
 
 def fewer_links() -> Phrase:
-    """A hint for a world of too many links."""
+    """Return a hint for a world with too many links."""
     return phrase("at most {most}; shapes that never move may be in one link", most=MOST_LINKS)
 
 
@@ -49,10 +49,10 @@ def compiled(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, 
 
     Args:
         scene: the simulated scene.
-        before: the model and data that there were, whose state is kept.
+        before: the previous model and data, whose state is kept.
 
     Raises:
-        LinkwrightError: SIM104 MuJoCo cannot take it.
+        LinkwrightError: SIM104, MuJoCo refuses the scene.
     """
     mujoco = load_mujoco()
     scene.settle()
@@ -61,7 +61,7 @@ def compiled(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, 
         scene.spec.memory = _BYTES_A_PAIR * count * count + _BYTES
     try:
         with catch_warnings():
-            simplefilter("ignore")  # warnings of MuJoCo; `check` and the simulation report those that matter
+            simplefilter("ignore")  # MuJoCo's warnings; `check` and the simulation report the relevant ones
             if before is not None:
                 model, data = scene.spec.recompile(*before)
                 return model, data
@@ -75,18 +75,18 @@ def compiled(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, 
 
 
 def refused_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
-    """The models that MuJoCo refuses when each is compiled alone, with its messages.
+    """Return the models that MuJoCo refuses when each is compiled alone, with its messages.
 
     Args:
-        world: with its includes resolved, and as it was saved.
-        finder: where its meshes are.
+        world: the world, with its includes resolved and as it was saved.
+        finder: the finder of its meshes.
     """
     found = {model.name: _refusal(replace(world, models=(model,)), finder) for model in world.models}
     return {name: why for name, why in found.items() if why is not None}
 
 
 def _refusal(world: World, finder: ResourceFinder) -> Phrase | None:
-    """MuJoCo's message on refusing a world; None if it accepts it."""
+    """Return MuJoCo's message if it refuses a world; None if it accepts the world."""
     try:
         compiled(Scene(world, MeshLibrary(finder)))
     except LinkwrightError as error:
@@ -95,10 +95,10 @@ def _refusal(world: World, finder: ResourceFinder) -> Phrase | None:
 
 
 def whole_step(step: float, world: World) -> int:
-    """A time step in s as nanoseconds, checked.
+    """Return a time step given in s as nanoseconds, after checking it.
 
     Raises:
-        LinkwrightError: SIM106 no time passes in it.
+        LinkwrightError: SIM106, the time step is not positive, or shorter than a nanosecond.
     """
     if not (isfinite(step) and round(step * NANOSECONDS_PER_SECOND) > 0):
         message = phrase("a time step of {step} s cannot be simulated", step=step)

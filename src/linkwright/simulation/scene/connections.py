@@ -1,7 +1,7 @@
 """Joints of a world, which connect links of its models (SDF 1.7 and later).
 
-A model whose link can be hung on the other one moves by that joint as its own links move by theirs. Where both links
-are held already, the joint closes a loop.
+If a model's link can become the child of the other link, the joint moves the model in the way that its own joints move
+its links. If both links already have parents, the joint closes a loop.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from linkwright.simulation.scene.structure import HeldLink, PlacedJoint, Structu
 
 @dataclass(frozen=True, slots=True)
 class Connections:
-    """The joints of a world between its models.
+    """The joints of a world that connect its models.
 
     Attributes:
-        hanging: joints that connect models to their parents, by the names of their children.
+        hanging: joints that connect models to their parents, by the names of the child links.
         loops: joints between links that already have a parent.
         poses: the poses of the connected models' frames in the world.
     """
@@ -34,9 +34,10 @@ class Connections:
         """Return a model with the joints that connect it with earlier models.
 
         Args:
-            structure: its own links and joints.
-            name: its name in the world.
-            pose: the pose of its frame in the world; at any other pose than that of the world, it is not connected.
+            structure: the model's own links and joints.
+            name: the model's name in the world.
+            pose: the pose of the model's frame in the world; a model that is not at its pose in `poses` is not
+                connected.
             others: the names of the earlier models.
         """
         if self.poses.get(name) != pose:
@@ -55,7 +56,7 @@ class Connections:
         return Connected(replace(structure, links=links), loops, hangs_on)
 
     def in_order(self, names: Sequence[str]) -> list[str]:
-        """Names of models, each after those to which joints connect it, otherwise in their order."""
+        """Return names of models in their order, but each after the models to which joints connect it."""
         above: dict[str, list[str]] = {}
         for joint in self.hanging.values():
             above.setdefault(model_of(joint.child), []).append(model_of(joint.parent))
@@ -78,12 +79,12 @@ class Connections:
 
 @dataclass(frozen=True, slots=True)
 class Connected:
-    """A model with the joints that connect it with others.
+    """A model with the joints that connect it with other models.
 
     Attributes:
-        structure: its links, with the joints of the world among those that hold them.
-        loops: joints of the world that close loops with links of other models, or within it.
-        hangs_on: names of the models that these joints lead to.
+        structure: the links, held by their own joints or by joints of the world.
+        loops: joints of the world that close loops with links of other models, or within the model.
+        hangs_on: names of the models to which these joints connect it.
     """
 
     structure: Structure
@@ -92,10 +93,10 @@ class Connected:
 
 
 def connections_of(world: World) -> Connections:
-    """The joints of a world, without those whose links are missing or never move.
+    """Return the joints of a world, without joints whose links are missing or never move.
 
     Args:
-        world: with its includes resolved, and as it was saved.
+        world: the world, with its includes resolved and as it was saved.
     """
     if not world.joints:
         return Connections({}, (), {})
@@ -135,7 +136,7 @@ def connections_of(world: World) -> Connections:
 
 
 def model_of(link: str) -> str:
-    """The model of the world that a link belongs to; ``world`` for none."""
+    """Return the model of the world that contains a link; ``world`` if there is none."""
     return link.partition(SEPARATOR)[0]
 
 
@@ -156,6 +157,6 @@ def _placed(world: World, frames: Frames) -> list[PlacedJoint]:
 
 
 def _turned_round(joint: PlacedJoint) -> PlacedJoint:
-    """The joint with parent and child exchanged; positions keep their signs."""
+    """Return a joint with its parent and child exchanged; positions keep their signs."""
     axes = tuple((axis, (-x, -y, -z)) for axis, (x, y, z) in reversed(joint.axes))
     return replace(joint, parent=joint.child, child=joint.parent, axes=axes)

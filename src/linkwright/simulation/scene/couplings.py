@@ -1,4 +1,4 @@
-"""Couplings of joints: the thread of a screw, and gears."""
+"""Couplings of joints: screw threads and gears."""
 
 from __future__ import annotations
 
@@ -17,19 +17,21 @@ _STEPS = 4.0
 
 
 def threaded(spec: Any, joint: PlacedJoint) -> Iterator[Any]:
-    """The coupling of a screw joint's translation with its rotation, by its pitch in m a revolution."""
+    """Yield the coupling of a screw joint's translation with its rotation, by its pitch in m per revolution."""
     if joint.joint.type == "screw" and joint.axes:
         pitch = joint.joint.thread_pitch or 0.0
         yield _coupled(spec, joint.name + THREAD, joint.name, pitch / tau)
 
 
 def geared(spec: Any, gear: PlacedJoint, joints: Iterable[PlacedJoint]) -> Iterator[Any]:
-    """The coupling of a gearbox, whose child turns ``-gearbox_ratio`` times as far as its parent (SDFormat).
+    """Yield the coupling of a gearbox.
+
+    The child turns ``-gearbox_ratio`` times as far as the parent (SDFormat).
 
     Args:
         spec: the specification.
         gear: the gearbox.
-        joints: those that move; both links turn about such a joint.
+        joints: the joints that move; both links of the gearbox turn about one of them.
     """
     holding = {joint.child: joint for joint in joints if joint.axes}
     parent, child = holding.get(gear.parent), holding.get(gear.child)
@@ -53,6 +55,6 @@ def _in_world(joint: PlacedJoint, direction: Vector3) -> Vector3:
 
 
 def _sign(direction: Vector3, joint: PlacedJoint) -> float:
-    """1 where a joint's axis points along a direction, -1 where it points against it."""
+    """Return 1 if a joint's axis points along a direction, or -1 if it points the opposite way."""
     axis = _in_world(joint, joint.axes[0][1])
     return -1.0 if sum(a * b for a, b in zip(axis, direction, strict=True)) < 0.0 else 1.0

@@ -1,4 +1,4 @@
-"""Actors that walk, and roads: drawn without contacts."""
+"""Walking actors and roads, which are drawn but have no contacts."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ class Figure:
     """An actor or a road of a scene.
 
     Attributes:
-        model: its appearance.
+        model: the model that gives its appearance.
         pose: the pose of the model at time 0.
         walk: the path of an actor; None for a static figure.
-        origin: where the points of the walk are, in the world.
+        origin: the pose in the world of the frame of the walk's points.
         links: its links, placed in the frame of the model.
     """
 
@@ -52,18 +52,19 @@ class Figure:
     links: tuple[PlacedLink, ...]
 
     def pose_at(self, seconds: float) -> Transform:
-        """The pose at a time of the world."""
+        """Return the pose at a time of the world."""
         return self.pose if self.walk is None else compose(self.origin, self.walk.pose(seconds))
 
 
 def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
-    """The actors and roads of a world, without those that cannot be placed, which `check` reports.
+    """Return the actors and roads of a world, without those that cannot be placed, which `check` reports.
 
-    In a world for gz the points of walks are in the frame of the actor, in one for Gazebo classic in that of the world.
+    The points of walks are in the frame of the actor in a world for gz, and in the frame of the world in a world for
+    Gazebo classic.
 
     Args:
-        world: with its includes resolved.
-        meshes: where skins are.
+        world: the world, with its includes resolved.
+        meshes: the library of meshes, which finds skins.
     """
     relative = any(library in plugin.filename for plugin in world.plugins for library in _OF_GZ)
     frames, found = Frames(world), []
@@ -88,7 +89,7 @@ def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
 
 
 def _renamed(item: T, taken: set[str]) -> T:
-    """An actor or road under a name that is free."""
+    """Return an actor or road with a name that is free."""
     while item.name in taken:
         item = replace(item, name=f"{item.name}~")
     taken.add(item.name)
@@ -119,9 +120,9 @@ def put_kinematic(structure: Structure, moved: Transform, model: Any, data: Any)
 
     Args:
         structure: the links of the model.
-        moved: from the frame in which they were at first to that in which they are to be.
+        moved: the transform from the initial frame of the links to the new one.
         model: MuJoCo's model.
-        data: its data.
+        data: MuJoCo's data.
     """
     links = [held.link for held in structure.links]
     driven = {int(model.body(link.name).mocapid[0]): link for link in links}
@@ -138,7 +139,10 @@ def _put(place: int, pose: Transform, data: Any) -> None:
 
 
 def _hips(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
-    """The origin of a skin's skeleton, in metres of its mesh; zeros without one, None if the mesh file is missing."""
+    """Return the origin of a skin's skeleton in m.
+
+    It is zero without a skeleton, and None if the mesh file is missing.
+    """
     if actor.skin is None:
         return (0.0, 0.0, 0.0)
     path = meshes.file(actor.skin.filename, actor.element)
@@ -148,7 +152,7 @@ def _hips(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
 
 
 def skeleton_begins(path: Path) -> Vector3:
-    """The origin of the first joint of a COLLADA file's skeleton, in its bind pose, in m."""
+    """Return the origin of the first joint of a COLLADA file's skeleton, in its bind pose, in m."""
     try:
         root = parse_file(path).root
     except LinkwrightError:

@@ -1,4 +1,4 @@
-"""Meshes, and shapes that become meshes, as assets of MuJoCo."""
+"""Meshes, and shapes that are converted to meshes, as assets of MuJoCo."""
 
 from __future__ import annotations
 
@@ -37,15 +37,15 @@ _LEAST_AREA = 1e-12
 
 
 class MeshLibrary:
-    """Reads the meshes that worlds name, each once, and reports once each that cannot be used.
+    """Reads each mesh that worlds name once, and reports each unusable mesh once.
 
     Args:
-        finder: where they are.
+        finder: the finder of mesh files.
 
     Attributes:
-        spec: the specification that gets them.
+        spec: the specification to which the meshes are added.
         diagnostics: findings on meshes and images that cannot be used.
-        used: the files that were asked for since this was cleared, and when they were changed, in ns since the epoch.
+        used: the files that were requested since this was cleared, with their change times in ns since the epoch.
     """
 
     def __init__(self, finder: ResourceFinder) -> None:
@@ -55,25 +55,25 @@ class MeshLibrary:
         self._finder = finder
         self._files: dict[tuple[str, Path], Path | None] = {}
         self._assets: dict[Hashable, list[str]] = {}
-        self._textures: dict[bytes, str] = {}  # images as PNG -> names of their textures
+        self._textures: dict[bytes, str] = {}  # names of textures by their PNG images
         self._reported: set[str] = set()
-        self._mapped: set[str] = set()  # meshes of the specification with texture coordinates
+        self._mapped: set[str] = set()  # meshes of the specification that have texture coordinates
 
     def look_in(self, finder: ResourceFinder) -> None:
-        """Set the finder of files; missing files are looked for again."""
+        """Set the finder of files; missing files are searched for again."""
         self._finder = finder
         self._files = {key: path for key, path in self._files.items() if path is not None}
 
     def collisions(
         self, body: Any, shape: Shape, pose: Transform, element: Element | None, *, fixed: bool
     ) -> list[Any]:
-        """Add a collision to a body, as convex pieces; none for a mesh that cannot be used.
+        """Add a collision to a body as convex pieces; return an empty list for a mesh that cannot be used.
 
         Args:
             body: the body of the specification.
-            shape: a mesh, a cone, a polygon, a heightmap.
-            pose: its pose in the frame of the body.
-            element: its element in the file.
+            shape: a mesh, cone, polygon or heightmap.
+            pose: the pose of the shape in the frame of the body.
+            element: the element of the shape in the file.
             fixed: whether the body never moves; the mesh of a moving body is replaced by its hull.
         """
         if isinstance(shape, Heightmap):
@@ -84,7 +84,7 @@ class MeshLibrary:
         return [self._geom(body, pose, name) for name in self._assets[key]]
 
     def visuals(self, body: Any, shape: Shape, pose: Transform, element: Element | None) -> list[Any]:
-        """Add a visual to a body, with the materials of its file; see `collisions`."""
+        """Add a visual with the materials of its file to a body; the arguments are those of `collisions`."""
         if isinstance(shape, Heightmap):
             return self._heightmap(body, shape, pose, element)
         path = self._path(shape, element)
@@ -105,7 +105,7 @@ class MeshLibrary:
         return geom
 
     def _pieces(self, shape: Shape, element: Element | None, *, fixed: bool) -> list[Array]:
-        """The vertices of the convex pieces of a mesh."""
+        """Return the vertices of the convex pieces of a mesh."""
         if isinstance(shape, Cone):
             return [cone_corners(shape)] if min(shape.radius, shape.length) > 0 else []
         if isinstance(shape, Polyline):
@@ -151,7 +151,7 @@ class MeshLibrary:
             yield name
 
     def _seen(self, positions: Array, faces: Any, coordinates: Array | None) -> str:
-        """Add a mesh asset, with texture coordinates if it has some; its name."""
+        """Add a mesh asset, with texture coordinates if there are any, and return its name."""
         name = f"mesh {len(self.spec.meshes)}"
         mesh = self.spec.add_mesh(name=name, inertia=load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL)
         mesh.uservert = _flat(_four(positions))
@@ -162,7 +162,10 @@ class MeshLibrary:
         return name
 
     def wrapped(self, body: Any, visual: Visual, pose: Transform) -> list[Any]:
-        """Add a simple shape to a body as a mesh with texture coordinates; nothing for one that cannot be textured."""
+        """Add a simple shape to a body as a mesh with texture coordinates.
+
+        Nothing is added for a shape that cannot be textured.
+        """
         shape = visual.geometry
         triangles = wrapped(shape) if self.worn(visual) else None
         if triangles is None:
@@ -184,7 +187,10 @@ class MeshLibrary:
             self._give_image(material, part.own.image)
 
     def _give_image(self, material: Any, image: bytes) -> None:
-        """Give a material of MuJoCo a texture, a PNG; equal ones share it, for each compilation decodes it."""
+        """Add a PNG texture to a material of MuJoCo.
+
+        Equal images share one texture, because each compilation decodes it.
+        """
         mujoco = load_mujoco()
         if image not in self._textures:
             texture = self.spec.add_texture(name=material.name, type=mujoco.mjtTexture.mjTEXTURE_2D)
@@ -281,14 +287,17 @@ class MeshLibrary:
         return []
 
     def _path(self, shape: Shape, element: Element | None) -> Path | None:
-        """The file of a shape; None for a shape without one, or if it is missing, which is reported once."""
+        """Return the file of a shape, or None.
+
+        A missing file is reported once.
+        """
         path = self.file(shape.uri, element) if isinstance(shape, Mesh | Heightmap) else None
         if path is not None:
             self.used[path] = changed_at(path)
         return path
 
     def file(self, uri: str, element: Element | None) -> Path | None:
-        """The file that an element names; None if it is missing, which is reported once."""
+        """Return the file that an element names; None if it is missing, which is reported once."""
         if not uri:
             return None
         source = element.source if element is not None else None
@@ -308,7 +317,7 @@ class MeshLibrary:
         self._report(Diagnostic(found.code, message, severity=Severity.WARNING, hint=found.hint), element)
 
     def _report(self, found: Diagnostic, element: Element | None) -> None:
-        """Report a problem of an element, the same one once."""
+        """Report a problem of an element once."""
         if found.message in self._reported:
             return
         self._reported.add(found.message)
@@ -318,7 +327,7 @@ class MeshLibrary:
 
 
 def _bounded(path: Path, count: int) -> None:
-    """Check the number of a mesh's triangles (SIM115)."""
+    """Check that a mesh does not have too many triangles (SIM115)."""
     if count > _MOST_TRIANGLES:
         values = {"path": display_path(path), "count": count, "most": _MOST_TRIANGLES}
         message = phrase("the mesh '{path}' has {count} triangles, and at most {most} are simulated", **values)
@@ -334,14 +343,17 @@ def _prisms(polyline: Polyline) -> Iterator[Array]:
 
 
 def _area(positions: Array, faces: Any) -> float:
-    """The area of triangles in m2."""
+    """Return the total area of triangles in m2."""
     one, two, three = (positions[faces[:, corner]] for corner in range(3))
     with np.errstate(over="ignore", invalid="ignore"):
         return float(np.linalg.norm(np.cross(two - one, three - one), axis=1).sum() / 2)
 
 
 def _four(corners: Array) -> Array:
-    """The vertices of a mesh, padded to four by repeating the last: MuJoCo takes no fewer."""
+    """Return the vertices of a mesh, padded to four by repeating the last one.
+
+    MuJoCo requires at least four.
+    """
     return np.concatenate([corners, np.repeat(corners[-1:], max(4 - len(corners), 0), axis=0)])
 
 
@@ -353,17 +365,17 @@ def _joined(parts: Sequence[Triangles]) -> tuple[Array, Any]:
 
 
 def _flat(values: Any, kind: Any = np.float32) -> list[Any]:
-    with np.errstate(over="ignore"):  # MuJoCo refuses and reports numbers that are too great
+    with np.errstate(over="ignore"):  # MuJoCo refuses and reports numbers that are too large
         return list(np.asarray(values, dtype=kind).ravel().tolist())
 
 
 def _version(path: Path | None) -> tuple[Path | None, int]:
-    """Return a file and the time of its last change, so that a saved file is read again."""
+    """Return a file and the time of its last change, which cause a saved file to be read again."""
     return path, 0 if path is None else changed_at(path)
 
 
 def changed_at(path: Path) -> int:
-    """The time of a file's last change, in ns since the epoch; 0 for a missing one."""
+    """Return the time of a file's last change, in ns since the epoch; 0 for a missing file."""
     try:
         return path.stat().st_mtime_ns
     except OSError:

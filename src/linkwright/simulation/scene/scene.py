@@ -1,4 +1,4 @@
-"""A world as MuJoCo's specification: every link a body with its frame, every joint a joint, every shape a geom."""
+"""A world as a MuJoCo specification, with a body for each link, a joint for each joint, and geoms for the shapes."""
 
 from __future__ import annotations
 
@@ -59,8 +59,8 @@ class SceneModel:
         structure: its links and joints.
         parts: its parts in the specification, in the order in which they were added: root bodies, constraints and
             actuators.
-        files: those of its meshes, and when they were changed, in ns since the epoch.
-        hangs_on: the earlier models that joints of the world connect it with.
+        files: its mesh files and their change times, in ns since the epoch.
+        hangs_on: the earlier models to which joints of the world connect it.
     """
 
     name: str
@@ -73,29 +73,29 @@ class SceneModel:
 
     @property
     def is_outdated(self) -> bool:
-        """Whether a mesh file of it has changed since it was added."""
+        """Whether one of its mesh files has changed since the model was added."""
         return any(changed_at(path) != changed for path, changed in self.files.items())
 
 
 class Scene:
     """A world as a specification of MuJoCo.
 
-    Bodies and joints are named as in the world: ``robot::arm::tip``; a second axis of a joint has ``#2`` behind its
-    name, and free joints ``#free`` behind that of the body.
+    Bodies and joints are named as in the world: ``robot::arm::tip``. The second axis of a joint has the suffix ``#2``,
+    and the free joint of a body has the name of the body with the suffix ``#free``.
 
     Args:
-        world: with its includes resolved, and as it was saved (`linkwright.sdf.saved`).
-        meshes: where meshes come from.
-        step: the time step in s; that of the world by default.
+        world: the world, with its includes resolved and as it was saved (`linkwright.sdf.saved`).
+        meshes: the library of meshes.
+        step: the time step in s; by default the time step of the world.
         refused: names of models that are left out, and why.
 
     Attributes:
         spec: the specification.
         step: the time step in s.
-        models: by their names, in the order in which they came.
-        joints: the joints of models that move, by name.
+        models: the models by name, in the order in which they were added.
+        joints: the movable joints of models, by name.
         bodies: the bodies of the specification, by the names of the links.
-        figures: actors and roads, which are seen and touch nothing.
+        figures: actors and roads, which are visible but have no contacts.
     """
 
     def __init__(
@@ -116,7 +116,7 @@ class Scene:
         self._writer = BodyWriter(meshes)
         self._meshes = meshes
         self._motors = 0
-        self._driven: dict[str, dict[str, float]] = {}  # by model: joints with the rotor inertias of their motors
+        self._driven: dict[str, dict[str, float]] = {}  # by model: the joints with motors, and the rotor inertias
         self._unsettled: set[str] = set()
         self.spec.modelname = world.name or WORLD
         self.spec.compiler.degree = False
@@ -129,20 +129,20 @@ class Scene:
             if model.name in refused:
                 message = phrase("model '{name}' is left out: {why}", name=model.name, why=refused[model.name])
                 self._warn("SIM117", message, model.element)
-            elif model.name not in self.models:  # `check` reports a second one
+            elif model.name not in self.models:  # `check` reports duplicate names
                 self._add_or_report(model, frames)
         self.figures = figures_of(world, meshes)
         for figure in self.figures:
             draw(figure, self.spec, self._writer)
 
     def _in_order(self, models: Iterable[Model]) -> list[Model]:
-        """Models, each after those to which joints of the world connect it."""
+        """Return models, each after those to which joints of the world connect it."""
         models = list(models)
         place = {name: number for number, name in enumerate(self.in_order([model.name for model in models]))}
         return sorted(models, key=lambda model: place[model.name])
 
     def in_order(self, names: Sequence[str]) -> list[str]:
-        """Names of models, each after those to which joints of the world connect it."""
+        """Return names of models, each after those to which joints of the world connect it."""
         return self._connections.in_order(names)
 
     def step_of(self, world: World) -> float:
@@ -168,9 +168,9 @@ class Scene:
         self._findings.append(Diagnostic(code, message, severity=Severity.WARNING, span=span, source=source))
 
     def set_physics(self, world: World, step: float) -> None:
-        """Take gravity and the joints between models from another world, and set the time step in s.
+        """Adopt gravity and the joints between models from another world, and set the time step in s.
 
-        Models stay as they are.
+        The models do not change.
         """
         self._connections = connections_of(world)
         self.spec.option.gravity = list(gravity_of(world))
@@ -184,13 +184,13 @@ class Scene:
                 equality.solref = [_LOOP_STEPS * step, 1.0]
 
     def _set_options(self, world: World) -> None:
-        """Set MuJoCo's options, as measured for wheels, casters and resting bodies: decision 0042."""
+        """Set MuJoCo's options from measurements with wheels, casters and resting bodies: decision 0042."""
         option = self.spec.option
         option.timestep = self.step
         option.gravity = list(gravity_of(world))
         option.cone = self._mujoco.mjtCone.mjCONE_ELLIPTIC
         option.impratio = 10.0
-        option.noslip_iterations = 3  # a wheel that is sped up at once would jump: slipping pushes it off the ground
+        option.noslip_iterations = 3  # a suddenly accelerated wheel would jump: slipping pushes it off the ground
         option.integrator = self._mujoco.mjtIntegrator.mjINT_DISCRETE
         option.enableflags |= self._mujoco.mjtEnableBit.mjENBL_SLEEP
         option.disableflags |= self._mujoco.mjtDisableBit.mjDSBL_AUTORESET
@@ -201,16 +201,16 @@ class Scene:
         return [*self._findings, *self._writer.diagnostics, *self._meshes.diagnostics]
 
     def add(self, model: Model, name: str, pose: Transform) -> SceneModel:
-        """Add a model.
+        """Add a model to the scene.
 
         Args:
-            model: with its includes resolved.
+            model: the model, with its includes resolved.
             name: its name, which no other model has.
             pose: the pose of its frame in the world.
 
         Raises:
-            FrameError: a link of it cannot be placed.
-            LinkwrightError: SIM102 there is a model of that name.
+            FrameError: a link of the model cannot be placed.
+            LinkwrightError: SIM102, there is already a model with this name.
         """
         if name in self.models:
             raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
@@ -245,12 +245,12 @@ class Scene:
         """Set the initial pose of a model.
 
         Args:
-            name: its name.
+            name: the name of the model.
             pose: the pose of its frame in the world.
 
         Raises:
-            KeyError: there is none of that name.
-            FrameError: a link of it cannot be placed.
+            KeyError: there is no model with this name.
+            FrameError: a link of the model cannot be placed.
         """
         placed = self.models[name]
         placed.structure = structure_of(placed.model, name, pose)
@@ -266,8 +266,8 @@ class Scene:
         """Remove a model.
 
         Raises:
-            KeyError: there is none of that name.
-            ValueError: another hangs on it.
+            KeyError: there is no model with this name.
+            ValueError: another model is attached to this model.
         """
         hanging = self.hanging_on(name)
         if hanging:
@@ -282,9 +282,9 @@ class Scene:
                 self.joints.pop(held.joint.name, None)
 
     def hanging_on(self, name: str) -> list[str]:
-        """The models that joints of the world connect below one, directly or not; as they were added."""
+        """Return the models that joints of the world attach to a model, directly or indirectly, in their order."""
         found = {name}
-        for model in self.models.values():  # those that hang come later
+        for model in self.models.values():  # attached models come later in the order
             if model.hangs_on & found:
                 found.add(model.name)
         return [model for model in self.models if model in found - {name}]
@@ -294,11 +294,11 @@ class Scene:
 
         Args:
             joint: the name of the joint.
-            gain: torque for each rad/s of difference, in N m s/rad (N s/m).
-            limit: the greatest torque in N m (N).
+            gain: the torque per velocity error, in N m s/rad (N s/m).
+            limit: the maximum torque in N m (N).
 
         Returns:
-            The name of MuJoCo's actuator, whose control is the velocity in rad/s (m/s).
+            The name of MuJoCo's actuator, whose control value is the velocity in rad/s (m/s).
         """
         actuator = self._actuator(joint, limit)
         actuator.set_to_velocity(kv=gain)
@@ -306,7 +306,7 @@ class Scene:
         return str(actuator.name)
 
     def speed_limit(self, joint: str) -> float:
-        """The greatest speed of a joint of one axis in rad/s (m/s) by its limits; infinite where they have none."""
+        """Return the speed limit of a joint with one axis in rad/s (m/s); infinite if there is none."""
         limit = self.joints[joint].axes[0][0].limit.velocity if joint in self.joints else inf
         return limit if limit > 0.0 else inf
 
@@ -323,17 +323,17 @@ class Scene:
         rotors[joint] = max(rotor, rotors.get(joint, 0.0))
 
     def let_slide(self, joint: str) -> None:
-        """Let a wheel slide in all directions, as if it had rollers; a motor only turns it."""
+        """Let a wheel slide in all directions, as if it had rollers; its motor then only spins it."""
         body = self.bodies[self.joints[joint].child]
         for geom in body.geoms:
             self._writer.grips.pop(geom.name, None)
         make_omnidirectional(body, self.step)
 
     def add_servo(self, joint: str) -> str:
-        """Add a servo that holds the position of a joint of one axis against any load.
+        """Add a servo that holds the position of a joint with one axis against any load.
 
         Returns:
-            The name of MuJoCo's constraint, the first of whose data is the position less that of the start.
+            The name of MuJoCo's constraint, whose first data value is the position relative to the initial one.
         """
         self._motors += 1
         equality = self.spec.add_equality(type=self._mujoco.mjtEq.mjEQ_JOINT, name=f"{joint}{SERVO}{self._motors}")
@@ -344,12 +344,14 @@ class Scene:
         return str(equality.name)
 
     def weld(self, parent: str, child: str, pose: Transform) -> None:
-        """Fix a link to another one, until `unweld` or until one of them is removed; their models do not collide.
+        """Fix a link to another one until `unweld` or until one of them is removed.
+
+        The models of the two links do not collide.
 
         Args:
-            parent: the name of the link that holds.
-            child: that of the link that is held.
-            pose: where the frame of the child is in that of the parent.
+            parent: the name of the link that holds the other one.
+            child: the name of the link that is held.
+            pose: the pose of the child in the frame of the parent.
         """
         name = _weld_name(parent, child)
         equality = self._equality(self._mujoco.mjtEq.mjEQ_WELD, (parent, child))
@@ -385,7 +387,7 @@ class Scene:
         return actuator
 
     def keep_awake(self, link: str, never: Any) -> None:
-        """Forbid the bodies that move together with a link to fall asleep; static ones never do.
+        """Keep the bodies that move with a link from falling asleep; static bodies never do.
 
         Raises:
             KeyError: there is no such link.
@@ -421,7 +423,7 @@ class Scene:
             parent, above = self.bodies[joint.parent], poses[joint.parent]
         driven = (
             joint is None and link.kinematic and not placed.static
-        )  # it moves to given poses, and no force moves it
+        )  # it moves to given poses, and forces do not move it
         body = self.bodies[placed.name] = parent.add_body(name=placed.name, mocap=driven)
         set_pose(body, compose(invert(above), placed.pose))
         fixed = placed.static or driven
@@ -434,18 +436,18 @@ class Scene:
                 self._writer.add_joint(body, joint, placed.pose)
                 self.joints[joint.name] = joint
         else:
-            body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]  # else MuJoCo 3 places it where its rays miss it
+            body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]  # otherwise rays of MuJoCo 3 miss the body
         self._writer.add_visuals(body, link, placed.frames, fixed=fixed)
         self._writer.add_collisions(body, link, placed.frames, fixed=fixed)
         return body
 
     def _moving(self, models: Iterable[str]) -> list[PlacedJoint]:
-        """The joints of models that move."""
+        """Return the joints of models that move."""
         held = (link for name in models for link in self.models[name].structure.links)
         return [link.joint for link in held if link.joint is not None and link.joint.name in self.joints]
 
     def _mimicry(self, joint: PlacedJoint | None) -> Iterator[Any]:
-        """Add equality constraints for mimic axes of a joint."""
+        """Yield equality constraints for the mimic axes of a joint."""
         if joint is None or joint.name not in self.joints:
             return
         for number, (axis, _) in enumerate(joint.axes):
@@ -462,7 +464,7 @@ class Scene:
             yield equality
 
     def _closed(self, joint: PlacedJoint, poses: dict[str, Transform]) -> Iterator[Any]:
-        """Add the equality constraint for a joint that closes a loop."""
+        """Yield the equality constraint for a joint that closes a loop."""
         kinds, ends = self._mujoco.mjtEq, (joint.child, joint.parent)
         points = hinge_anchors(joint, _ANCHORS_APART) if joint.axes else [joint.pose[:3]]
         if joint.joint.type == "fixed":
@@ -487,14 +489,14 @@ class Scene:
         return equality
 
     def _strangers(self, structure: Structure) -> Iterator[Any]:
-        """Exclude contacts between links of one model, unless ``<self_collide>`` allows them."""
+        """Yield contact exclusions between links of one model, unless ``<self_collide>`` allows contacts."""
         touching = [held.link for held in structure.links if held.link.link.collisions and not held.link.static]
         for one, other in combinations(touching, 2):
             if not (_collides(one.link.self_collide, one.model) and _collides(other.link.self_collide, other.model)):
                 yield self.spec.add_exclude(bodyname1=one.name, bodyname2=other.name)
 
     def _neighbours(self, connected: Connected) -> Iterator[Any]:
-        """Exclude contacts between links that joints of the world connect, as within a model."""
+        """Yield contact exclusions between links that joints of the world connect, as within a model."""
         own = {held.link.name for held in connected.structure.links}
         hung = (held.joint for held in connected.structure.links if held.joint is not None)
         joints = (*(joint for joint in hung if joint.parent not in own), *connected.loops)

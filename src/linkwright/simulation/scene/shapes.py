@@ -1,4 +1,4 @@
-"""The shapes of SDF as geoms of MuJoCo."""
+"""SDF shapes as geoms of MuJoCo."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _CORNERS = 32
 
 
 def set_pose(element: Any, pose: Transform) -> None:
-    """Set the pose of a body, geom, site or camera of a specification in the frame of its body."""
+    """Set the pose of an element (body, geom, site or camera) in the frame of its body."""
     x, y, z, qx, qy, qz, qw = pose
     element.pos = [x, y, z]
     element.quat = [qw, qx, qy, qz]
@@ -61,7 +61,7 @@ def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any |
 
 
 def cone_corners(cone: Cone) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """The vertices of a cone whose base is a polygon: shape (vertices, 3), in m."""
+    """Return the vertices in m of a cone whose base is a polygon, shape (vertices, 3)."""
     turns = [2 * pi * index / _CORNERS for index in range(_CORNERS)]
     ring = [(cone.radius * cos(turn), cone.radius * sin(turn), -cone.length / 2) for turn in turns]
     return np.array([*ring, (0.0, 0.0, cone.length / 2)])

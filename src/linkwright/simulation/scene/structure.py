@@ -1,4 +1,4 @@
-"""The links and joints of a model as kinematic trees, as MuJoCo needs them, and the joints that close loops."""
+"""A model's links and joints as the kinematic trees that MuJoCo needs, and the joints that close loops."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _LEAST = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class PlacedJoint:
-    """A joint of a model, or of a world between two of them.
+    """A joint of a model, or a joint of a world between two models.
 
     Attributes:
-        name: with the models around it: ``robot::arm::elbow``; one of a world has its name alone.
+        name: the name with the enclosing models, ``robot::arm::elbow``; a joint of the world has only its own name.
         joint: the parsed joint.
         parent: its parent link, named as in `PlacedLink`; ``world`` for the world.
         child: the link that it moves.
@@ -38,7 +38,7 @@ class PlacedJoint:
 
 @dataclass(frozen=True, slots=True)
 class HeldLink:
-    """A link, and the joint that connects it to its parent; None for a root."""
+    """A link and the joint that connects it to its parent, which is None for a root."""
 
     link: PlacedLink
     joint: PlacedJoint | None
@@ -49,8 +49,8 @@ class Structure:
     """A model as kinematic trees.
 
     Attributes:
-        links: all links, each after the one that holds it.
-        loops: joints between links that others hold already.
+        links: all links, each after its parent.
+        loops: joints between links that already have parents.
     """
 
     links: tuple[HeldLink, ...]
@@ -58,10 +58,10 @@ class Structure:
 
 
 def structure_of(model: Model, name: str, pose: Transform) -> Structure:
-    """Compute the trees of a model; joints with missing links are left out.
+    """Compute the kinematic trees of a model, without joints whose links are missing.
 
     Args:
-        model: with its includes resolved.
+        model: the model, with its includes resolved.
         name: its name in the world.
         pose: the pose of its frame in the world.
 
@@ -79,14 +79,14 @@ def structure_of(model: Model, name: str, pose: Transform) -> Structure:
                 continue  # `check` reports it
             ends_are_there = placed.child in links and (placed.parent in links or placed.parent == WORLD)
             if ends_are_there and placed.parent != placed.child:
-                while placed.name in joints:  # names in MuJoCo are unique; `check` reports it
+                while placed.name in joints:  # MuJoCo requires unique names; `check` reports duplicates
                     placed = replace(placed, name=f"{placed.name}~")
                 joints[placed.name] = placed
     return _trees(links, joints.values())
 
 
 def _models(model: Model, frames: Frames, pose: Transform, path: str) -> Iterator[tuple[Model, Frames, Transform, str]]:
-    """A model and those in it, each with its frames, its pose in the world and its name."""
+    """Yield a model and its nested models, each with its frames, its pose in the world and its name."""
     yield model, frames, pose, path
     for inner in model.models:
         place = compose(pose, frames.pose(inner.name))
@@ -98,9 +98,9 @@ def placed_joint(joint: Joint, frames: Frames, pose: Transform, path: str) -> Pl
 
     Args:
         joint: the parsed joint.
-        frames: those of the model or world around it.
+        frames: the frames of the enclosing model or world.
         pose: the pose of their origin in the world.
-        path: the name of the model, with those around it; empty for the world.
+        path: the name of the model, with its enclosing models; empty for the world.
 
     Raises:
         FrameError: its pose, or a link that it connects, refers to a frame that does not exist.
@@ -118,7 +118,10 @@ def _within(path: str, name: str) -> str:
 
 
 def _direction(axis: Vector3) -> Vector3:
-    """Return the direction of an axis: z by default, as in libsdformat; `check` reports that."""
+    """Return the direction of an axis, z by default as in libsdformat.
+
+    `check` reports a missing direction.
+    """
     return axis if sum(value * value for value in axis) > _LEAST**2 else (0.0, 0.0, 1.0)
 
 
@@ -128,20 +131,20 @@ def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Struc
     held: dict[str, list[str]] = {}
     for joint in joints:
         is_taken = joint.child in holding or is_below(holding, joint.child, joint.parent)
-        if is_taken or joint.joint.type == "gearbox":  # it couples joints, and holds no link
+        if is_taken or joint.joint.type == "gearbox":  # a gearbox couples joints, and does not hold a link
             loops.append(joint)
         else:
             holding[joint.child] = joint
             held.setdefault(joint.parent, []).append(joint.child)
 
     ordered = [name for name in links if name not in holding or holding[name].parent == WORLD]
-    for name in ordered:  # it grows during the iteration
+    for name in ordered:  # the list grows during the iteration
         ordered += held.get(name, ())
     return Structure(tuple(HeldLink(links[name], holding.get(name)) for name in ordered), tuple(loops))
 
 
 def is_below(holding: Mapping[str, PlacedJoint], link: str, other: str) -> bool:
-    """Return whether a link is another one, or one of its descendants; `holding` has the joints by their children."""
+    """Return whether a link is another link or its descendant; `holding` maps child links to their joints."""
     while other != link:
         if other not in holding:
             return False

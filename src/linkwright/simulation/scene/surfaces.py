@@ -1,4 +1,4 @@
-"""Surfaces of shapes: friction, stiffness, and whose parameters count in a contact.
+"""Surfaces of shapes: friction, stiffness, and which shape's parameters count in a contact.
 
 Source of the figures: measurements with MuJoCo 4.0 of a robot with differential drive (straight on, arcs, turns on the
 spot), and the chapters "Contact" and "Solver parameters" of MuJoCo's documentation.
@@ -26,10 +26,10 @@ _HARD_IMPEDANCE = (0.99, 0.999, 0.001, 0.5, 2.0)
 
 
 def apply_surface(geom: Any, surface: Surface) -> None:
-    """Give a geom of MuJoCo the surface of a collision.
+    """Apply the surface of a collision to a geom of MuJoCo.
 
-    Gazebo uses the lesser of two frictions, MuJoCo the greater unless one of the two shapes has priority. The
-    priority is the higher the less friction there is, which has the same effect.
+    Gazebo uses the lower of two frictions; MuJoCo uses the higher one, unless one of the two shapes has priority. Lower
+    friction therefore gets a higher priority, which has the same effect.
     """
     mu = friction_of(surface)
     geom.friction = [min(max(mu, _LEAST), _GREATEST), *geom.friction[1:]]
@@ -46,21 +46,27 @@ def apply_surface(geom: Any, surface: Surface) -> None:
 
 
 def friction_of(surface: Surface) -> float:
-    """The coefficient of friction in a contact: MuJoCo's is the same in all directions, so the lesser of two."""
+    """Return the coefficient of friction, the lower of two.
+
+    MuJoCo's friction is the same in all directions.
+    """
     if surface.friction is not None:
         return max(min(surface.friction.mu, surface.friction.mu2), 0.0)
     return _USUAL_FRICTION
 
 
 def grip_of(surface: Surface) -> float:
-    """The coefficient of friction of a driven wheel: the greater of two; the lesser is for slipping sideways."""
+    """Return the coefficient of friction of a driven wheel, the higher of two.
+
+    The lower one is for side slip.
+    """
     if surface.friction is not None:
         return max(surface.friction.mu, surface.friction.mu2, 0.0)
     return _USUAL_FRICTION
 
 
 def make_slippery(geom: Any) -> None:
-    """Make a geom frictionless and soft, so that it leaves the load to others, as casters shall."""
+    """Make a geom frictionless and soft, which leaves the load to other geoms, as casters should."""
     geom.condim = 1
     make_soft(geom)
     geom.priority = _priority(0.0)
@@ -70,7 +76,7 @@ def make_frictionless(geom: Any, step: float) -> None:
     """Make a geom frictionless, and let it bear load as a wheel does.
 
     Args:
-        geom: the shape.
+        geom: the geom.
         step: the time step of the simulation in s.
     """
     geom.condim = 1
@@ -79,17 +85,17 @@ def make_frictionless(geom: Any, step: float) -> None:
 
 
 def make_soft(geom: Any) -> None:
-    """Make the contact of a geom a little soft, so that it does not take the load from wheels beside it."""
+    """Make the contact of a geom slightly soft, so that it does not take the load from adjacent wheels."""
     geom.solref = list(_SOFT)
 
 
 def make_wheel(geom: Any, step: float, grip: float | None = None) -> None:
-    """Let a geom roll without slipping: a hard contact, of higher priority than that of a ground of equal friction.
+    """Let a geom roll without slipping: a hard contact, with priority over a ground of equal friction.
 
     Args:
-        geom: the shape.
+        geom: the geom.
         step: the time step of the simulation in s.
-        grip: its coefficient of friction; None for the one that it has.
+        grip: the coefficient of friction; None to keep the current one.
     """
     if grip is not None:
         geom.friction = [min(max(grip, _LEAST), _GREATEST), *geom.friction[1:]]
@@ -104,7 +110,10 @@ def _priority(mu: float) -> int:
 
 
 def _patch(surface: Surface) -> float:
-    """The radius in m of the contact patch; MuJoCo's coefficient of torsional friction is a length, SDF's times it."""
+    """Return the radius of the contact patch in m.
+
+    MuJoCo's coefficient of torsional friction is a length; SDF's coefficient is multiplied by this radius.
+    """
     torsional = surface.torsional
     assert torsional is not None
     return max(torsional.patch_radius if torsional.use_patch_radius else torsional.surface_radius, 1e-3)

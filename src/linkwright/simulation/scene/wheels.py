@@ -26,18 +26,18 @@ have it, with this 0.43 times; friction by Coulomb gives 0.50, however great it 
 
 
 def make_rolling(spec: Any, body: Any, joint: Any, step: float, grips: Mapping[str, float], greatest: float) -> None:
-    """Let the collisions of a body roll about a joint: with contact in one point, as tyres have, without slipping.
+    """Let the collisions of a body roll about a joint without slipping.
 
-    Cylinders, and meshes that are round about the axis of the joint, become ellipsoids: the two edges of a cylinder
-    would scrub in turns, and the corners of a mesh would bump.
+    They touch the ground in one point, as tyres do. Cylinders, and meshes that are round about the axis of the joint,
+    become ellipsoids: the two edges of a cylinder would scrub in turns, and the corners of a mesh would bump.
 
     Args:
         spec: the specification.
-        body: the body of it.
+        body: its body.
         joint: the joint of the specification that turns the body.
         step: the time step of the simulation in s.
-        grips: the friction of geoms that grip, by their names; the others stay as they are.
-        greatest: how much they may grip.
+        grips: the friction of geoms that grip, by their names; other geoms keep their friction.
+        greatest: the maximum friction.
     """
     kinds = load_mujoco().mjtGeom
     for geom in body.geoms:
@@ -55,11 +55,11 @@ def make_rolling(spec: Any, body: Any, joint: Any, step: float, grips: Mapping[s
 
 
 def make_sliding(body: Any, unspecified: set[str]) -> None:
-    """Let the balls of a body without a motor leave the load to the wheels.
+    """Let the spheres of a body without a motor leave the load to the wheels.
 
     Args:
         body: a body of the specification.
-        unspecified: names of the geoms without a given friction: they slide, the others are only soft.
+        unspecified: names of the geoms whose friction is not specified: they slide, the others only become soft.
     """
     for geom in body.geoms:
         if geom.group == COLLISION_GROUP and geom.type == load_mujoco().mjtGeom.mjGEOM_SPHERE:
@@ -82,7 +82,7 @@ def make_omnidirectional(body: Any, step: float) -> None:
 
 
 def _round_mesh(spec: Any, geom: Any, origin: Array, axis: Array) -> None:
-    """Replace a mesh by an ellipsoid if it is round about an axis, given in the frame of its body."""
+    """Replace a mesh by an ellipsoid if it is round about an axis, which is given in the frame of its body."""
     w, x, y, z = geom.quat
     corners = np.array(spec.mesh(geom.meshname).uservert).reshape(-1, 3)
     corners = corners @ rotation_matrix((x, y, z, w)).T + np.array(geom.pos) - origin

@@ -1,7 +1,8 @@
 """Simple shapes as triangle meshes with texture coordinates.
 
-Source: gz-common's ``MeshManager``. A box shows the image on each side, upright on the lateral ones. On a cylinder and
-a ball it runs clockwise as seen from the end; on a cylinder it is upside down, and a ball's poles are along y.
+Source: gz-common's ``MeshManager``. A box shows the image on each side, upright on the lateral sides. On cylinders and
+spheres the image runs clockwise as seen from the end. It is upside down on a cylinder, and the poles of a sphere are
+along y.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ _LEAST_AREA = 1e-15
 
 
 def wrapped(shape: Shape) -> Triangles | None:
-    """A shape with texture coordinates; None for one that has none.
+    """Return a shape as a mesh with texture coordinates, or None if it cannot have any.
 
     A plane has the size of its visual, and z as its normal.
     """
@@ -55,17 +56,17 @@ def wrapped(shape: Shape) -> Triangles | None:
         case Sphere(radius) if radius > 0:
             downs = [down / _DOWN for down in reversed(range(_DOWN + 1))]
             upright = _rings([(radius * sin(down * pi), radius * cos(down * pi), down) for down in downs])
-            faces = upright.indices.reshape(-1, 3)[:, ::-1]  # exchanged axes mirror the image
+            faces = upright.indices.reshape(-1, 3)[:, ::-1]  # exchanging axes mirrors the image
             return replace(upright, positions=upright.positions[:, [0, 2, 1]], indices=faces.ravel())
     return None
 
 
 def _sheet(side: Array, count: int) -> Triangles:
-    """A rectangle.
+    """Return a rectangle as a mesh.
 
     Args:
-        side: where its middle is, and from there its right and its upper edge, shape (3, 3).
-        count: into how many squares it is cut each way.
+        side: the position of its centre, and from there the vectors to its right and upper edges, shape (3, 3).
+        count: the number of squares into which it is divided in each direction.
     """
     share = np.linspace(0.0, 1.0, count + 1)
     down, right = (array.reshape(-1, 1) for array in np.meshgrid(share, share, indexing="ij"))
@@ -75,7 +76,10 @@ def _sheet(side: Array, count: int) -> Triangles:
 
 
 def _rings(rings: Sequence[tuple[float, float, float]]) -> Triangles:
-    """Solids of revolution about z: radius, height and texture row of each ring, from the top."""
+    """Return a solid of revolution about z.
+
+    `rings` has the radius, height and texture row of each ring, from the top.
+    """
     turns = np.linspace(0.0, 2 * pi, _AROUND + 1)
     radius, height, down = (np.repeat(item, _AROUND + 1) for item in np.array(rings).T)
     turn = np.tile(turns, len(rings))
@@ -84,7 +88,7 @@ def _rings(rings: Sequence[tuple[float, float, float]]) -> Triangles:
 
 
 def _woven(positions: Array, coordinates: Array, columns: int) -> Triangles:
-    """Triangles between rows of vertices."""
+    """Return the triangles between rows of vertices, without degenerate ones."""
     start = np.arange(len(positions) - columns - 1).reshape(-1, columns + 1)[:, :-1].ravel()
     below = start + columns + 1
     faces = np.concatenate([np.stack([start, below, start + 1], 1), np.stack([start + 1, below, below + 1], 1)])

@@ -1,1 +1,1 @@
-"""Sensors without ROS: each is asked to measure, and does so at once."""
+"""Sensors without ROS, which measure when they are asked to."""

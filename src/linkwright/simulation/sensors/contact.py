@@ -20,13 +20,13 @@ class Contact:
     """A contact of two collisions in the last step.
 
     Attributes:
-        collision1: that of the sensor, with its link and model: ``robot::bumper::collision``.
-        collision2: the other.
-        positions: where they touch, in m in the world, shape (points, 3).
-        normals: unit vectors from the other collision to that of the sensor, in the axes of the world; of that shape.
-        depths: how far they are in each other, in m, shape (points,).
-        forces: on the link of the sensor, in N, in the axes of the world, shape (points, 3).
-        torques: on it, about the origin of its frame, in N m; of that shape.
+        collision1: the sensor's collision, with its link and model: ``robot::bumper::collision``.
+        collision2: the other collision.
+        positions: the contact points, in m in the world, shape (points, 3).
+        normals: unit vectors from the other collision to the sensor's, in the axes of the world, shape (points, 3).
+        depths: the penetration depths in m, shape (points,).
+        forces: the forces on the link of the sensor, in N, in the axes of the world, shape (points, 3).
+        torques: the torques on the link about the origin of its frame, in N m, shape (points, 3).
     """
 
     collision1: str
@@ -39,11 +39,11 @@ class Contact:
 
 
 class ContactSensor:
-    """Measures the contacts of collisions of a link.
+    """Measures the contacts of a link's collisions.
 
     Args:
-        mount: where it is: its link counts.
-        collisions: the names of the collisions; none for all of the link.
+        mount: the mount on the link.
+        collisions: the names of the collisions; if empty, all collisions of the link.
     """
 
     def __init__(self, mount: Mount, collisions: Sequence[str] = ()) -> None:
@@ -65,7 +65,7 @@ class ContactSensor:
         """Return the current contacts, one for each pair of collisions.
 
         Raises:
-            KeyError: its link is gone.
+            KeyError: the link no longer exists.
         """
         mine, origin = self._mine.array(), np.array(self._mount.simulation.link_pose(self._mount.link)[:3])
         model, data, mujoco = self._simulation.model, self._simulation.data, load_mujoco()
@@ -78,7 +78,7 @@ class ContactSensor:
             wrench = np.zeros(6)
             mujoco.mj_contactForce(model, data, int(index), wrench)
             frame = data.contact.frame[index].reshape(3, 3)
-            side = -1.0 if first else 1.0  # the frame points from the first to the second, and so does the force
+            side = -1.0 if first else 1.0  # frame and force both point from the first geom to the second
             position = np.array(data.contact.pos[index])
             force = side * wrench[:3] @ frame
             torque = side * wrench[3:] @ frame + np.cross(position - origin, force)

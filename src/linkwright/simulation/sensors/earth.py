@@ -1,7 +1,7 @@
 """Satellite receivers, altimeters, barometers and magnetometers.
 
-Source: the ellipsoid of WGS 84 (NIMA TR8350.2), and how the element ``<spherical_coordinates>`` lays the world upon it;
-the standard atmosphere of ISO 2533 up to 11 km.
+Source: the ellipsoid of WGS 84 (NIMA TR8350.2), the placement of the world by the element ``<spherical_coordinates>``,
+and the standard atmosphere of ISO 2533 up to 11 km.
 """
 
 from __future__ import annotations
@@ -53,12 +53,15 @@ class Globe:
         )
 
     def east_north_up(self, vector: Array) -> Array:
-        """Express a vector of the world in the axes east, north, up."""
+        """Express a vector of the world in the axes east, north and up."""
         turned: Array = self._heading @ vector
         return turned
 
     def geodetic(self, point: Array) -> tuple[float, float, float]:
-        """Latitude and longitude in degrees, and altitude above the ellipsoid in m, of a point of the world in m."""
+        """Return the geodetic coordinates of a world point in m.
+
+        They are latitude and longitude in degrees, and altitude above the ellipsoid in m.
+        """
         x, y, z = self._origin + self._axes @ self.east_north_up(point)
         across = hypot(x, y)
         latitude = atan2(z, across * (1 - _E2))
@@ -71,7 +74,7 @@ class Globe:
 
 
 def _from_geodetic(latitude: float, longitude: float, altitude: float) -> Array:
-    """A position on earth in earth-centred coordinates, in m."""
+    """Return a geodetic position in earth-centred coordinates, in m."""
     normal = _RADIUS / sqrt(1 - _E2 * sin(latitude) ** 2)
     across = (normal + altitude) * cos(latitude)
     return np.array([across * cos(longitude), across * sin(longitude), (normal * (1 - _E2) + altitude) * sin(latitude)])
@@ -83,8 +86,8 @@ class Fix:
 
     Attributes:
         latitude, longitude: in degrees.
-        altitude: above the ellipsoid, in m.
-        velocity: east, north, up, in m/s, shape (3,).
+        altitude: the altitude above the ellipsoid, in m.
+        velocity: the velocity east, north and up, in m/s, shape (3,).
     """
 
     latitude: float
@@ -97,10 +100,10 @@ class NavsatSensor:
     """A satellite receiver; noise in metres is added before degrees are computed.
 
     Args:
-        mount: where it is.
+        mount: the mount of the sensor.
         navsat: the parsed sensor; None for no noise.
-        place: where the world is on earth.
-        generator: where its noise comes from.
+        place: the position of the world on earth.
+        generator: the source of its noise.
     """
 
     def __init__(
@@ -122,7 +125,7 @@ class NavsatSensor:
         """Return the current position and velocity.
 
         Raises:
-            KeyError: its link is gone.
+            KeyError: the link no longer exists.
         """
         position = self.position_noise.apply(np.array(self._mount.pose()[:3]))
         velocity = self._globe.east_north_up(np.array(self._mount.velocity()[0]))
@@ -130,12 +133,12 @@ class NavsatSensor:
 
 
 class AltimeterSensor:
-    """An altimeter: measures the height above that of the start.
+    """An altimeter, which measures the height above its initial height.
 
     Args:
-        mount: where it is.
+        mount: the mount of the sensor.
         altimeter: the parsed sensor; None for no noise.
-        generator: where its noise comes from.
+        generator: the source of its noise.
     """
 
     def __init__(self, mount: Mount, altimeter: Altimeter | None, generator: np.random.Generator) -> None:
@@ -146,10 +149,10 @@ class AltimeterSensor:
         self.reference = mount.pose()[2]
 
     def measure(self) -> tuple[float, float]:
-        """The height in m above the start, and the velocity upwards in m/s.
+        """Return the height in m above the initial height, and the upward velocity in m/s.
 
         Raises:
-            KeyError: its link is gone.
+            KeyError: the link no longer exists.
         """
         height = np.array(self._mount.pose()[2] - self.reference)
         velocity = np.array(self._mount.velocity()[0][2])
@@ -157,15 +160,15 @@ class AltimeterSensor:
 
 
 class Barometer:
-    """A barometer: measures the air pressure at its altitude.
+    """A barometer, which measures the air pressure at its altitude.
 
     Args:
-        mount: where it is.
-        said: the altitude of the world's zero, and noise in Pa; None for sea level and no noise.
-        generator: where its noise comes from.
+        mount: the mount of the sensor.
+        said: the altitude of the world's origin, and noise in Pa; None for sea level and no noise.
+        generator: the source of its noise.
 
     Attributes:
-        noise: its noise.
+        noise: the noise of the pressure.
     """
 
     def __init__(self, mount: Mount, settings: AirPressure | None, generator: np.random.Generator) -> None:
@@ -175,30 +178,30 @@ class Barometer:
         self._altitude = settings.reference_altitude
 
     def measure(self) -> float:
-        """The pressure in Pa.
+        """Return the pressure in Pa.
 
         Raises:
-            KeyError: its link is gone.
+            KeyError: the link no longer exists.
         """
         pressure = standard_pressure(self._altitude + self._mount.pose()[2])
         return float(self.noise.apply(np.array(pressure)))
 
 
 def standard_pressure(altitude: float) -> float:
-    """The pressure in Pa of the standard atmosphere at an altitude in m."""
+    """Return the pressure of the standard atmosphere in Pa at an altitude in m."""
     height = _EARTH * altitude / (_EARTH + altitude)
     warmth = max(1.0 - _LAPSE * height / _SEA_TEMPERATURE, 0.0)
     return float(_SEA_PRESSURE * warmth ** (_GRAVITY / (_AIR * _LAPSE)))
 
 
 class MagnetometerSensor:
-    """A magnetometer: measures the magnetic field in its own axes.
+    """A magnetometer, which measures the magnetic field in its own axes.
 
     Args:
-        mount: where it is.
-        noise: on each axis, in tesla; None for none.
-        field: the field of the world in tesla, in its axes.
-        generator: where its noise comes from.
+        mount: the mount of the sensor.
+        noise: the noise on each axis, in tesla; None for no noise.
+        field: the magnetic field of the world in tesla, in the axes of the world.
+        generator: the source of its noise.
     """
 
     def __init__(
@@ -209,9 +212,9 @@ class MagnetometerSensor:
         self._field = np.array(field)
 
     def measure(self) -> Array:
-        """The field in tesla: shape (3,).
+        """Return the magnetic field in tesla, shape (3,).
 
         Raises:
-            KeyError: its link is gone.
+            KeyError: the link no longer exists.
         """
         return self.noise.apply(rotate(quaternion_inverse(np.array(self._mount.pose()[3:])), self._field))

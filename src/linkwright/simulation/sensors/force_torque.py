@@ -13,14 +13,14 @@ from linkwright.simulation.simulation import Simulation
 
 
 class ForceTorqueSensor:
-    """Measures force and torque between the two links of a joint, at the origin of the joint.
+    """Measures the force and torque between the two links of a joint, at the origin of the joint.
 
     Args:
-        simulation: the world.
+        simulation: the simulation of the world.
         joint: the name of the joint in the world; it may be fixed.
         sensor: the parsed sensor; None for SDF's defaults.
-        offset: the sensor in the frame of the joint.
-        generator: where its noise comes from.
+        offset: the pose of the sensor in the frame of the joint.
+        generator: the source of its noise.
 
     Raises:
         KeyError: there is no such joint.
@@ -45,12 +45,12 @@ class ForceTorqueSensor:
         self._offset = offset
 
     def measure(self) -> tuple[Array, Array]:
-        """The force in N and the torque in N m, in the axes that the sensor is configured for.
+        """Return the force in N and the torque in N m, in the axes for which the sensor is configured.
 
         With ``parent_to_child`` they act from the parent on the child, otherwise from the child on the parent.
 
         Raises:
-            KeyError: its links are gone.
+            KeyError: the links no longer exist.
         """
         simulation = self._simulation
         accelerations(simulation)
@@ -65,7 +65,7 @@ class ForceTorqueSensor:
         return self._force_noise.apply(rotate(into, force)), self._torque_noise.apply(rotate(into, torque))
 
     def _axes(self, joint: Transform) -> tuple[float, ...]:
-        """The orientation in the world of the frame in which it measures."""
+        """Return the orientation in the world of the frame in which the sensor measures."""
         if self._settings.frame == "parent":
             parent = self._joint.parent
             return (0.0, 0.0, 0.0, 1.0) if parent == "world" else self._simulation.link_pose(parent)[3:]

@@ -28,9 +28,9 @@ class Inertial:
     """A measurement of an IMU, in its own axes.
 
     Attributes:
-        orientation: of the unit in its reference frame: a quaternion x, y, z, w.
-        angular_velocity: in rad/s.
-        linear_acceleration: in m/s2: at rest the reaction to gravity.
+        orientation: the orientation of the IMU in its reference frame, a quaternion x, y, z, w.
+        angular_velocity: the angular velocity in rad/s.
+        linear_acceleration: the proper acceleration in m/s2; at rest it is the reaction to gravity.
     """
 
     orientation: Quaternion
@@ -41,13 +41,13 @@ class Inertial:
 class ImuSensor:
     """An inertial measurement unit.
 
-    The acceleration is that of the last step, and contains the reaction to gravity, as REP 145 has it for raw data.
+    The acceleration is that of the last step, and contains the reaction to gravity, as REP 145 defines for raw data.
 
     Args:
-        mount: where it is.
+        mount: the mount of the sensor.
         imu: the parsed sensor; None for no noise.
-        initial_reference: whether the orientation is against that at the start instead of the world.
-        generator: where its noise comes from.
+        initial_reference: whether the orientation is relative to the initial orientation instead of the world.
+        generator: the source of its noise.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class ImuSensor:
         self._reference = self._start(settings, initial_reference=initial_reference)
 
     def _start(self, imu: Imu, *, initial_reference: bool) -> Quaternion:
-        """The orientation of the reference frame in the world."""
+        """Return the orientation of the reference frame in the world."""
         if initial_reference:
             return self._mount.pose()[3:]
         turns = {"NED": _NED, "NWU": _NWU, "CUSTOM": imu.custom_rpy}
@@ -71,7 +71,7 @@ class ImuSensor:
         """Return a current measurement.
 
         Raises:
-            KeyError: its link is gone.
+            KeyError: the link no longer exists.
         """
         simulation = self._mount.simulation
         period, self._measured = (simulation.time - self._measured) * 1e-9, simulation.time

@@ -1,7 +1,7 @@
 """Lidars: ranges and intensities by ray casting.
 
-Source beyond SDF: REP 117 for ranges that are too near or too far; `RaySensor` and `GpuRaySensor` of Gazebo for the
-start of rays: they begin at the minimum range, so that the housing of a sensor does not hide the world.
+Sources besides SDF: REP 117 for ranges that are too small or too large; `RaySensor` and `GpuRaySensor` of Gazebo for
+the start of rays at the minimum range, so that the housing of a sensor does not hide the world.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Scan:
 
     Attributes:
         ranges: in m, shape (vertical, horizontal); -inf below and inf above the range of the lidar.
-        intensities: `laser_retro` of the hit surfaces, 0 without a hit; of the same shape.
+        intensities: `laser_retro` of the hit surfaces, 0 without a hit, shape (vertical, horizontal).
     """
 
     ranges: Array
@@ -42,21 +42,21 @@ class Scan:
 
 
 def angles_of(sweep: Sweep) -> Array:
-    """The angles of the rays of a sweep, in rad: shape (count,)."""
+    """Return the angles of the rays of a sweep, in rad, shape (count,)."""
     angles: Array = sweep.min_angle + sweep.step * np.arange(sweep.count, dtype=np.float64)
     return angles
 
 
 class LidarSensor:
-    """A lidar: it looks along x, horizontal angles are about z, vertical ones upwards.
+    """A lidar, which looks along x; horizontal angles are about z, and vertical angles are positive upwards.
 
-    Ranges are exact except for noise: as in Gazebo, the resolution of the range rounds nothing. The lidar's own link
-    hides nothing, nor do other parts of its robot that are nearer than the range.
+    Ranges are exact except for noise: as in Gazebo, the range resolution does not round them. The lidar's own link does
+    not hide anything, nor do other parts of its robot that are nearer than the minimum range.
 
     Args:
         mount: its place in the world.
         lidar: the parsed lidar.
-        sees_visuals: whether it sees visuals, as a lidar made by a graphics card does, instead of collisions.
+        sees_visuals: whether it sees visuals, as a GPU lidar does, instead of collisions.
         generator: the source of its noise.
     """
 
@@ -76,7 +76,7 @@ class LidarSensor:
 
     @cached_property
     def directions(self) -> Array:
-        """The directions of its rays, in its own frame: unit vectors, shape (vertical * horizontal, 3)."""
+        """The unit vectors of the ray directions in the lidar's frame, shape (vertical * horizontal, 3)."""
         up, across = np.meshgrid(angles_of(self.vertical), angles_of(self.horizontal), indexing="ij")
         x, y, z = np.cos(up) * np.cos(across), np.cos(up) * np.sin(across), np.sin(up)
         rays: Array = np.stack([x, y, z], axis=-1).reshape(-1, 3)
@@ -86,7 +86,7 @@ class LidarSensor:
         """Return a current measurement.
 
         Raises:
-            KeyError: its link is gone.
+            KeyError: the link no longer exists.
         """
         ranges, geoms = self._cast()
         intensities = self._retro.array()[geoms]
@@ -113,7 +113,7 @@ class LidarSensor:
         return ranges, geoms
 
     def _beyond(self, origin: Array, ray: Array, body: int, reached: float, own: Array) -> tuple[float, int]:
-        """The first hit behind parts of its own robot that are nearer than its range: the distance, and the geom."""
+        """Return the distance and geom of the first hit behind parts of the robot that are nearer than the range."""
         simulation, geom = self._simulation, np.zeros(1, dtype=np.int32)
         for _ in range(_SURFACES):
             start = reached + _A_LITTLE

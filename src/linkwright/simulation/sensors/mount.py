@@ -1,4 +1,4 @@
-"""The mount of a sensor, and tables of values by geom."""
+"""The mount of a sensor on its link, and tables with a value for each geom."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class Mount:
     """The pose of a sensor on a link.
 
     Attributes:
-        simulation: the world.
-        link: the name of the link in the world, as ``robot::laser_link``.
-        offset: where the sensor is in the frame of the link.
+        simulation: the simulation of the world.
+        link: the name of the link in the world, such as ``robot::laser_link``.
+        offset: the pose of the sensor in the frame of the link.
     """
 
     simulation: Simulation
@@ -35,7 +35,7 @@ class Mount:
 
     @property
     def model(self) -> str:
-        """The model that the link is part of."""
+        """The model that contains the link."""
         return self.link.partition(SEPARATOR)[0]
 
     @property
@@ -44,16 +44,19 @@ class Mount:
         return self.simulation.body(self.link)
 
     def pose(self) -> Transform:
-        """The pose of the sensor in the world.
+        """Return the pose of the sensor in the world.
 
         Raises:
-            KeyError: the link is gone.
+            KeyError: the link no longer exists.
         """
         pose = self.simulation.link_pose(self.link)
         return pose if self.offset == IDENTITY else compose(pose, self.offset)
 
     def velocity(self) -> tuple[Vector3, Vector3]:
-        """The velocity of the sensor in m/s and its angular velocity in rad/s, in the axes of the world."""
+        """Return the linear velocity in m/s and the angular velocity in rad/s of the sensor.
+
+        Both are in the axes of the world.
+        """
         linear, angular = self.simulation.link_velocity(self.link)
         rates = _three(angular)
         if self._is_at_origin:
@@ -62,17 +65,17 @@ class Mount:
 
     @property
     def _is_at_origin(self) -> bool:
-        """Whether it is at the origin of its link."""
+        """Whether the sensor is at the origin of its link."""
         return self.offset[:3] == IDENTITY[:3]
 
     def _arm(self) -> Vector3:
-        """The vector from the origin of the link to the sensor, in the axes of the world."""
+        """Return the vector from the origin of the link to the sensor, in the axes of the world."""
         return rotate(self.simulation.link_pose(self.link)[3:], self.offset[:3])
 
     def felt(self) -> tuple[Vector3, Vector3]:
-        """The angular velocity in rad/s and the proper acceleration in m/s2, in the axes of the world.
+        """Return the angular velocity in rad/s and the proper acceleration in m/s2, in the axes of the world.
 
-        At rest an accelerometer feels the reaction to gravity, upwards.
+        The proper acceleration of an accelerometer at rest is the reaction to gravity, upwards.
         """
         accelerations(self.simulation)
         simulation, mujoco, result = self.simulation, load_mujoco(), np.zeros(6)
@@ -92,19 +95,22 @@ def _three(values: Array) -> Vector3:
 
 
 def accelerations(simulation: Simulation) -> None:
-    """Let MuJoCo compute the accelerations of all bodies and the forces between them, for the last step."""
+    """Compute the accelerations of all bodies and the forces between them for the last step."""
     simulation.refresh()
     load_mujoco().mj_rnePostConstraint(simulation.model, simulation.data)
 
 
 def part_of(geom: str) -> str:
-    """The name of the visual or collision to which a geom of MuJoCo belongs, as ``robot::base_link::lid#visual``."""
+    """Return the name of the visual or collision of a MuJoCo geom.
+
+    An example is ``robot::base_link::lid#visual``.
+    """
     name, mark, kind = geom.partition("#")
     return name + mark + kind.partition("#")[0]
 
 
 def parts_of(simulation: Simulation) -> Iterator[tuple[str, Visual | Collision]]:
-    """All visuals and collisions of a world by their names; see `part_of`."""
+    """Yield all visuals and collisions of a world with their names, as `part_of` returns them."""
     for model in simulation.scene.models.values():
         for held in model.structure.links:
             link = held.link
@@ -115,11 +121,11 @@ def parts_of(simulation: Simulation) -> Iterator[tuple[str, Visual | Collision]]
 
 
 class GeomTable:
-    """A value for each geom of MuJoCo's model, computed again after models were added or removed.
+    """A value for each geom of MuJoCo's model, updated after models were added or removed.
 
     Args:
-        simulation: the world.
-        values: all values, by the order of the geoms.
+        simulation: the simulation of the world.
+        values: returns all values, for the names of the geoms in their order.
     """
 
     def __init__(self, simulation: Simulation, values: Any) -> None:
@@ -129,7 +135,7 @@ class GeomTable:
         self._array: Array = np.zeros(0)
 
     def array(self) -> Array:
-        """The values: shape (geoms + 1,); the last is 0, for geom -1, which means none."""
+        """Return the values, shape (geoms + 1,); the last one is 0, for the index -1, which means no geom."""
         self._simulation.refresh()
         if self._revision != self._simulation.revision:
             model = self._simulation.model

@@ -1,7 +1,7 @@
 """Noise of sensors, as ``<noise>`` of SDF describes it.
 
-Source: the elements of ``<noise>``, SDFormat specification 1.12, and the ``GaussianNoiseModel`` of Gazebo
-lets a bias wander.
+Source: the elements of ``<noise>``, SDFormat specification 1.12, and the ``GaussianNoiseModel`` of Gazebo (how a bias
+changes over time).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class NoiseSource:
 
     Args:
         noise: the parsed noise, in the unit of the values.
-        generator: where chance comes from.
+        generator: the random number generator.
     """
 
     def __init__(self, noise: Noise, generator: np.random.Generator) -> None:
@@ -41,26 +41,26 @@ class NoiseSource:
 
     @property
     def silent(self) -> bool:
-        """Whether it changes no value."""
+        """Whether the noise never changes a value."""
         return self._noise.type == "none"
 
     @property
     def white(self) -> bool:
-        """Whether it adds Gaussian noise with a constant offset, and nothing else."""
+        """Whether the noise is Gaussian with a constant offset, and nothing else."""
         noise = self._noise
         return noise.type == "gaussian" and not noise.dynamic_bias_stddev and noise.stddev > 0
 
     @property
     def offset(self) -> float:
-        """The constant that is added to all values: bias and mean."""
+        """The constant that is added to all values: the sum of bias and mean."""
         return 0.0 if self.silent else float(self._bias + self._noise.mean)
 
     def apply(self, values: Array, period: float = 0.0) -> Array:
         """Add noise to values.
 
         Args:
-            values: of any shape.
-            period: seconds since it was asked last, in which the bias may have wandered.
+            values: an array of any shape.
+            period: seconds since the last call, in which the bias may have drifted.
         """
         noise = self._noise
         if self.silent:
@@ -84,8 +84,8 @@ class VectorNoise:
     """Noise on the three components of a vector.
 
     Args:
-        noise: the parsed noise of each part.
-        generator: where chance comes from.
+        noise: the parsed noise of each component.
+        generator: the random number generator.
     """
 
     def __init__(self, noise: NoiseXyz, generator: np.random.Generator) -> None:
@@ -102,20 +102,22 @@ class VectorNoise:
         self._drawn: list[list[float]] = []
 
     def apply(self, vector: Array, period: float = 0.0) -> Array:
-        """Add noise to a vector, shape (3,)."""
+        """Return a vector, shape (3,), with noise added."""
         x, y, z = vector.tolist()
         return np.array(self.on((x, y, z), period))
 
     def on(self, vector: Vector3, period: float = 0.0) -> Vector3:
-        """Add noise to a vector; in plain floats, as arrays take longer for three numbers.
+        """Return a vector with noise added.
+
+        It is computed with plain floats, which are faster than arrays for three numbers.
 
         Args:
-            vector: its parts.
-            period: seconds since it was asked last, in which a bias may have wandered.
+            vector: the components of the vector.
+            period: seconds since the last call, in which a bias may have drifted.
         """
         if self._silent:
             return vector
-        if self._white:  # drawing many numbers at once takes hardly longer than drawing three
+        if self._white:  # drawing many numbers together takes hardly longer than drawing three
             if not self._drawn:
                 self._drawn = self._generator.standard_normal((_AHEAD, 3)).tolist()
             (x, y, z), (a, b, c) = vector, self._drawn.pop()

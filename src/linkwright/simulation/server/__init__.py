@@ -1,1 +1,1 @@
-"""A simulation on the graph: its thread, its topics, and its services."""
+"""A simulation in the graph: its thread, its topics, and its services."""

@@ -1,4 +1,4 @@
-"""The changes that make one world another: models that are removed, replaced and added."""
+"""The changes that turn one world into another: models that are removed, replaced and added."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from linkwright.simulation.simulation import Simulation
 
 @dataclass(frozen=True, slots=True)
 class AddedModel:
-    """A model that is added.
+    """A model to add.
 
     Attributes:
-        model: with its includes resolved.
+        model: the model, with its includes resolved.
         name: its name.
         pose: the initial pose of its frame in the world.
-        namespace: of the nodes of its plugins that name none.
-        motion: the motion of the model that it replaces; None if it replaces none.
-        here: whether it continues at the pose of that model.
+        namespace: the default namespace for the nodes of its plugins.
+        motion: the motion of the model that it replaces; None if it does not replace one.
+        here: whether it continues at the pose of the model that it replaces.
     """
 
     model: Model
@@ -46,8 +46,8 @@ class Changes:
 
     Attributes:
         gone: names of the removed models.
-        moved: models of which only the pose differs: their new poses in the world.
-        renewed: models that differ, under existing names.
+        moved: the new poses in the world of models that differ only in their pose.
+        renewed: models that differ and replace existing ones of the same names.
         new: the added models.
     """
 
@@ -57,7 +57,7 @@ class Changes:
     new: tuple[AddedModel, ...]
 
     def with_all(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
-        """These changes, with all unchanged models replaced where they are."""
+        """Return these changes, with all unchanged models replaced at their current poses."""
         others = {*self.gone, *(change.name for change in self.renewed)}
         poses = {name: self.moved.get(name, each.pose) for name, each in running.items() if name not in others}
         rest = (
@@ -67,7 +67,10 @@ class Changes:
         return replace(self, moved={}, renewed=(*self.renewed, *rest))
 
     def with_connected(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
-        """These changes, with models that moved and that joints of the world connect replaced at their new poses."""
+        """Return these changes with connected models that moved replaced at their new poses.
+
+        These are the models that joints of the world connect.
+        """
         connected = {name for model in running.values() if model.hangs_on for name in (model.name, *model.hangs_on)}
         again = {name: pose for name, pose in self.moved.items() if name in connected}
         moved = {name: pose for name, pose in self.moved.items() if name not in connected}
@@ -76,15 +79,15 @@ class Changes:
 
 
 def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collection[str]) -> Changes:
-    """The changes from the running models to those of another world.
+    """Return the changes from the running models to the models of another world.
 
     Args:
-        world: the other one, with its includes resolved and as it was saved.
-        running: the models that run, by name.
-        owned: names of those that came with a world; all others stay as they are.
+        world: the other world, with its includes resolved and as it was saved.
+        running: the running models, by name.
+        owned: names of the running models that belong to a world; all others stay.
 
     Raises:
-        LinkwrightError: SIM102 a model has the name of one that stays; SIM140 one has no place.
+        LinkwrightError: SIM102, a model has the name of a model that stays; SIM140, a model cannot be placed.
     """
     frames = Frames(world)
     moved: dict[str, Transform] = {}
@@ -93,7 +96,7 @@ def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collectio
     names: set[str] = set()
     for model in world.models:
         if model.name in names:
-            continue  # `check` reports a second one
+            continue  # `check` reports duplicate names
         names.add(model.name)
         try:
             pose = frames.pose(model.name)
@@ -118,19 +121,19 @@ def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collectio
 def check(
     world: World, simulation: Simulation, added: Sequence[AddedModel], finder: ResourceFinder
 ) -> list[Diagnostic]:
-    """Compile models in a world beside the running simulation, to find out whether they can be simulated.
+    """Compile models in a separate world to find out whether they can be added to a running simulation.
 
     Args:
         world: the world; its own models are left out.
-        simulation: the one that runs.
-        added: the models.
-        finder: where meshes are.
+        simulation: the running simulation.
+        added: the models to add.
+        finder: the finder of meshes.
 
     Returns:
         The findings on parts that cannot be simulated.
 
     Raises:
-        LinkwrightError: SIM104, SIM105, SIM140 they cannot.
+        LinkwrightError: SIM104, SIM105, SIM140, the models cannot be simulated.
     """
     models = {model.name: model.model for model in simulation.scene.models.values()}
     count_links((models | {change.name: change.model for change in added}).values())
@@ -140,10 +143,11 @@ def check(
 
 
 def add_models(simulation: Simulation, added: Sequence[AddedModel]) -> None:
-    """Add models to a simulation, all or none.
+    """Add models to a simulation, either all or none.
 
     Raises:
-        LinkwrightError: SIM102 there is a model of such a name; SIM104, SIM105, SIM140 one cannot be simulated.
+        LinkwrightError: SIM102, there is already a model with such a name; SIM104, SIM105, SIM140, a model cannot be
+            simulated.
     """
     came: list[str] = []
     by_name = {change.name: change for change in added}
@@ -161,7 +165,7 @@ def add_models(simulation: Simulation, added: Sequence[AddedModel]) -> None:
 
 
 def surroundings(world: World) -> tuple[object, ...]:
-    """The parts of a world that plugins of its models depend on."""
+    """Return the parts of a world on which plugins of its models depend."""
     physics = physics_of(world)
     joints = tuple(world.joints)
     return world.name, world.spherical_coordinates, world.magnetic_field, world.wind, physics.max_step_size, joints

@@ -1,4 +1,4 @@
-"""Models from texts of URDF or SDF that programs send."""
+"""Models from URDF or SDF texts that programs send."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class Entity:
     """A model from a text.
 
     Attributes:
-        model: the model, with its includes resolved; of a robot every link is kept.
-        diagnostics: findings about it.
-        unread: the errors that make shapes of it missing.
+        model: the model, with its includes resolved; every link of a robot is kept.
+        diagnostics: findings about the model.
+        unread: the errors that cause its shapes to be missing.
     """
 
     model: Model
@@ -41,12 +41,13 @@ def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
     """Read the model in a text.
 
     Args:
-        text: URDF or SDF; of SDF the first model.
-        finder: finds its includes.
+        text: URDF, or SDF whose first model is read.
+        finder: finds the included files.
         library: the robot descriptions that the process has read.
 
     Raises:
-        LinkwrightError: it is not XML; it is neither URDF nor SDF; SIM142 there is no model in it; its other errors.
+        LinkwrightError: the text is not XML; it is neither URDF nor SDF; SIM142, it does not contain a model; other
+            errors of the text.
     """
     document, warnings = parse_as_gazebo(text, _NAME)
     if document.root.tag == "robot":
@@ -84,7 +85,7 @@ def _lacks_shapes(robot: Robot) -> bool:
 
 
 def _unknown_shapes(root: Element) -> Iterator[Diagnostic]:
-    """Errors for elements in the place of shapes, which are none of SDF."""
+    """Yield errors for elements that are used as shapes but that SDF does not define."""
     for parent in root.walk():
         for geometry in parent.elements("geometry") if parent.tag in _SHAPED else ():
             for shape in geometry.elements():
@@ -101,7 +102,7 @@ def _unknown_shapes(root: Element) -> Iterator[Diagnostic]:
 
 
 def _errors(findings: tuple[Diagnostic, ...] | list[Diagnostic]) -> list[Diagnostic]:
-    """The findings that are errors, or all of them if none is."""
+    """Return the findings that are errors, or all findings if there are no errors."""
     return (
         [finding for finding in findings if has_errors([finding])]
         or list(findings)

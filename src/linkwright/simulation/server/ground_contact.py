@@ -1,8 +1,8 @@
-"""Models that are spawned inside the ground are lifted onto it.
+"""Lift models that are spawned inside the ground onto it.
 
-Launch files spawn robots at a height of 0, though their origin is above the wheels, or into worlds whose ground is a
-plate of some thickness. Contacts would push a robot out of the ground within a few steps, and fast enough to throw a
-light one over.
+Launch files spawn robots at a height of 0 although their origin is above the wheels, or into worlds whose ground is a
+thick plate. Contacts would push such a robot out of the ground within a few steps, fast enough to throw a light one
+over.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _UPWARD = 0.7
 
 
 def stand_up(simulation: Simulation, name: str) -> None:
-    """Lift a model until it does not penetrate static bodies; one that is fixed stays.
+    """Lift a model until it does not penetrate static bodies; a fixed model stays in place.
 
     Raises:
         KeyError: there is no such model.
@@ -34,7 +34,7 @@ def stand_up(simulation: Simulation, name: str) -> None:
 
 
 def touches_nothing(simulation: Simulation, name: str) -> list[Diagnostic]:
-    """A warning on a model that falls and has no collisions: SIM143, at most once.
+    """Return a warning (SIM143) if a model falls and has no collisions, otherwise an empty list.
 
     Raises:
         KeyError: there is no such model.
@@ -56,7 +56,7 @@ def touches_nothing(simulation: Simulation, name: str) -> list[Diagnostic]:
 
 
 def _depth(simulation: Simulation, name: str) -> float:
-    """The height in m by which a model has to be lifted."""
+    """Return the height in m by which a model has to be lifted."""
     simulation.refresh()
     model, data = simulation.model, simulation.data
     own = {simulation.body(held.link.name) for held in simulation.scene.models[name].structure.links}
@@ -67,7 +67,7 @@ def _depth(simulation: Simulation, name: str) -> float:
         is_own = [body in own for body in bodies]
         if is_own[0] == is_own[1] or model.body_weldid[bodies[is_own.index(False)]] != 0:
             continue
-        up = float(contact.frame[2]) * (1.0 if is_own[1] else -1.0)  # its direction points from the first to the second
+        up = float(contact.frame[2]) * (1.0 if is_own[1] else -1.0)  # normal from the first geom to the second
         if up > _UPWARD:
             depth = max(depth, -float(contact.dist) / up)
     return depth

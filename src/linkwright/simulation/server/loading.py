@@ -1,8 +1,9 @@
-"""Replaces the running world by that of another file or text, for ``/load_world``.
+"""Replace the running world by the world in another file or text, for ``/load_world``.
 
 Source: ``simulation_interfaces/srv/LoadWorld``. There the scene is cleared and the simulation stops; here the common
 parts of both worlds, spawned models and the time continue. ``uri`` is the path or address of a file, or the name of a
-world; ``resource_string``, which is ignored beside it there, is the text of the file before it is saved.
+world. The original ignores ``resource_string`` if there is a ``uri``; here it is the text of the file before it is
+saved.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ class WorldLoader:
 
     Args:
         server: the simulation.
-        loaded: the world that it runs.
+        loaded: the world that it runs at first.
 
     Attributes:
         loaded: the world that it runs now.
@@ -56,7 +57,7 @@ class WorldLoader:
 
     @property
     def is_unsaved(self) -> bool:
-        """Whether the running world is that of a text which differs from its file."""
+        """Whether the running world is from a text that differs from its file."""
         if self._text is None:
             return False
         path = self.loaded.path
@@ -66,17 +67,17 @@ class WorldLoader:
             return True
 
     def load(self, uri: str, text: str = "", *, refused: Sequence[str] = ()) -> None:
-        """Replace the running world by that of a file or text.
+        """Replace the running world by the world in a file or text.
 
         An error that both worlds share does not prevent the replacement.
 
         Args:
             uri: the file; empty for a text without a file.
-            text: replaces the text of the file; empty for the text in the file.
+            text: replaces the text of the file; empty to read the file.
             refused: codes of warnings that prevent the replacement.
 
         Raises:
-            LinkwrightError: it cannot be read or simulated; nothing has changed.
+            LinkwrightError: the world cannot be read or simulated; nothing has changed.
         """
         if not (uri or text):
             hint = phrase("give the file of a world, or its text")

@@ -1,4 +1,4 @@
-"""Keeping the motion of a model when it is replaced by a changed one."""
+"""Keep the motion of a model when it is replaced by a changed one."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ class Motion:
     """The pose, velocities and joint states of a model.
 
     Attributes:
-        pose: where its frame is in the world.
+        pose: the pose of its frame in the world.
         linear: the velocity of its first link in m/s, in the axes of the world.
-        angular: that of its turning in rad/s, in the axes of the world.
-        joints: type, positions and velocities of its joints as MuJoCo has them, by name.
+        angular: the angular velocity of its first link in rad/s, in the axes of the world.
+        joints: the type, positions and velocities of its joints in MuJoCo, by name.
     """
 
     pose: Transform
@@ -27,7 +27,7 @@ class Motion:
 
 
 def motion_of(simulation: Simulation, name: str) -> Motion:
-    """Record the motion of a model.
+    """Return the current motion of a model.
 
     Raises:
         KeyError: there is no such model.
@@ -43,10 +43,10 @@ def motion_of(simulation: Simulation, name: str) -> Motion:
 
 
 def resume(simulation: Simulation, name: str, motion: Motion, *, here: bool) -> None:
-    """Give a model the motion of its predecessor of the same name, for the joints that are still of the same kind.
+    """Apply the motion of a model's predecessor of the same name, for joints of unchanged type.
 
     Args:
-        simulation: the world.
+        simulation: the simulation of the world.
         name: the name of the model.
         motion: the motion of the predecessor.
         here: whether a free model also continues at the pose and velocity of the predecessor.
@@ -66,7 +66,10 @@ def resume(simulation: Simulation, name: str, motion: Motion, *, here: bool) -> 
 
 
 def _put(simulation: Simulation, name: str, motion: Motion, free: dict[str, str]) -> None:
-    """Set the poses of all free links: by their own, or, for the first and new ones, by the frame of the model."""
+    """Set the poses of all free links.
+
+    First and new links follow the frame of the model, the others have poses of their own.
+    """
     model = simulation.scene.models[name]
     poses = {held.link.name: held.link.pose for held in model.structure.links}
     moved = compose(motion.pose, invert(model.pose))
@@ -83,7 +86,7 @@ def _put(simulation: Simulation, name: str, motion: Motion, free: dict[str, str]
 
 
 def _joints(simulation: Simulation, name: str) -> dict[str, int]:
-    """MuJoCo's joints of a model, and their indices."""
+    """Return MuJoCo's joints of a model with their indices."""
     simulation.refresh()
     model, found = simulation.model, {}
     for held in simulation.scene.models[name].structure.links:

@@ -1,4 +1,4 @@
-"""Findings on models that begin inside each other: SIM144. Nothing throws them apart; see `simulation.recovery`."""
+"""Findings on models that overlap at the start: SIM144. They are not thrown apart; see `simulation.recovery`."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _MOST = 8
 
 
 def overlaps(simulation: Simulation, names: Container[str] | None = None) -> list[Diagnostic]:
-    """Return warnings about bodies that overlap now, the deepest first.
+    """Return warnings about bodies that currently overlap, the deepest overlap first.
 
     Args:
-        simulation: the world.
-        names: the models that are looked at; all by default.
+        simulation: the simulation of the world.
+        names: the models to check; all by default.
     """
     simulation.refresh()
     model, data = simulation.model, simulation.data
@@ -47,7 +47,7 @@ def overlaps(simulation: Simulation, names: Container[str] | None = None) -> lis
 
 
 def _moving_first(simulation: Simulation, links: Iterable[str]) -> list[str]:
-    """Return two links, a moving one first."""
+    """Return two links with a moving one first."""
     return sorted(links, key=lambda link: int(simulation.model.body_weldid[simulation.body(link)]) == 0)
 
 

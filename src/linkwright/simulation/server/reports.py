@@ -1,4 +1,4 @@
-"""The topics that a simulator publishes of itself: time, state, description, poses."""
+"""The topics that a simulator publishes about itself: time, state, description, poses."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ PLAYING, PAUSED = 1, 2
 
 
 class Reports:
-    """The topics of a simulator; published in the simulation's thread.
+    """The topics of a simulator, published in the simulation's thread.
 
     Args:
         server: the simulation.
-        topics: on the node of the simulator.
-        clock_rate: how often a simulated second the time is published.
+        topics: the topics of the simulator's node.
+        clock_rate: how often the time is published per simulated second.
     """
 
     def __init__(self, server: SimulationServer, topics: SteppedNode, clock_rate: float) -> None:
@@ -54,7 +54,7 @@ class Reports:
         self._bodies: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
         self._revision = -1
         self._finder: ResourceFinder | None = None
-        self._written: dict[tuple[int, str, Transform], tuple[Model, WrittenModel]] = {}  # keeps the models of the ids
+        self._written: dict[tuple[int, str, Transform], tuple[Model, WrittenModel]] = {}  # models keep their ids valid
         self._posed = self._measured = 0.0
         server.on_reset.append(self._publish_time)
         server.simulation.call_every(
@@ -71,7 +71,7 @@ class Reports:
         self._state.publish(get_message(_STATE)(state=PAUSED if paused else PLAYING))
 
     def publish_description(self) -> None:
-        """Publish the world as SDF, with all models at their initial poses, and files by their addresses."""
+        """Publish the world as SDF, with all models at their initial poses and with absolute file addresses."""
         simulation = self._server.simulation
         if self._finder is not simulation.finder:
             self._finder, self._written = simulation.finder, {}
@@ -83,7 +83,10 @@ class Reports:
         self._description.publish(String(data=text))
 
     def _saved(self, model: Model, name: str, pose: Transform) -> tuple[Model, WrittenModel]:
-        """Return a model of the description; its text is written again only if it or its pose differs."""
+        """Return a model of the description.
+
+        Its text is only written again if the model or its pose has changed.
+        """
         known = self._written.get((id(model), name, pose))
         if known is not None:
             return known
@@ -95,7 +98,7 @@ class Reports:
         return addressed
 
     def watch(self, factor: Callable[[], float]) -> None:
-        """Publish poses and the real time factor, as often as configured in real time, while they have subscribers."""
+        """Publish poses and the real-time factor at the configured rate in real time, while they have subscribers."""
         now = time.monotonic()
         if now - self._posed >= _POSES_PERIOD and self._poses.is_wanted:
             self._posed = now

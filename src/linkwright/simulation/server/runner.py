@@ -1,4 +1,4 @@
-"""The thread in which a simulation runs beside the event loop."""
+"""The thread that runs a simulation next to the event loop."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ _MEASURED = 0.5
 
 
 class Runner:
-    """Advances a simulation in a thread of its own, at the requested real time factor.
+    """Advances a simulation in a separate thread, at the requested real-time factor.
 
-    Everything but `start` and `close` is called in that thread, by commands of the exchange.
+    Everything except `start` and `close` is called in that thread, through commands of the exchange.
 
     Args:
         server: the simulation.
         factor: simulated seconds per real second; infinite for as fast as possible, 0 for the factor of the world.
-        paused: whether it begins paused.
+        paused: whether the simulation starts paused.
         seconds: the simulated seconds after which it ends; None for never.
-        watch: called in the thread every now and then, paused or not.
-        on_state: called in the thread when it was paused or resumed.
-        on_end: called in the thread with 0 after these seconds, or with 1 after a failure.
+        watch: called in the thread at short intervals, even while the simulation is paused.
+        on_state: called in the thread when the simulation was paused or resumed.
+        on_end: called in the thread with 0 after `seconds`, or with 1 after a failure.
 
     Attributes:
-        paused: whether no time passes.
+        paused: whether the simulation is paused.
         real_time_factor: the recent number of simulated seconds per real second.
     """
 
@@ -73,7 +73,7 @@ class Runner:
         self._thread.start()
 
     def close(self) -> None:
-        """End the thread, after the step that is being made."""
+        """End the thread after the current step."""
         self._ends = True
         self._server.exchange.close()
         if self._thread.is_alive() and self._thread is not threading.current_thread():
@@ -88,10 +88,10 @@ class Runner:
         self._set(paused=False)
 
     def step(self, count: int) -> None:
-        """Make steps, as fast as possible.
+        """Run a number of steps as fast as possible.
 
         Raises:
-            UnstableError: a value in the simulation is not a number any more.
+            UnstableError: a value in the simulation is no longer finite.
         """
         self._server.simulation.advance(count * self._server.simulation.step)
         self._wake()
@@ -103,7 +103,7 @@ class Runner:
             self._on_state()
 
     def _wake(self) -> None:
-        """Restart counting real time, at the world's real time factor; the world may be another one."""
+        """Restart the measurement of real time, with the real-time factor of the current world."""
         self._factor = self._given_factor or max(physics_of(self._server.simulation.world).real_time_factor, 0.0) or 1.0
         self._began = self._measured = (time.monotonic(), self._server.simulation.time)
 
@@ -123,7 +123,7 @@ class Runner:
                 exchange.come.wait(wait)
 
     def _safely(self, work: Callable[[], object]) -> None:
-        """Call a function; an error is logged and pauses the simulation, which can be reset then."""
+        """Call a function; an error is logged and pauses the simulation, which can then be reset."""
         run_logged(self._server.node.get_logger(), "the simulation", lambda: self._try(work))
 
     def _try(self, work: Callable[[], object]) -> None:
@@ -162,7 +162,7 @@ class Runner:
                 self._on_end(0)
 
     def _ahead(self) -> float:
-        """The real seconds to wait until real time has caught up with simulated time."""
+        """Return the real seconds to wait until real time has caught up with simulated time."""
         if self._factor == inf:
             return 0.0
         real, simulated = self._began

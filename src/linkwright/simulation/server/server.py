@@ -1,4 +1,4 @@
-"""A simulation with its plugins, on a graph."""
+"""A simulation with its plugins in a graph."""
 
 from __future__ import annotations
 
@@ -54,10 +54,10 @@ class ServerOptions:
 
     Attributes:
         seed: the seed of all random numbers.
-        usual_names: whether topics of gz, such as ``/model/robot/cmd_vel``, have their usual names too: ``/cmd_vel``
-            for the first robot that has one.
-        gazebo_mistakes: whether plugins make the known mistakes of Gazebo.
-        systems: the plugins of a world that names none.
+        usual_names: whether topics of gz, such as ``/model/robot/cmd_vel``, also have their usual names, such as
+            ``/cmd_vel`` for the first robot that has this topic.
+        gazebo_mistakes: whether plugins reproduce known mistakes of Gazebo.
+        systems: the plugins for a world that does not name any.
     """
 
     seed: int = 0
@@ -67,24 +67,24 @@ class ServerOptions:
 
 
 class SimulationServer:
-    """A simulation with its plugins, on a graph.
+    """A simulation with its plugins in a graph.
 
-    All methods are called in the thread that advances the simulation, which may be any one.
+    All methods must be called in the thread that advances the simulation, which may be any thread.
 
     Args:
-        simulation: the world.
+        simulation: the simulation of the world.
         node: the node of the simulator, which plugins of gz share.
-        options: how it is run.
+        options: the options of the simulation.
 
     Attributes:
-        simulation: the world.
+        simulation: the simulation of the world.
         node: the node of the simulator.
-        exchange: messages to the graph, and commands from there.
-        on_change: called after models have come or gone.
+        exchange: passes messages to the graph, and commands from there.
+        on_change: called after models were added or removed.
         on_reset: called after a reset.
-        on_findings: called after `findings` are others.
+        on_findings: called after `findings` have changed.
         on_failure: called with the exception of a plugin's code, after it was logged.
-        left: the states that plugins leave for their successors.
+        left: the states that plugins store for their successors.
     """
 
     def __init__(self, simulation: Simulation, node: Node, options: ServerOptions | None = None) -> None:
@@ -113,12 +113,12 @@ class SimulationServer:
         self._load(_WORLD, of_world(self.simulation.world, self._options.systems), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._load(scene_model.name, of_model(self.simulation.world, scene_model.model, scene_model.name), "")
-        self.report(overlaps(self.simulation))  # not before: plugins attach models that are meant to overlap
+        self.report(overlaps(self.simulation))  # only now, because plugins attach models that are meant to overlap
         self._changed()
 
     @property
     def findings(self) -> list[Diagnostic]:
-        """The findings on the models that are in the world; safe to call from any thread."""
+        """The findings on the models in the world; safe to read from any thread."""
         return [diagnostic for found in tuple(self._findings.values()) for diagnostic in tuple(found)]
 
     @property
@@ -127,24 +127,25 @@ class SimulationServer:
         return self._options.gazebo_mistakes
 
     def random(self, name: str) -> np.random.Generator:
-        """A generator of random numbers for a name; it depends on nothing but the name and the seed."""
+        """Return a random number generator for a name, determined only by the name and the seed."""
         return np.random.default_rng([self._options.seed, crc32(name.encode())])
 
     def plugins(self, model: str) -> tuple[SimulatedPlugin[object], ...]:
-        """The running plugins and sensors of a model."""
+        """Return the running plugins and sensors of a model."""
         return tuple(self._plugins.get(model, ()))
 
     def spawn(self, model: Model, name: str, pose: Transform = IDENTITY, namespace: str = "") -> None:
         """Add a model to the world and start its plugins.
 
         Args:
-            model: with its includes resolved.
+            model: the model, with its includes resolved.
             name: its name.
-            pose: of its frame in the world; a model inside the ground is lifted onto it.
-            namespace: of the nodes of its plugins that name none.
+            pose: the pose of its frame in the world; a model inside the ground is lifted onto it.
+            namespace: the default namespace for the nodes of its plugins.
 
         Raises:
-            LinkwrightError: SIM102 there is a model of that name; SIM140 it cannot be placed or moved.
+            LinkwrightError: SIM102, there is already a model with this name; SIM140, the model cannot be placed or
+                moved.
         """
         if name in self.simulation.scene.models:
             raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
@@ -158,12 +159,12 @@ class SimulationServer:
         """Replace a model by a changed one, which keeps its pose, velocity and joint positions.
 
         Args:
-            model: with its includes resolved.
-            name: the name of both.
+            model: the changed model, with its includes resolved.
+            name: the name of both models.
 
         Raises:
-            LinkwrightError: SIM141 there is none of that name; SIM140 it cannot be placed or moved, and nothing has
-                changed.
+            LinkwrightError: SIM141, there is no model with this name; SIM140, the changed model cannot be placed or
+                moved, and nothing has changed.
         """
         before = self._model(name)
         added = AddedModel(model, name, before.pose, self._namespaces.get(name, ""), here=True)
@@ -175,13 +176,14 @@ class SimulationServer:
         """Replace the running world by another one; common parts continue, and spawned models stay.
 
         Args:
-            world: the other one, with its includes resolved.
+            world: the other world, with its includes resolved.
             finder: finds its meshes.
-            allow: called before anything changes with the findings on parts that cannot be simulated; it may raise.
+            allow: called with the findings on parts that cannot be simulated, before anything changes; it may raise an
+                error.
 
         Raises:
-            LinkwrightError: SIM102 a model has the name of a spawned one; SIM104, SIM140 it cannot be simulated.
-                Nothing has changed.
+            LinkwrightError: SIM102, a model has the name of a spawned one; SIM104, SIM140, the world cannot be
+                simulated. Nothing has changed.
         """
         simulation, before = self.simulation, self.simulation.world
         wanted = as_saved(world)
@@ -201,7 +203,10 @@ class SimulationServer:
             self._load(_WORLD, of_world(wanted, self._options.systems), "")
 
     def _exchange(self, gone: Iterable[str], added: Sequence[AddedModel]) -> None:
-        """Remove models and add others, those of the same name in their places; connected ones are replaced as well."""
+        """Remove models and add others.
+
+        A model replaces one of the same name in its place; connected models are replaced, too.
+        """
         simulation = self.simulation
         count = len(simulation.scene.diagnostics)
         before: dict[str, list[SimulatedPlugin[object]]] = {}
@@ -226,7 +231,10 @@ class SimulationServer:
         self._changed()
 
     def _hanging_on(self, names: Collection[str]) -> Iterator[AddedModel]:
-        """The models connected to others by joints of the world, to be added again where they are."""
+        """Yield the models that joints of the world connect to others.
+
+        They are to be added again at their current poses.
+        """
         models = self.simulation.scene.models
         for name in {item: None for one in names & models.keys() for item in self.simulation.scene.hanging_on(one)}:
             if name not in names:
@@ -238,7 +246,7 @@ class SimulationServer:
         """Remove a model after its plugins have ended; models that were connected to it by joints stay.
 
         Raises:
-            LinkwrightError: SIM141 there is none of that name.
+            LinkwrightError: SIM141, there is no model with this name.
         """
         self._model(name)
         self._exchange((name,), ())
@@ -251,7 +259,7 @@ class SimulationServer:
         return self.simulation.scene.models[name]
 
     def reset(self) -> None:
-        """Restart: initial poses, time 0, and the same random numbers again."""
+        """Restart with the initial poses, time 0, and the same random numbers."""
         self.simulation.reset()
         for plugin in self._running():
             plugin.node.calls.make(plugin.reset)
@@ -262,10 +270,10 @@ class SimulationServer:
         """Run posted commands, advance simulated time, and publish all messages in this thread.
 
         Args:
-            duration: nanoseconds.
+            duration: the time to advance, in nanoseconds.
 
         Raises:
-            UnstableError: a value in the simulation is not a number any more.
+            UnstableError: a value in the simulation is no longer finite.
         """
         self.exchange.work()
         try:
@@ -304,7 +312,10 @@ class SimulationServer:
         namespace: str,
         before: Sequence[SimulatedPlugin[object]] = (),
     ) -> None:
-        """Start the plugins and sensors of a model or world; those that ran before keep their state."""
+        """Start the plugins and sensors of a model or world.
+
+        Unchanged ones keep the state of their predecessors.
+        """
         self._plugins[owner] = []
         unknown: dict[str, None] = {}
         for place in places:
@@ -345,7 +356,7 @@ class SimulationServer:
         namespace: str,
         before: Sequence[SimulatedPlugin[object]],
     ) -> None:
-        """Start a plugin or sensor, which continues with the state of the one before it."""
+        """Start a plugin or sensor, which continues with the state of its predecessor."""
         calls = Calls(lambda error: self._failed(owner, place, error))
         node = self._node(place, namespace, calls)
         made: list[SimulatedPlugin[object]] = []
@@ -369,7 +380,7 @@ class SimulationServer:
             node.close()
 
     def _failed(self, owner: str, place: PluginPlace, error: Exception) -> None:
-        """End a plugin or sensor that raised an error; everything else continues."""
+        """End a plugin or sensor that raised an error; the others continue."""
         self._log_failure(place, error)
         running = self._plugins.get(owner, [])
         ended = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is place]
@@ -383,7 +394,10 @@ class SimulationServer:
                 function(error)
 
     def _node(self, place: PluginPlace, namespace: str, calls: Calls) -> PluginNode:
-        """The node of a plugin: the simulator's for those of gz and for sensors without a plugin, else its own."""
+        """Return the node for a plugin.
+
+        It is the simulator's node for plugins of gz and for sensors without a plugin, otherwise a separate node.
+        """
         if is_shared(place):
             return PluginNode(
                 self.node,
@@ -435,7 +449,7 @@ class SimulationServer:
             self._log_failure(place, error)
 
     def report(self, findings: Iterable[Diagnostic], model: str = _WORLD) -> None:
-        """Log a finding once; one on a model is among the `findings` until the model is removed."""
+        """Log a finding once; a finding on a model is in `findings` until the model is removed."""
         found = list(findings)
         if found and model != _WORLD:
             self._findings.setdefault(model, []).extend(found)
@@ -447,7 +461,7 @@ class SimulationServer:
             self._logged.add(text)
             logger = self.node.get_logger()
             line = f"{text} ({diagnostic.hint})" if diagnostic.hint else text
-            if diagnostic.severity is Severity.ERROR:  # two lines, because a logger identifies its calls by their lines
+            if diagnostic.severity is Severity.ERROR:  # two calls, because a logger identifies its calls by their lines
                 logger.error(line)
             else:
                 logger.warning(line)
@@ -470,7 +484,7 @@ def is_shared(place: PluginPlace) -> bool:
 
 
 def _kinds(place: PluginPlace) -> list[str]:
-    """The name of an unknown plugin or sensor; empty for features of the simulation itself."""
+    """Return the names of an unknown plugin or sensor; empty for features of the simulation itself."""
     if place.plugin is None:
         return [] if place.sensor is None else [place.sensor.sensor.type]
     return [] if needs_nothing(place.plugin.filename) else [place.plugin.filename]

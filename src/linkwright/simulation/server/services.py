@@ -1,4 +1,4 @@
-"""The services of a simulator, those of gazebo_ros and of simulation_interfaces.
+"""The services of a simulator from gazebo_ros and simulation_interfaces.
 
 Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_init``, ``gazebo_ros_factory``, ``gazebo_ros_state``,
 ``gazebo_ros_force_system``) and their messages.
@@ -48,15 +48,15 @@ class Progress(Protocol):
         """Resume the simulation."""
 
     def step(self, count: int) -> None:
-        """Make steps.
+        """Run a number of steps.
 
         Raises:
-            UnstableError: a value in the simulation is not a number any more.
+            UnstableError: a value in the simulation is no longer finite.
         """
 
 
 class Services:
-    """The services of a simulator; they work in the simulation's thread.
+    """The services of a simulator, which are handled in the simulation's thread.
 
     Args:
         server: the simulation.
@@ -105,19 +105,19 @@ class Services:
     # --- models -------------------------------------------------------------------------------------------------------
 
     def spawn(self, text: str, name: str, pose: Transform, namespace: str = "") -> str:
-        """Add the model of a text, URDF or SDF, to the world.
+        """Add the model in a text, URDF or SDF, to the world.
 
         Args:
             text: the description.
-            name: its name; that in the description if empty.
-            pose: of its frame, before which its own pose comes.
-            namespace: of the nodes of its plugins that name none.
+            name: the name of the model; empty for the name in the description.
+            pose: the pose in the world to which the model's own pose is relative.
+            namespace: the default namespace for the nodes of its plugins.
 
         Returns:
-            Its name.
+            The name of the model.
 
         Raises:
-            LinkwrightError: its errors.
+            LinkwrightError: the description has errors, or the model cannot be added.
         """
         return self._put(entity_from(text, self._server.simulation.finder, self._library), name, pose, namespace)
 
@@ -129,16 +129,16 @@ class Services:
         return name
 
     def renew(self, text: str, name: str) -> None:
-        """Replace a model by that of a text, in the simulation's thread; called from any thread.
+        """Replace a model by the one in a text, in the simulation's thread; may be called from any thread.
 
-        The simulation logs its objections later.
+        The simulation logs its own objections later.
 
         Args:
             text: the description, URDF or SDF.
             name: the name of the model.
 
         Raises:
-            LinkwrightError: the errors of the description.
+            LinkwrightError: the description has errors.
         """
         entity = entity_from(text, self._server.simulation.finder, self._library)
 

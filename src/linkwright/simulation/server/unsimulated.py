@@ -1,4 +1,4 @@
-"""Elements of a world that SDF has and that are not simulated."""
+"""Elements of a world that SDF defines but that are not simulated."""
 
 from __future__ import annotations
 
@@ -17,12 +17,15 @@ _WITHOUT_PLUGINS = frozenset({"actor", "visual"})
 
 
 def unsimulated(world: World) -> list[str]:
-    """The elements of a world that are not simulated, each kind once: ``<projector>``, ``libwalk.so in <actor>``."""
+    """Return the kinds of elements in a world that are not simulated.
+
+    Examples are ``<projector>`` and ``libwalk.so in <actor>``.
+    """
     return _named(_roots(world))
 
 
 def unsimulated_in(model: Model) -> list[str]:
-    """The elements of a model that are not simulated."""
+    """Return the kinds of elements in a model that are not simulated."""
     elements = (part.element for part in (model, *_inside(model)))
     return _named(element for element in elements if element is not None)
 
@@ -43,7 +46,7 @@ def _named(roots: Iterable[Element]) -> list[str]:
 
 
 def _name(parent: Element, child: Element) -> str:
-    """The name of an element that is not simulated; empty for others."""
+    """Return the name of an element that is not simulated; empty for other elements."""
     if child.tag in _NOWHERE:
         return f"<{child.tag}>"
     if parent.tag == "world" and child.tag == "joint" and child.first("sensor") is not None:
@@ -57,7 +60,7 @@ def _name(parent: Element, child: Element) -> str:
 
 
 def _roots(world: World) -> Iterator[Element]:
-    """The root elements of the world and of all included files."""
+    """Yield the root elements of the world and of all included files."""
     if world.element is not None:
         yield world.element
     own = None if world.element is None else world.element.source

@@ -1,4 +1,4 @@
-"""Finding the world that is to be simulated."""
+"""Find and read the world to simulate."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class LoadedWorld(NamedTuple):
 
     Attributes:
         world: the parsed world.
-        finder: where its files are.
-        diagnostics: findings about it.
-        path: the file.
-        files: all files that it was made of.
-        read_ns: before when none of them was read, in nanoseconds since the epoch.
+        finder: the finder of its files.
+        diagnostics: findings about the world.
+        path: the file of the world.
+        files: all files from which it was read.
+        read_ns: a time in nanoseconds since the epoch before which none of the files was read.
     """
 
     world: World
@@ -39,23 +39,23 @@ class LoadedWorld(NamedTuple):
 
     @property
     def mesh_files(self) -> tuple[Path, ...]:
-        """The existing mesh files of its models."""
+        """The existing mesh files of the world's models."""
         from linkwright.sdf.mesh_files import mesh_files
 
         return mesh_files(self.world.models, self.finder)
 
 
 def load_world(name: str, text: str | None = None, environment: Mapping[str, str] | None = None) -> LoadedWorld:
-    """Read the first world of a file.
+    """Read the first world in a file.
 
     Args:
-        name: the file or its address, or the name of a world on the search path: ``empty``.
+        name: the file or its address, or the name of a world on the search path, or ``empty``.
         text: replaces the text of the file, which then need not exist.
-        environment: the variables with the search paths; those of the process by default.
+        environment: the variables with the search paths; by default the variables of the process.
 
     Raises:
-        LinkwrightError: SIM150 there is no such world; SIM151 the file has none; SIM105 it has too many
-            links; its other errors.
+        LinkwrightError: SIM150, there is no such world; SIM151, the file does not contain one; SIM105, it has too many
+            links; other errors of the file.
     """
     read_ns = time.time_ns()
     path = Path(name.removeprefix("file://")).expanduser()

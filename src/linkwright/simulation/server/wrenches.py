@@ -1,4 +1,4 @@
-"""Forces and torques that act on links for a time (``gazebo_ros_force_system``)."""
+"""Forces and torques that act on links for some time (``gazebo_ros_force_system``)."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ class Wrench:
     """A force and a torque on a link.
 
     Attributes:
-        force: in N, in the axes of the world.
-        torque: in N m, in the axes of the world.
-        point: where the force acts, in the frame of the link.
-        begin: from which nanosecond of simulated time on.
-        end: until when; None for ever.
+        force: the force in N, in the axes of the world.
+        torque: the torque in N m, in the axes of the world.
+        point: the point of application of the force, in the frame of the link.
+        begin: the simulated time in nanoseconds from which the wrench acts.
+        end: the simulated time in nanoseconds until which it acts; None for ever.
     """
 
     force: Vector3
@@ -31,10 +31,10 @@ class Wrench:
 
 
 class Wrenches:
-    """The wrenches on all links; several on one link add up.
+    """The wrenches on all links; several wrenches on one link are added up.
 
     Args:
-        simulation: the world.
+        simulation: the simulation of the world.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -69,7 +69,7 @@ class Wrenches:
             simulation.push(link, force.tolist(), torque.tolist())
 
     def _sum(self, link: str, wrenches: list[Wrench]) -> tuple[Array, Array]:
-        """The sum of forces, and of torques about the centre of mass."""
+        """Return the sum of forces, and of torques about the centre of mass."""
         pose = self._simulation.link_pose(link)
         turn, centre = rotation_matrix(pose[3:]), self._simulation.data.body(link).xipos
         force, torque = np.zeros(3), np.zeros(3)

@@ -1,1 +1,1 @@
-"""Our substitutes for packages of Gazebo that launch files include, as a prefix with their share folders."""
+"""Substitutes for the Gazebo packages that launch files include, as a prefix with their share folders."""

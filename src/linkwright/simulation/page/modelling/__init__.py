@@ -1,1 +1,1 @@
-"""Modelling a world in the page."""
+"""Edit a world in the page."""

@@ -1,4 +1,4 @@
-"""A world that is edited: its text, earlier texts, and its file."""
+"""A world that is being edited: its text, its history for undo, and its file."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ _PROGRAM_FOLDER = Path(__file__).parents[3]
 
 
 class EditedWorld:
-    """A world that is edited.
+    """A world that is being edited.
 
     Args:
         text: the text of the world.
-        path: the file whose folder relative addresses start from; it need not exist.
+        path: the file from whose folder relative addresses are resolved; it need not exist.
         packages: the finder of packages, and so of models.
-        content: the content of the file that it is saved into, `path`; None for a world without one.
+        content: the content of `path` if the world is saved there; None for a world without a file.
 
     Attributes:
-        world: the world now.
-        path: see above.
+        world: the current world.
+        path: the file from whose folder relative addresses are resolved.
 
     Raises:
-        LinkwrightError: it is not XML.
-        EditError: there is no world in it.
+        LinkwrightError: the text is not XML.
+        EditError: the text does not contain a world.
     """
 
     def __init__(self, text: str, path: Path, packages: PackageFinder, content: bytes | None = None) -> None:
@@ -58,13 +58,13 @@ class EditedWorld:
 
     @classmethod
     def of_file(cls, path: Path, packages: PackageFinder) -> EditedWorld:
-        """Return the world of a file.
+        """Return the world in a file.
 
-        A world made by xacro, and one of the program's own, have no file to be saved into.
+        A world that xacro generates, and a world that is part of the program, have no file to save to.
 
         Raises:
-            LinkwrightError: it cannot be read or expanded.
-            EditError: there is no world in it.
+            LinkwrightError: the file cannot be read or expanded.
+            EditError: the file does not contain a world.
         """
         if path.suffix == _XACRO:
             from linkwright.xacro import expand
@@ -77,17 +77,17 @@ class EditedWorld:
 
     @classmethod
     def of_text(cls, text: str, packages: PackageFinder) -> EditedWorld:
-        """Return a world without a file, such as that of a simulator on another machine.
+        """Return a world without a file, such as the world of a simulator on another machine.
 
         Raises:
-            LinkwrightError: it is not XML.
-            EditError: there is no world in it.
+            LinkwrightError: the text is not XML.
+            EditError: the text does not contain a world.
         """
         return cls(text, Path.cwd() / _NAMELESS, packages)
 
     @property
     def file(self) -> Path | None:
-        """The file that it is saved into; None if the user has to name one."""
+        """The file to which the world is saved; None if the user has to name one."""
         return None if self._content is None else self.path
 
     @property
@@ -113,7 +113,7 @@ class EditedWorld:
         try:
             return self.path.read_bytes() != self._content
         except OSError:
-            return False  # there is none, or it cannot be read: only the text here exists
+            return False  # the file does not exist or cannot be read: only the text here exists
 
     def reserve(self, names: Iterable[str]) -> None:
         """Keep new models and lights from taking these names, unless the world itself has them."""
@@ -121,7 +121,7 @@ class EditedWorld:
         self.world = WorldText(world.text, world.path, world.finder, frozenset(names) - world.entities.keys())
 
     def edit(self, change: Callable[[WorldText], WorldText]) -> None:
-        """Change the world, in one step of undo.
+        """Apply a change to the world as one undo step.
 
         Raises:
             EditError: the change is not possible.
@@ -148,10 +148,11 @@ class EditedWorld:
         """Save the world.
 
         Args:
-            name: another file, absolute, from ``~`` or from the folder of the world; None for its own.
+            name: another file: absolute, relative to ``~``, or relative to the world's folder; None for the world's own
+                file.
 
         Raises:
-            EditError: it is not saved; the text gives the reason.
+            EditError: the world was not saved; the text gives the reason.
         """
         target = self.path if name is None else self._named(name)
         if target == self.path and self._content is not None:
@@ -174,10 +175,10 @@ class EditedWorld:
             self.world = WorldText(self.world.text, target, self.world.finder, self.world.reserved)
 
     def keep(self, folder: Path) -> Diagnostic:
-        """Write an unsaved text into a folder, in place of earlier texts of the same world.
+        """Write an unsaved text into a folder, replacing earlier texts of the same world.
 
         Returns:
-            Where it is (RVIZ301), or that it is lost (RVIZ104).
+            The finding that names the file (RVIZ301), or that reports the loss of the text (RVIZ104).
         """
         mark = hashlib.sha256(os.fsencode(self.path)).hexdigest()[:8]  # distinguishes files of the same name
         file = folder / f"{self.path.stem[:_LONGEST_STEM]}-{mark}{self.path.suffix}"
@@ -197,11 +198,11 @@ class EditedWorld:
         """Return the file that the user names.
 
         Raises:
-            EditError: it is not the name of a world.
+            EditError: the name is not that of a world file.
         """
         try:
             path = Path(os.path.normpath(self.path.absolute().parent / Path(name.strip()).expanduser()))
-        except (ValueError, RuntimeError):  # the latter if there is no such user
+        except (ValueError, RuntimeError):  # RuntimeError: there is no such user
             path = Path()
         if "\0" in name or not is_world(path.name) or path.suffix == _XACRO:
             raise EditError(phrase("'{name}' is not a name for a world: it must end in .world or .sdf", name=name))

@@ -56,14 +56,14 @@ def _entity(entity: Entity) -> WorldEntity:
 
 
 def choices(packages: PackageFinder) -> ModelChoices:
-    """Return the models on the search path."""
+    """Return the models on the search path for the page to choose from."""
     found = ResourceFinder(packages).models()
     names = sorted(name for name, folder in found.items() if not isinstance(model_file(folder), Missing))
     return ModelChoices([ModelChoice(name, f"model://{name}") for name in names])
 
 
 def changed(world: WorldText, message: PageMessage) -> WorldText:
-    """Return a world after the edit of a page.
+    """Return a world with the edit of a page applied.
 
     Raises:
         EditError: the edit is not possible.

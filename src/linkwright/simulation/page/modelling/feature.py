@@ -1,7 +1,8 @@
-"""Modelling a world in the page: pages edit its text, and the simulation loads it.
+"""Edit a world in the page: pages edit its text, and the simulation loads it.
 
-The text is that of the file in the simulator's parameter ``world``; if there is none, or another world is in
-it, the text is the description that the simulator publishes. All pages edit one text, one thing after the other.
+The text is read from the file in the simulator's parameter ``world``. If there is no such file, or if it contains
+another world, the text is the description that the simulator publishes. All pages edit the same text, and their
+requests are handled one after the other.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ _PATIENCE = 30.0
 
 
 class ModellingFeature(PageFeature):
-    """Sends pages the models and lights of the world, and edits it on their requests."""
+    """Sends the models and lights of the world to pages, and edits the world at their request."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -52,7 +53,7 @@ class ModellingFeature(PageFeature):
         self._worker: asyncio.Task[None] | None = None
 
     def opening(self) -> list[ServerMessage]:
-        """Return whether the world can be edited and, while a user edits it, its content."""
+        """Return whether the world can be edited and, while a user is editing it, its content."""
         if not self._listening:
             self._listening = True
             self.context.graph_changes.watch(self._review)
@@ -60,26 +61,26 @@ class ModellingFeature(PageFeature):
         return [self._state()]
 
     def page_closed(self, page: Page) -> None:
-        """Stop listening after the last page; edits stay."""
+        """Stop listening after the last page has closed; edits are kept."""
         if self._listening and len(self.context.pages) == 0:
             self._listening = False
             self.context.graph_changes.unwatch(self._review)
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Store the text of an unsaved world."""
+        """Store the text of an unsaved world, and return the findings about it."""
         if self._edited is None or not self._edited.unsaved:
             return []
         return [self._edited.keep(recovery_folder())]
 
     def close(self) -> None:
-        """Stop for good."""
+        """Stop the feature permanently."""
         self.context.graph_changes.unwatch(self._review)
         self._services.close()
         if self._worker is not None:
             self._worker.cancel()
 
     def receive(self, page: Page, message: Any) -> None:
-        """Queue a request; requests are carried out in their order."""
+        """Queue a request of a page; requests are carried out in the order of their arrival."""
         self._waiting.put_nowait((page, message))
         if self._worker is None:
             self._worker = asyncio.get_running_loop().create_task(self._work())
@@ -87,7 +88,7 @@ class ModellingFeature(PageFeature):
     # --- messages to pages -------------------------------------------------------------------------------------
 
     def _is_available(self) -> bool:
-        """Whether there is a simulation whose world is known."""
+        """Return whether there is a simulation whose world is known."""
         return bool(self.context.node.get_publishers_info_by_topic(_DESCRIPTION))
 
     def _review(self) -> None:
@@ -111,10 +112,10 @@ class ModellingFeature(PageFeature):
     def _publish(self) -> None:
         self.context.pages.publish(self._state())
 
-    # --- what they ask for -------------------------------------------------------------------------------------
+    # --- requests of pages ------------------------------------------------------------------------------------
 
     async def _work(self) -> None:
-        """Handle the queued requests one after the other: reading a large world takes a while."""
+        """Handle the queued requests one after the other, because reading a large world takes time."""
         from linkwright.sdf.editing import EditError
 
         while True:
@@ -161,7 +162,7 @@ class ModellingFeature(PageFeature):
         self._publish()
 
     async def _world(self) -> EditedWorld:
-        """Return the edited world, read again if its file has changed and it has no unsaved edits."""
+        """Return the edited world, after reading it again if its file has changed and it has no unsaved edits."""
         from linkwright.simulation.page.modelling.edited_world import EditedWorld
 
         edited, packages = self._edited, self.context.finder
@@ -176,7 +177,7 @@ class ModellingFeature(PageFeature):
         return self._edited
 
     async def _read(self) -> EditedWorld:
-        """Return the simulated world, from its file if that can be found, else from the simulator's description."""
+        """Return the simulated world from its file, or else from the published description."""
         from linkwright.sdf.editing import EditError
         from linkwright.sdf.resources import ResourceFinder
         from linkwright.simulation.page.modelling.edited_world import EditedWorld
@@ -221,7 +222,7 @@ class ModellingFeature(PageFeature):
         """Return the description that the simulator publishes.
 
         Raises:
-            EditError: it publishes none.
+            EditError: the simulator does not publish one.
         """
         from linkwright.sdf.editing import EditError
 
@@ -241,14 +242,14 @@ class ModellingFeature(PageFeature):
             node.destroy_subscription(subscription)
 
     async def _load(self, page: Page, edited: EditedWorld) -> None:
-        """Replace the simulated world by that of the text."""
+        """Replace the simulated world by the edited one."""
         resource = get_message("simulation_interfaces/msg/Resource")
         named = resource(uri=str(edited.path.absolute()), resource_string=edited.world.text)
         fields = {"world_resource": named, "ignore_missing_or_unsupported_assets": True}
         await self._ask(page, _LOAD, "/load_world", fields)
 
     async def _ask(self, page: Page, kind: str, name: str, fields: dict[str, Any] | None = None) -> None:
-        """Call a service and wait for its answer."""
+        """Call a service and wait for its response."""
         done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
         def answered(_: Any) -> None:
@@ -263,7 +264,7 @@ class ModellingFeature(PageFeature):
 
 
 def _edit(edited: EditedWorld, message: PageMessage) -> Callable[[], None]:
-    """Apply a page's request to a world; slow, for a thread."""
+    """Return a function that applies a page's request to a world; it is slow and belongs in a thread."""
     from linkwright.simulation.page.modelling.entities import changed
 
     if isinstance(message, UndoWorld):

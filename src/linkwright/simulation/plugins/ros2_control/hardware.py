@@ -1,4 +1,4 @@
-"""Hardware of simulated joints and sensors.
+"""ros2_control hardware made of simulated joints and sensors.
 
 It replaces ``gazebo_ros2_control/GazeboSystem``, ``gz_ros2_control/GazeboSimSystem``,
 ``ign_ros2_control/IgnitionSystem``, and any other plugin that a description in a simulated world names.
@@ -31,31 +31,31 @@ _KINDS = (POSITION, VELOCITY, EFFORT)
 
 
 class ControlledModel(Protocol):
-    """The interface of the plugin that hardware uses."""
+    """The interface of the plugin that the hardware uses."""
 
     simulation: Simulation
     place: PluginPlace
 
     def joint(self, name: str) -> str:
-        """The name in the simulation of a joint of its model that moves."""
+        """Return the name in the simulation of a movable joint of the plugin's model."""
 
     def random_of(self, name: str) -> np.random.Generator:
-        """A generator of random numbers for a sensor."""
+        """Return a random number generator for a sensor."""
 
 
 class SimulatedSystem(Hardware):
-    """Joints and sensors of a model as hardware.
+    """Joints and sensors of a model as ros2_control hardware.
 
     Args:
-        description: its description in the URDF.
-        logger: the logger of its events.
-        plugin: the plugin that is part of the model.
+        description: the description of the hardware in the URDF.
+        logger: the logger of the hardware.
+        plugin: the plugin of the model.
         holds: whether joints hold their positions while they have no command.
-        gain: the fraction of a position error that joints correct with each update; NaN corrects it all at once.
-        values: parameters of the plugin's node, which may have gains of PID controllers.
+        gain: the fraction of a position error that joints correct with each update; NaN corrects it immediately.
+        values: parameters of the plugin's node, which may include gains of PID controllers.
 
     Attributes:
-        has_pids: whether `push` is to be called after each step of the world.
+        has_pids: whether `push` has to be called after each step of the world.
     """
 
     def __init__(
@@ -99,7 +99,7 @@ class SimulatedSystem(Hardware):
         self._sensors = self._found_sensors(plugin)
 
     def _forget(self, component: str) -> None:
-        """Remove a component that the model lacks, and its interfaces."""
+        """Remove a component that the model lacks, with its interfaces."""
         self.states = [state for state in self.states if state.component != component]
         self.commands = [command for command in self.commands if command.component != component]
 
@@ -121,14 +121,14 @@ class SimulatedSystem(Hardware):
         return found
 
     def begin(self) -> None:
-        """Restart with the world."""
+        """Reset the joints and sensors when the world restarts."""
         for joint in self._joints.values():
             mode = joint.mode
             joint.begin()
             joint.set_mode(mode)
 
     def on_activate(self) -> None:
-        """Read the joints, so that controllers which start before the first update find them where they are."""
+        """Read the joints, so that controllers that start before the first update know their positions."""
         for joint in self._joints.values():
             joint.read()
 
@@ -154,6 +154,6 @@ class SimulatedSystem(Hardware):
             joint.write(period_s)
 
     def push(self, period_s: float) -> None:
-        """Apply the forces of PID controllers, after each step of the world."""
+        """Apply the forces of the PID controllers; call this after each step of the world."""
         for joint in self._joints.values():
             joint.push(period_s)

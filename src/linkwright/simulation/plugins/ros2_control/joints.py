@@ -1,4 +1,4 @@
-"""Simulated joints, as hardware reads and commands them."""
+"""Simulated joints, which the hardware reads and commands."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ _FASTEST = 1000.0
 
 
 class SimulatedJoint:
-    """A simulated joint of hardware; call `begin` when all joints are made: the first changes make a new model.
+    """A simulated joint of the hardware; call `begin` after all joints are created, to compile the model only once.
 
-    Positions are held by a constraint, as Gazebo puts joints where they are commanded; velocities by a motor with the
-    effort limit of the joint; efforts push, and so do PID controllers.
+    A constraint holds positions, because Gazebo puts joints exactly where they are commanded. A motor with the effort
+    limit of the joint holds velocities. Efforts and PID controllers apply forces.
 
     Args:
-        simulation: the world.
-        name: the joint's name there.
+        simulation: the simulation of the world.
+        name: the joint's name in the simulation.
         described: the joint in ``<ros2_control>``.
         states, commands: its interfaces, by kind.
         holds: whether it holds its position while it has no command.
-        gain: the fraction of a position error that it corrects with each update; NaN corrects it all at once.
-        pids: PID controllers that push it to its commands, by the kind of the command.
+        gain: the fraction of a position error that it corrects with each update; NaN corrects it immediately.
+        pids: PID controllers that apply forces, by the kind of command that they follow.
     """
 
     def __init__(
@@ -77,9 +77,9 @@ class SimulatedJoint:
         self.set_mode("")
 
     def set_mode(self, kind: str) -> None:
-        """Set the kind of the interface that commands it; empty for none."""
+        """Set the kind of the interface that commands the joint; empty for none."""
         before, self._mode = self._mode, kind
-        if before in (VELOCITY, EFFORT) and self._motor is not None:  # else it holds 0, and a change costs a new model
+        if before in (VELOCITY, EFFORT) and self._motor is not None:  # already holds 0; a change recompiles the model
             self._motor.target = 0.0
         if self._pushed:
             self._simulation.push_joint(self._name, 0.0)
@@ -93,11 +93,11 @@ class SimulatedJoint:
 
     @property
     def mode(self) -> str:
-        """The kind of the interface that commands it; empty for none."""
+        """The kind of the interface that commands the joint; empty for none."""
         return self._mode
 
     def read(self) -> None:
-        """Update the states."""
+        """Update the values of the state interfaces."""
         position, velocity = self._simulation.joint_state(self._name)
         if self._position is not None:
             self._position.value = position
@@ -108,7 +108,7 @@ class SimulatedJoint:
             self._effort.value = float(joint.qfrc_actuator[0] + joint.qfrc_applied[0])
 
     def write(self, period_s: float) -> None:
-        """Apply the commands; those that are not finite have no effect."""
+        """Apply the commands; a command that is not finite has no effect."""
         command = self._commands.get(self._mode)
         if command is None:
             if self._motor is not None and not self._holds:
@@ -129,12 +129,12 @@ class SimulatedJoint:
             self._simulation.push_joint(self._name, value)
 
     def push(self, period_s: float) -> None:
-        """Apply the force of its PID controller, after each step of the world."""
+        """Apply the force of the PID controller; call this after each step of the world."""
         pid = self._pids.get(self._mode)
         if pid is None:
             return
         command = self._commands[self._mode].value
-        if command == command:  # it keeps its position until the command is a number
+        if command == command:  # the joint keeps its position until the command is a number
             self._target = command
         if self._motor is not None:
             self._motor.release()

@@ -1,8 +1,8 @@
 """``libgazebo_ros2_control.so``, ``gz_ros2_control-system`` and ``ign_ros2_control-system``: controllers in a world.
 
-Controllers are updated in the thread of the world, in simulated time, at ``update_rate`` of the manager.
+Controllers are updated in the thread of the world, in simulated time, at the manager's ``update_rate``.
 
-Source: gazebo_ros2_control and gz_ros2_control (parameters, names of nodes, where the description comes from).
+Source: gazebo_ros2_control and gz_ros2_control (parameters, node names, source of the description).
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
     )
 
     def start(self) -> None:
-        """Make the manager, and wait for the description."""
+        """Create the controller manager, and wait for the description."""
         namespace = self.node.name.rpartition("/")[0] or "/"
         rules = ParameterRules()
         for path in self.parameters.parameters:
@@ -96,7 +96,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             self._manager_node.subscribe("std_msgs/msg/String", topic, self._on_description, DESCRIPTION_QOS)
 
     def reset(self) -> None:
-        """Restart; controllers stay as active as they are."""
+        """Reset the hardware; active controllers stay active."""
         self._last = self.simulation.time
         for system in self._systems:
             system.begin()
@@ -104,14 +104,14 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             loaded.next_ns = 0
 
     def stop(self) -> None:
-        """Close controllers and manager; with a changed model they are made again."""
+        """Close the controllers and the manager; they are created again with a changed model."""
         if hasattr(self, "_manager"):
             self.left[self._manager_node.name] = self._manager.saved_state()
             self._manager.close()
             self._manager_node.close()
 
     def random_of(self, name: str) -> Any:
-        """A generator of random numbers for a sensor; the same for the same seed."""
+        """Return a random number generator for a sensor, which depends on the seed."""
         return self._environment.random(name)
 
     def _on_description(self, message: Any) -> None:

@@ -1,4 +1,4 @@
-"""Simulated sensors, as hardware reads them: IMUs, and forces in joints.
+"""Simulated sensors that the hardware reads: IMUs, and force-torque sensors in joints.
 
 Source: gazebo_ros2_control and gz_ros2_control (which sensors, names of interfaces).
 """
@@ -21,11 +21,11 @@ _TYPES = ("imu", "force_torque")
 
 
 class SimulatedSensor:
-    """A simulated sensor of hardware.
+    """A simulated sensor of the hardware.
 
     Args:
-        measure: returns its measurements, by the names of interfaces.
-        states: its interfaces.
+        measure: returns the measured values, by the names of interfaces.
+        states: the state interfaces of the sensor.
     """
 
     def __init__(self, measure: Callable[[], dict[str, float]], states: Sequence[StateInterface]) -> None:
@@ -33,14 +33,14 @@ class SimulatedSensor:
         self._states = states
 
     def read(self) -> None:
-        """Update the states."""
+        """Update the values of the state interfaces."""
         measured = self._measure()
         for state in self._states:
             state.value = measured.get(state.kind, state.value)
 
 
 def sensors_of(place: PluginPlace) -> dict[str, PlacedSensor]:
-    """The sensors of a model that hardware can read, by their names."""
+    """Return the sensors of a model that hardware can read, by their names."""
     assert place.model is not None
     places: Iterator[PluginPlace] = of_model(place.world, place.model, place.path)
     return {
@@ -53,7 +53,7 @@ def sensors_of(place: PluginPlace) -> dict[str, PlacedSensor]:
 def simulated_sensor(
     simulation: Simulation, placed: PlacedSensor, states: Sequence[StateInterface], generator: np.random.Generator
 ) -> SimulatedSensor:
-    """A sensor with the interfaces that its measurement fills."""
+    """Return a sensor with the interfaces for which its measurement has values."""
     if placed.sensor.type == "imu":
         return SimulatedSensor(_imu(simulation, placed, generator), states)
     return SimulatedSensor(_forces(simulation, placed, generator), states)

@@ -1,1 +1,1 @@
-"""Sensors on the graph: plugins of Gazebo classic and those of ROS 1, and sensors of gz, which need none."""
+"""Sensors in the graph: plugins of Gazebo classic and ROS 1, and sensors of gz, which do not need plugins."""

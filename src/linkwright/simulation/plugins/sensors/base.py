@@ -1,4 +1,4 @@
-"""The base classes of sensors: mount, rate, frames and topics."""
+"""Base classes of sensors, which handle mount, rate, frames and topics."""
 
 from __future__ import annotations
 
@@ -28,32 +28,32 @@ class FrameName:
 
 
 class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
-    """A sensor that measures when it is due and a topic of its has a subscription."""
+    """A sensor that measures when a measurement is due and one of its topics has a subscription."""
 
     def start(self) -> None:
-        """Make the measuring part and the topics."""
+        """Create the measuring sensor and the topics."""
         self.make_sensor()
         self.make_topics()
         self.every(self.rate, self._measure)
 
     def reset(self) -> None:
-        """Restart, with the same random numbers."""
+        """Restart the sensor with the same random numbers."""
         self.make_sensor()
 
     @abstractmethod
     def make_sensor(self) -> None:
-        """Make the measuring part."""
+        """Create the object that measures."""
 
     @abstractmethod
     def make_topics(self) -> None:
-        """Make the topics."""
+        """Create the topics."""
 
     @abstractmethod
     def is_wanted(self) -> bool:
-        """Return whether a subscriber exists."""
+        """Return whether a topic of the sensor has a subscription."""
 
     def is_needed(self) -> bool:
-        """Return whether it is to measure now."""
+        """Return whether the sensor has to measure now."""
         return self.is_wanted()
 
     @abstractmethod
@@ -62,43 +62,43 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
 
     @property
     def rate(self) -> float:
-        """Measurements in a simulated second."""
+        """The number of measurements per simulated second."""
         return self.sensor.sensor.update_rate
 
     @property
     def mount(self) -> Mount:
-        """The place where it is fixed."""
+        """The place to which the sensor is fixed."""
         return Mount(self.simulation, self.sensor.link, self.sensor.pose)
 
     def classic_frame(self) -> str:
-        """The frame of its messages in Gazebo classic: that of the plugin's parameters, else the link."""
+        """Return the message frame for Gazebo classic: from the plugin's parameters, or else the link."""
         frame: str = getattr(self.parameters, "frame_name", "")
         return frame.lstrip("/") or self.sensor.link.rpartition(SEPARATOR)[2]
 
     def gz_frame(self) -> str:
-        """The frame of its messages in gz: that of the sensor's element, else ``model/link/sensor``."""
+        """Return the message frame for gz: from the sensor's element, or else ``model/link/sensor``."""
         return self.sensor.sensor.frame_id or self.sensor.name.replace(SEPARATOR, "/")
 
     def gz_topic(self, leaf: str) -> str:
-        """The topic that gz gives a sensor whose element names none."""
+        """Return the topic that gz gives a sensor whose element does not name one."""
         model, *inside = self.sensor.name.split(SEPARATOR)
         holder = "joint" if self.sensor.joint else "link"
         place = f"/world/{self.place.world.name}/model/{model}/{holder}/{'/'.join(inside[:-1])}"
         return f"{place}/sensor/{inside[-1]}/{leaf}"
 
     def gz_output(self, kind: str, leaf: str, usual: str = "") -> Output:
-        """The topic of a sensor of gz: the one that its element names, or the one that gz gives it.
+        """Create the topic of a gz sensor, with the name from its element or the default name of gz.
 
         Args:
-            kind: the type of its messages.
-            leaf: how the name ends that gz gives it.
+            kind: the message type.
+            leaf: the last part of the default name.
             usual: the name that the topic has on robots.
         """
         topic = self.sensor.sensor.topic
         return self.node.publisher(kind, topic or self.gz_topic(leaf), usual="" if topic else usual or f"/{leaf}")
 
     def message(self, kind: str, frame: str) -> Any:
-        """A new message of a type, with its header."""
+        """Return a new message of a type, with its header set."""
         return get_message(kind)(header=Header(stamp=self.stamp(), frame_id=frame))
 
     def _measure(self) -> None:
@@ -110,17 +110,17 @@ class OneTopic(SensorPlugin[P], Generic[P]):
     """A sensor with one topic.
 
     Attributes:
-        output: the topic, which `make_topics` makes.
+        output: the topic, which `make_topics` creates.
     """
 
     output: Output
 
     def is_wanted(self) -> bool:
-        """Return whether a subscriber exists."""
+        """Return whether the topic has a subscription."""
         return self.output.is_wanted
 
 
 def vector(values: Array) -> Vector3:
-    """Three numbers as a message."""
+    """Return three numbers as a message."""
     x, y, z = values.tolist()
     return Vector3(x, y, z)

@@ -1,7 +1,7 @@
-"""Cameras: ``gazebo_ros_camera`` and those of ROS 1; cameras and depth cameras of gz.
+"""Cameras: ``gazebo_ros_camera`` and the cameras of ROS 1; cameras and depth cameras of gz.
 
 Source: gazebo_ros_pkgs for ROS 2 (topics, parameters, encodings, the cloud), for ROS 1 (names), gz-sensors (topics).
-Red and blue of a cloud are where PCL and RViz read them; ``gazebo_ros_camera`` has them the other way round.
+Red and blue in a cloud are placed where PCL and RViz read them; ``gazebo_ros_camera`` swaps them.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ class MountedCamera:
         description: the parsed camera.
         optics: its projection.
         pose: its pose in the frame of the link.
-        noise: on its colours.
-        encoding: of its images.
+        noise: the noise on its colours.
+        encoding: the encoding of its images.
     """
 
     description: Camera
@@ -64,12 +64,12 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
     """A sensor that renders images."""
 
     def make_sensor(self) -> None:
-        """Make its cameras."""
+        """Create the cameras."""
         generator = self.random
         self.cameras = [self._mounted(camera, generator) for camera in self.sensor.sensor.cameras or (Camera(),)]
 
     def start(self) -> None:
-        """Make cameras and topics."""
+        """Create the cameras and the topics."""
         self._shared = shared_renderer(self.simulation)
         super().start()
 
@@ -78,7 +78,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         self._shared.release()
 
     def see(self, camera: MountedCamera, wanted: Channels) -> RenderedImage:
-        """Render the image of one of its cameras, with noise on the colours."""
+        """Render an image of one of the sensor's cameras, with noise on the colours."""
         pose = compose(self.simulation.link_pose(self.sensor.link), camera.pose)
         rendered = self._shared.render(camera.optics, pose, wanted, self._log_renderer)
         if rendered.colour is None:
@@ -86,7 +86,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         return RenderedImage(camera.noise.apply(rendered.colour), rendered.depth, rendered.geoms)
 
     def publish_image(self, output: Output, camera: MountedCamera, rendered: RenderedImage, frame: str) -> None:
-        """Publish the colours of an image."""
+        """Publish the colours of a rendered image."""
         message = self.message(IMAGE, frame)
         fill_image(message, rendered.colour, camera.encoding)  # type: ignore[arg-type]  # it was asked for
         output.publish(message)
@@ -126,7 +126,7 @@ class CameraParameters(FrameName):
 
 
 class ClassicCamera(CameraPlugin[CameraParameters]):
-    """``libgazebo_ros_camera.so``, for sensors of type camera, depth and multicamera; and the cameras of ROS 1."""
+    """``libgazebo_ros_camera.so``, for sensors of type camera, depth and multicamera, and the cameras of ROS 1."""
 
     PARAMETERS = CameraParameters
     IGNORED = (
@@ -155,7 +155,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
     )
 
     def make_topics(self) -> None:
-        """Make the topics of each of its cameras."""
+        """Create the topics of each camera."""
         parameters, sensor = self.parameters, self.sensor.sensor
         name = parameters.camera_name or sensor.name
         self._frame = self.classic_frame()
@@ -187,11 +187,11 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def is_wanted(self) -> bool:
-        """Return whether a subscriber exists and, if a trigger is used, an image was requested."""
+        """Return whether a topic has a subscription and, if a trigger is used, an image was requested."""
         return self._asked and any(image.is_wanted for image in (*self._images, *self._infos, *self._depths))
 
     def measure(self) -> None:
-        """Render images, each only if its topics have subscriptions."""
+        """Render the images whose topics have subscriptions."""
         self._asked = not self.parameters.triggered
         for camera, image, info in zip(self.cameras, self._images, self._infos, strict=True):
             depth, depth_info, cloud = self._depths or (None, None, None)
@@ -235,17 +235,20 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
 
 
 def points_of(optics: Optics, depth: Any) -> Any:
-    """Return the points of a depth image: shape (height, width, 3), in m, x to the right, y down, z forwards."""
+    """Return the points of a depth image in m, shape (height, width, 3).
+
+    The axes are x to the right, y down and z forwards.
+    """
     rays = optics.rays.astype(np.float32).reshape(optics.height, optics.width, 3)
-    with np.errstate(invalid="ignore"):  # 0 times infinity
+    with np.errstate(invalid="ignore"):  # for 0 times infinity
         return rays * depth[:, :, None]
 
 
 class GzCamera(CameraPlugin[NoParameters]):
-    """``camera``, ``depth_camera`` and ``rgbd_camera`` of gz; the points of the latter two have x forwards."""
+    """``camera``, ``depth_camera`` and ``rgbd_camera`` of gz; the points of the latter two have x pointing forwards."""
 
     def make_topics(self) -> None:
-        """Make the topics."""
+        """Create the topics."""
         kind = self.sensor.sensor.type
         self._frame = self.gz_frame()
         camera = self.cameras[0].description
@@ -283,11 +286,11 @@ class GzCamera(CameraPlugin[NoParameters]):
         yield from (output for output in (self._image, self._depth, self._cloud, self._info) if output is not None)
 
     def is_wanted(self) -> bool:
-        """Return whether a subscriber exists."""
+        """Return whether a topic has a subscription."""
         return any(output.is_wanted for output in self._outputs())
 
     def measure(self) -> None:
-        """Render an image, with the parts whose topics have subscriptions."""
+        """Render an image with the channels whose topics have subscriptions."""
         (camera, *_) = self.cameras
         wanted = Channels(0)
         if any(output is not None and output.is_wanted for output in (self._image, self._cloud)):

@@ -1,4 +1,4 @@
-"""Filling ``sensor_msgs/msg/PointCloud2`` with points of lidars and depth cameras."""
+"""Fill ``sensor_msgs/msg/PointCloud2`` with the points of lidars and depth cameras."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ def fill_lidar_cloud(
 
     Args:
         message: the PointCloud2.
-        points: in m, shape (n, 3).
-        intensities: shape (n,).
-        rings: which of the lasers above each other measured a point, the lowest is 0, shape (n,); for layouts with it.
-        layout: of a point.
-        height: how many rows there are.
+        points: the points in m, shape (n, 3).
+        intensities: the intensities, shape (n,).
+        rings: for layouts with rings, the index of the laser that measured each point, 0 for the lowest, shape (n,).
+        layout: the layout of a point.
+        height: the number of rows.
     """
     rows = np.zeros(len(points), layout)
     rows["x"], rows["y"], rows["z"] = points.T
@@ -69,22 +69,22 @@ def fill_lidar_cloud(
 def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swapped: bool = False) -> None:
     """Fill a PointCloud2 with the points of an image, shape (height, width, 3), and their colours.
 
-    With `swapped` red and blue change places, as Gazebo classic has them.
+    With `swapped`, red and blue change places as in Gazebo classic.
 
-    Source of the layout: ``gazebo_ros_camera``, 32 bytes a point with the colour at 16.
+    Source of the layout: ``gazebo_ros_camera``, 32 bytes per point with the colour at byte 16.
     """
     height, width, _ = points.shape
     rows = np.zeros((height * width, 8), np.float32)
     rows[:, :3] = points.reshape(-1, 3)
     bytes_of = rows.view(np.uint8).reshape(height * width, 32)
-    # PCL's order: blue is the lowest byte.
+    # PCL's byte order: blue is the lowest byte.
     bytes_of[:, 16:19] = colour.reshape(-1, 3)[:, :: 1 if swapped else -1]
     _fill(message, rows.view(_COLOURED).reshape(-1), height)
     message.is_dense = False
 
 
 def _fill(message: Any, rows: Points, height: int) -> None:
-    """Fill a PointCloud2 of `height` rows with points of a layout, shape (n,)."""
+    """Fill a PointCloud2 of `height` rows with points, shape (n,), that have a structured layout."""
     message.fields = list(_fields(rows.dtype))
     message.height, message.width = height, len(rows) // max(height, 1)
     message.point_step = rows.dtype.itemsize

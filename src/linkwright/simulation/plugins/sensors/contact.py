@@ -1,7 +1,7 @@
 """Contact sensors: ``gazebo_ros_bumper``, and ``contact`` of gz.
 
-Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topics, the frame of forces), gz-sim (topic, when there is a
-message), ros_gz (messages).
+Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topics, the frame of forces), gz-sim (topic, when a message is
+published), ros_gz (messages).
 """
 
 from __future__ import annotations
@@ -30,36 +30,36 @@ class BumperParameters:
 
 
 class _Contacts(OneTopic[P], Generic[P]):
-    """A sensor of contacts of one collision."""
+    """A sensor for the contacts of one collision."""
 
     def make_sensor(self) -> None:
-        """Make the sensor for the collision that its element names."""
+        """Create the sensor for the collision that its element names."""
         contact = self.sensor.sensor.contact
         named = [] if contact is None or contact.collision == "__default__" else [contact.collision]
         self.contacts = ContactSensor(self.mount, named)
 
 
 class ClassicBumper(_Contacts[BumperParameters]):
-    """``libgazebo_ros_bumper.so``: positions and forces are those in the world, whatever frame the message names."""
+    """``libgazebo_ros_bumper.so``: positions and forces are in the world, whatever frame the message names."""
 
     PARAMETERS = BumperParameters
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
     def measure(self) -> None:
-        """Measure and publish, without contacts too."""
+        """Measure and publish, even if there are no contacts."""
         message = self.message(_TYPE, self.parameters.frame_name)
         message.states = [_state(contact) for contact in self.contacts.measure()]
         self.output.publish(message)
 
 
 class GzContact(_Contacts[NoParameters]):
-    """``contact`` of gz, which publishes nothing while there is no contact."""
+    """``contact`` of gz, which does not publish while there is no contact."""
 
     def make_topics(self) -> None:
-        """Make the topic: that of ``<contact>``, or the one that gz gives the sensor."""
+        """Create the topic, with the name from ``<contact>`` or the default name of gz."""
         contact = self.sensor.sensor.contact
         named = "" if contact is None or contact.topic == _NO_TOPIC else contact.topic
         usual = "" if named else "/contacts"
@@ -75,7 +75,7 @@ class GzContact(_Contacts[NoParameters]):
 
 
 def _contact(contact: Contact) -> Any:
-    """A message of a contact; positions, normals and forces are in the axes of the world."""
+    """Return a message of a contact; positions, normals and forces are in world axes."""
     message = get_message("ros_gz_interfaces/msg/Contact")()
     for entity, name in ((message.collision1, contact.collision1), (message.collision2, contact.collision2)):
         entity.name, entity.type = name, entity.COLLISION
@@ -102,5 +102,5 @@ def _state(contact: Contact) -> Any:
 
 
 def wrench(force: Array, torque: Array) -> Any:
-    """A force in N and a torque in N m as a message."""
+    """Return a force in N and a torque in N m as a message."""
     return get_message("geometry_msgs/msg/Wrench")(force=vector(force), torque=vector(torque))

@@ -1,4 +1,4 @@
-"""Sensors of position on earth, magnetic field, altitude and pressure: ``gazebo_ros_gps_sensor``, and those of gz.
+"""Sensors of geographic position, magnetic field, altitude and pressure: ``gazebo_ros_gps_sensor`` and those of gz.
 
 Source: gazebo_ros_pkgs for ROS 2 (topics, covariances), gz-sensors (topics), ros_gz (messages).
 """
@@ -20,15 +20,15 @@ _DIAGONAL_KNOWN = 2
 
 
 class _Receiver(SensorPlugin[P], Generic[P]):
-    """A satellite receiver and its messages."""
+    """A satellite navigation receiver and its messages."""
 
     def make_sensor(self) -> None:
-        """Make the receiver."""
+        """Create the receiver."""
         place = self.place.world.spherical_coordinates
         self._receiver = NavsatSensor(self.mount, self.sensor.sensor.navsat, place, self.random)
 
     def receive(self, frame: str) -> tuple[Fix, Any]:
-        """A measurement, and its message."""
+        """Return a measurement and its message."""
         fix = self._receiver.measure()
         message = self.message(_FIX, frame)
         message.latitude, message.longitude, message.altitude = fix.latitude, fix.longitude, fix.altitude
@@ -39,17 +39,17 @@ class _Receiver(SensorPlugin[P], Generic[P]):
 
 
 class ClassicGps(_Receiver[FrameName]):
-    """``libgazebo_ros_gps_sensor.so``: the position, and the velocity to the east, north and up."""
+    """``libgazebo_ros_gps_sensor.so``: the position, and the velocity towards east, north and up."""
 
     PARAMETERS = FrameName
 
     def make_topics(self) -> None:
-        """Make the topics."""
+        """Create the topics."""
         self._fixes = self.node.publisher(_FIX, "~/out", SENSOR_QOS)
         self._velocities = self.node.publisher("geometry_msgs/msg/Vector3Stamped", "~/vel", SENSOR_QOS)
 
     def is_wanted(self) -> bool:
-        """Return whether a subscriber exists."""
+        """Return whether a topic has a subscription."""
         return self._fixes.is_wanted or self._velocities.is_wanted
 
     def measure(self) -> None:
@@ -65,7 +65,7 @@ class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
     """``navsat`` and ``gps`` of gz."""
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self.output = self.gz_output(_FIX, "navsat")
 
     def measure(self) -> None:
@@ -74,15 +74,15 @@ class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
 
 
 class GzMagnetometer(OneTopic[NoParameters]):
-    """``magnetometer`` of gz, in tesla, as ros_gz_bridge gives it."""
+    """``magnetometer`` of gz, in tesla, as ros_gz_bridge publishes it."""
 
     def make_sensor(self) -> None:
-        """Make the magnetometer."""
+        """Create the magnetometer."""
         noise, field = self.sensor.sensor.magnetometer, self.place.world.magnetic_field
         self._sensor = MagnetometerSensor(self.mount, noise, self.random, field)
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self.output = self.gz_output(_FIELD, "magnetometer")
 
     def measure(self) -> None:
@@ -97,11 +97,11 @@ class GzAltimeter(OneTopic[NoParameters]):
     """``altimeter`` of gz."""
 
     def make_sensor(self) -> None:
-        """Make the altimeter."""
+        """Create the altimeter."""
         self._sensor = AltimeterSensor(self.mount, self.sensor.sensor.altimeter, self.random)
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self.output = self.gz_output(_HEIGHT, "altimeter")
 
     def measure(self) -> None:
@@ -116,11 +116,11 @@ class GzAirPressure(OneTopic[NoParameters]):
     """``air_pressure`` of gz."""
 
     def make_sensor(self) -> None:
-        """Make the barometer."""
+        """Create the barometer."""
         self._sensor = Barometer(self.mount, self.sensor.sensor.air_pressure, self.random)
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self.output = self.gz_output(_PRESSURE, "air_pressure")
 
     def measure(self) -> None:

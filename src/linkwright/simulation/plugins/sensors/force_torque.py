@@ -43,7 +43,7 @@ class _ForceTorque(OneTopic[P], Generic[P]):
 
 
 class ClassicForceTorque(_ForceTorque[ForceTorqueParameters]):
-    """``libgazebo_ros_ft_sensor.so``: the wrench of the child link on its parent, in the frame of the child."""
+    """``libgazebo_ros_ft_sensor.so``: the wrench that the child link exerts on its parent, in the child's frame."""
 
     PARAMETERS = ForceTorqueParameters
     IGNORED = ("gaussian_noise", "gaussianNoise")
@@ -54,13 +54,13 @@ class ClassicForceTorque(_ForceTorque[ForceTorqueParameters]):
         return self.parameters.update_rate
 
     def make_sensor(self) -> None:
-        """Find the joint."""
+        """Find the joint, and create the sensor."""
         joint = self.joint(self.parameters.joint_name)
         self._child = self.simulation.scene.joints[joint].child
         self._sensor = ForceTorqueSensor(self.simulation, joint, ForceTorque(), self.random)
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self._frame = self.parameters.frame_name.lstrip("/") or self._child.rpartition("::")[2]
         self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
@@ -69,7 +69,7 @@ class GzForceTorque(_ForceTorque[NoParameters]):
     """``force_torque`` of gz, on a joint."""
 
     def make_sensor(self) -> None:
-        """Find the joint."""
+        """Find the joint, and create the sensor."""
         joint = self.joint(self.sensor.joint.rpartition("::")[2])
         placed = self.simulation.scene.joints[joint]
         child = self.simulation.link_pose(placed.child)
@@ -77,6 +77,6 @@ class GzForceTorque(_ForceTorque[NoParameters]):
         self._sensor = ForceTorqueSensor(self.simulation, joint, self.sensor.sensor.force_torque, self.random, offset)
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self._frame = self.gz_frame()
         self.output = self.gz_output(_TYPE, "forcetorque", "/force_torque")

@@ -36,18 +36,18 @@ class PixelNoise:
     """Noise on the colours of images.
 
     Args:
-        noise: on each colour, from 0 to 1.
+        noise: the noise on each colour, whose values range from 0 to 1.
         generator: the source of random numbers.
     """
 
     def __init__(self, noise: Noise, generator: np.random.Generator) -> None:
         self._noise = noise
         self._generator = generator
-        self._more: Pixels = np.empty(0, np.uint8)  # positive and negative noise of each colour
+        self._more: Pixels = np.empty(0, np.uint8)  # separate arrays for positive and negative noise of each colour
         self._less: Pixels = np.empty(0, np.uint8)
 
     def apply(self, colour: Pixels) -> Pixels:
-        """Return an image with noise on it."""
+        """Return an image with noise added."""
         noise = self._noise
         if noise.type == "none" or not (noise.stddev > 0 or noise.mean):
             return colour
@@ -57,22 +57,22 @@ class PixelNoise:
             self._more, self._less = (np.maximum(array, 0).astype(np.uint8) for array in (drawn, -drawn))
         start = int(self._generator.integers(_PLACES))
         more, less = (array[start : start + colour.size].reshape(colour.shape) for array in (self._more, self._less))
-        noisy: Pixels = np.maximum(colour, less)  # bytes take a sixth of the time of clipping larger integers
+        noisy: Pixels = np.maximum(colour, less)  # clipping bytes takes a sixth of the time of clipping larger integers
         noisy -= less
-        np.invert(noisy, out=noisy)  # and likewise the distance to white
+        np.invert(noisy, out=noisy)  # the same for the distance to white
         np.maximum(noisy, more, out=noisy)
         noisy -= more
         return np.invert(noisy, out=noisy)
 
 
 def fill_image(message: Any, colour: Pixels, encoding: str) -> None:
-    """Fill an Image message from colours of shape (height, width, 3) in red, green, blue, in one of `ENCODINGS`."""
+    """Fill an Image from RGB colours, shape (height, width, 3), in one of the `ENCODINGS`."""
     pixels = colour
     if encoding.startswith("mono"):
         pixels = np.round(colour @ _GREY).astype(np.uint8)
     elif encoding.startswith("bgr"):
         pixels = np.empty_like(colour)
-        for channel in range(3):  # an eighth of the time of reversing all three at once
+        for channel in range(3):  # takes an eighth of the time of reversing all three channels together
             pixels[:, :, channel] = colour[:, :, 2 - channel]
     elif encoding.startswith("bayer"):
         pixels = _mosaic(colour, encoding.removeprefix("bayer_")[:4])
@@ -82,12 +82,15 @@ def fill_image(message: Any, colour: Pixels, encoding: str) -> None:
 
 
 def fill_depth(message: Any, depth: Pixels, nearest: float, farthest: float) -> None:
-    """Fill an Image with distances in m, shape (height, width); -inf below the least, inf beyond the greatest."""
+    """Fill an Image with depths in m, shape (height, width).
+
+    Depths below the minimum become -inf, and depths above the maximum become inf.
+    """
     _fill(message, limited(depth, nearest, farthest), "32FC1")
 
 
 def limited(depth: Pixels, nearest: float, farthest: float) -> Pixels:
-    """Distances, -inf below the least and inf beyond the greatest."""
+    """Return depths with -inf below the minimum and inf above the maximum."""
     result: Pixels = np.array(depth, dtype=np.float32)
     np.copyto(result, np.inf, where=depth >= farthest)
     np.copyto(result, -np.inf, where=depth <= nearest)
@@ -104,7 +107,7 @@ def _fill(message: Any, pixels: Pixels, encoding: str) -> None:
 
 
 def _mosaic(colour: Pixels, order: str) -> Pixels:
-    """A Bayer mosaic: one colour a pixel, in squares of two by two pixels."""
+    """Return a Bayer mosaic, which has one colour per pixel in squares of two by two pixels."""
     mosaic = np.empty(colour.shape[:2], np.uint8)
     for place, letter in enumerate(order):
         row, column = divmod(place, 2)
@@ -125,11 +128,11 @@ def fill_camera_info(
 
     Args:
         message: the message.
-        optics: the camera.
-        lens: its distortion.
-        center: the published principal point, in pixels; None for that of the camera.
-        focal: the published focal length in pixels; 0 for that of the camera.
-        baseline: from the left camera of a pair to this one, in m.
+        optics: the projection of the camera.
+        lens: the distortion of the lens; None for a camera without distortion.
+        center: the published principal point, in pixels; None for the camera's own.
+        focal: the published focal length in pixels; 0 for the camera's own.
+        baseline: the distance from the left camera of a stereo pair to this one, in m.
     """
     lens = lens or Distortion()
     cx, cy = center if center is not None else (optics.cx, optics.cy)

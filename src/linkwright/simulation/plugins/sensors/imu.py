@@ -34,7 +34,7 @@ class _ImuPlugin(OneTopic[P], Generic[P]):
     frame: str
 
     def make_sensor(self) -> None:
-        """Make the IMU."""
+        """Create the IMU."""
         self.imu = ImuSensor(self.mount, self.sensor.sensor.imu, generator=self.random)
 
     def measure(self) -> None:
@@ -66,13 +66,13 @@ class ClassicImu(_ImuPlugin[ImuParameters]):
     IGNORED = ("body_name", "bodyName", "updateRateHZ", "update_rate", "gaussianNoise", "xyzOffset", "rpyOffset")
 
     def make_sensor(self) -> None:
-        """Make the IMU; its orientation may be relative to that at the start."""
+        """Create the IMU, whose orientation may be relative to the initial one."""
         initial = self.parameters.initial_orientation_as_reference
         imu = self.sensor.sensor.imu
         self.imu = ImuSensor(self.mount, imu, generator=self.random, initial_reference=initial)
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self.frame = self.classic_frame()
         self.output = self.node.publisher(_TYPE, self.parameters.topic_name or "~/out", SENSOR_QOS)
 
@@ -90,7 +90,7 @@ class OldImuParameters(FrameName):
 
 
 class OldImu(_ImuPlugin[OldImuParameters]):
-    """``libgazebo_ros_imu.so`` of ROS 1, which belongs to a model and names its link."""
+    """``libgazebo_ros_imu.so`` of ROS 1, which is a plugin of a model and names its link."""
 
     PARAMETERS = OldImuParameters
     IGNORED = ("serviceName",)
@@ -102,20 +102,20 @@ class OldImu(_ImuPlugin[OldImuParameters]):
 
     @property
     def mount(self) -> Mount:
-        """The link that the plugin names."""
+        """The mount on the link that the plugin names."""
         parameters = self.parameters
         turned = (0.0, 0.0, 0.0, *quaternion_from_rpy(parameters.rpy_offset))
         offset = compose((*parameters.xyz_offset, 0.0, 0.0, 0.0, 1.0), turned)
         return Mount(self.simulation, self.link(parameters.body_name), offset)
 
     def make_sensor(self) -> None:
-        """Make the IMU."""
+        """Create the IMU."""
         each = Noise("gaussian", stddev=self.parameters.gaussian_noise) if self.parameters.gaussian_noise else Noise()
         noise = NoiseXyz(each, each, each)
         self.imu = ImuSensor(self.mount, Imu(noise, noise), generator=self.random)
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self.frame = self.parameters.frame_name.lstrip("/") or self.parameters.body_name
         self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
@@ -124,6 +124,6 @@ class GzImu(_ImuPlugin[NoParameters]):
     """``imu`` of gz."""
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self.frame = self.gz_frame()
         self.output = self.gz_output(_TYPE, "imu")

@@ -1,6 +1,6 @@
-"""Cameras with ground truth of their view: ``segmentation_camera`` and ``boundingbox_camera`` of gz.
+"""Cameras that publish ground truth of their view: ``segmentation_camera`` and ``boundingbox_camera`` of gz.
 
-``gz-sim-label-system`` with a ``<label>`` in visuals or models labels objects; everything else is 0, the background.
+``gz-sim-label-system`` with a ``<label>`` in visuals or models labels objects; everything else is background, 0.
 
 Source: gz-sensors (topics, the channels of a label map).
 """
@@ -31,10 +31,10 @@ _LABELS = 256
 
 
 class Labels:
-    """The labels of everything in a simulation.
+    """The labels of all geoms in a simulation.
 
     Args:
-        simulation: the world.
+        simulation: the simulation of the world.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -43,12 +43,12 @@ class Labels:
         self._instances = GeomTable(simulation, self._numbered)
 
     def labels(self, geoms: Pixels) -> Pixels:
-        """The labels of geoms, in an array of the same shape."""
+        """Return the labels of geoms, in an array of the same shape."""
         labels: Pixels = self._labels.array()[geoms].astype(np.uint8)
         return labels
 
     def instances(self, geoms: Pixels) -> Pixels:
-        """Which of the labelled models geoms are part of, from 1 on; 0 without a label."""
+        """Return the number of the labelled model that contains each geom, starting at 1; 0 without a label."""
         instances: Pixels = self._instances.array()[geoms].astype(np.uint16)
         return instances
 
@@ -66,7 +66,7 @@ class Labels:
         return [float(numbers[model]) if label else 0.0 for model, label in zip(models, labels, strict=True)]
 
     def _known(self) -> Iterator[tuple[str, int]]:
-        """Labels by the names of models and of visuals."""
+        """Yield the labels with the names of models and visuals."""
         for model in self._simulation.scene.models.values():
             yield from _labels_in(model.model, model.name)
 
@@ -90,7 +90,7 @@ def _written(plugins: tuple[Plugin, ...]) -> Iterator[int]:
 
 
 def _longest(known: dict[str, int], part: str) -> int:
-    """The label of a visual: its own, or that of the nearest model around it."""
+    """Return the label of a visual: its own, or that of the closest enclosing model."""
     name = part
     while name:
         if name in known:
@@ -100,16 +100,16 @@ def _longest(known: dict[str, int], part: str) -> int:
 
 
 class _LabellingCamera(CameraPlugin[NoParameters]):
-    """A camera of the labels of visuals."""
+    """A camera that sees the labels of visuals."""
 
     def make_sensor(self) -> None:
-        """Make its camera."""
+        """Create the camera."""
         super().make_sensor()
         self.labels = Labels(self.simulation)
         self.frame = self.cameras[0].description.optical_frame_id or self.gz_frame()
 
     def publish_colours(self, output: Output, colour: Pixels) -> None:
-        """Publish an image in red, green and blue."""
+        """Publish an RGB image."""
         message = self.message(IMAGE, self.frame)
         fill_image(message, colour, "rgb8")
         output.publish(message)
@@ -123,10 +123,10 @@ class _LabellingCamera(CameraPlugin[NoParameters]):
 
 
 class GzSegmentation(_LabellingCamera):
-    """``segmentation_camera``: a map of labels, and a coloured one."""
+    """``segmentation_camera``: publishes a label map and a coloured map."""
 
     def make_topics(self) -> None:
-        """Make the topics."""
+        """Create the topics."""
         base = self.sensor.sensor.topic or self.gz_topic("segmentation")
         usual = "" if self.sensor.sensor.topic else "/segmentation"
         names = {leaf: f"{usual}/{leaf}" if usual else "" for leaf in ("labels_map", "colored_map", "camera_info")}
@@ -137,11 +137,11 @@ class GzSegmentation(_LabellingCamera):
         self._colours[0] = 0
 
     def is_wanted(self) -> bool:
-        """Return whether a subscriber exists."""
+        """Return whether a topic has a subscription."""
         return any(output.is_wanted for output in (self._maps, self._coloured, self._info))
 
     def measure(self) -> None:
-        """Make the maps."""
+        """Compute and publish the maps."""
         (camera, *_) = self.cameras
         self.publish_info(self._info, camera)
         if not (self._maps.is_wanted or self._coloured.is_wanted):
@@ -161,13 +161,13 @@ class GzSegmentation(_LabellingCamera):
 
 
 class GzBoxes(_LabellingCamera):
-    """``boundingbox_camera``: boxes around the visible part of each labelled model, and an image with them.
+    """``boundingbox_camera``: publishes boxes around the visible part of each labelled model, and an image with them.
 
     Boxes of the types ``full_2d`` and ``3d`` cover only the visible part, too.
     """
 
     def make_topics(self) -> None:
-        """Make the topics."""
+        """Create the topics."""
         topic = self.sensor.sensor.topic or self.gz_topic("boundingbox")
         usual = "" if self.sensor.sensor.topic else "/boundingbox"
         self._boxes = self.node.publisher(_DETECTIONS, topic, usual=usual)
@@ -176,11 +176,11 @@ class GzBoxes(_LabellingCamera):
         self._info = self.node.publisher(INFO, f"{above}{slash}camera_info")
 
     def is_wanted(self) -> bool:
-        """Return whether a subscriber exists."""
+        """Return whether a topic has a subscription."""
         return any(output.is_wanted for output in (self._boxes, self._images, self._info))
 
     def measure(self) -> None:
-        """Find the boxes."""
+        """Find the boxes, and publish them."""
         (camera, *_) = self.cameras
         self.publish_info(self._info, camera)
         if not (self._boxes.is_wanted or self._images.is_wanted):
@@ -200,7 +200,7 @@ class GzBoxes(_LabellingCamera):
             self.publish_colours(self._images, colour)
 
     def _outlines(self, geoms: Any) -> Iterator[tuple[int, int, int, int, int]]:
-        """Label, left, top, right and bottom of each box; the pixels on these lines belong to it."""
+        """Yield the label, left, top, right and bottom of each box; the limits are part of the box."""
         labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)
         for instance in np.unique(instances[instances > 0]):
             for label in np.unique(labels[(instances == instance) & (labels > 0)]):

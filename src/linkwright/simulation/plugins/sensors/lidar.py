@@ -1,7 +1,7 @@
 """Lidars and sonars: ``gazebo_ros_ray_sensor``, the lasers of ROS 1, and ``gpu_lidar`` of gz.
 
-Source: gazebo_ros_pkgs for ROS 2 (types of output, the middle row of several, the value of a Range), for ROS 1
-(names), velodyne_simulator (points), gz-sensors and gz-msgs (topics, points).
+Source: gazebo_ros_pkgs for ROS 2 (output types, the use of the middle row, the value of a Range), for ROS 1 (names),
+velodyne_simulator (points), gz-sensors and gz-msgs (topics, points).
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ _RADIATIONS = {"ultrasound": 0, "infrared": 1}
 
 
 class _LidarPlugin(SensorPlugin[P], Generic[P]):
-    """The base of lidars; its rays are published as well while a page draws them."""
+    """The base class of lidars, which also publish their rays while a page draws them."""
 
     def start(self) -> None:
-        """Make lidar and topics."""
+        """Create the lidar and the topics."""
         visualize = self.sensor.sensor.visualize
         self._rays = self.node.publisher(_SCAN, RAYS if visualize else OTHER_RAYS, SENSOR_DATA_QOS)
         super().start()
@@ -45,7 +45,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         return self.is_wanted() or self._rays.is_wanted
 
     def measure(self) -> None:
-        """Measure, and publish to the subscribers."""
+        """Measure, and publish to the topics that have subscriptions."""
         scan = self.lidar.measure()
         if self._rays.is_wanted:
             self._rays.publish(self._rays_message(scan))
@@ -57,13 +57,13 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         """Publish a scan."""
 
     def _rays_message(self, scan: Scan) -> Any:
-        """A message of all rows of a scan, one after the other, from the lowest; its frame is the sensor's name."""
+        """Return a message with all rows of a scan, lowest first; its frame is the sensor's name."""
         message = self._bare_scan(self.sensor.name)
         message.ranges = scan.ranges.ravel().astype(np.float32)
         return message
 
     def make_sensor(self) -> None:
-        """Make the lidar."""
+        """Create the lidar."""
         sensor = self.sensor.sensor
         lidar = sensor.lidar or Lidar()
         self.lidar = LidarSensor(
@@ -71,14 +71,14 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         )
 
     def scan_message(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
-        """A LaserScan of the middle row of a scan."""
+        """Return a LaserScan of the middle row of a scan."""
         message, row = self._bare_scan(frame), self.lidar.vertical.count // 2
         message.ranges = scan.ranges[row].astype(np.float32)
         message.intensities = np.maximum(scan.intensities[row], least_intensity).astype(np.float32)
         return message
 
     def _bare_scan(self, frame: str) -> Any:
-        """A LaserScan without ranges."""
+        """Return a LaserScan without ranges."""
         lidar, message = self.lidar, self.message(_SCAN, frame)
         message.angle_min, message.angle_max = float(lidar.horizontal.min_angle), float(lidar.horizontal.max_angle)
         message.angle_increment = float(lidar.horizontal.step)
@@ -86,18 +86,21 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         return message
 
     def points(self, scan: Scan) -> Any:
-        """The points of a scan, shape (n, 3), in m in the sensor's frame; not finite where a ray hit nothing."""
-        with np.errstate(invalid="ignore"):  # 0 times infinity
+        """Return the points of a scan in m in the sensor's frame, shape (n, 3).
+
+        A point is not finite if its ray had no hit.
+        """
+        with np.errstate(invalid="ignore"):  # for 0 times infinity
             return self.lidar.directions * scan.ranges.reshape(-1, 1)
 
     def finite(self, scan: Scan, least_intensity: float = 0.0) -> tuple[Any, Any]:
-        """The points of a scan, shape (n, 3), in m, and their intensities, without rays that hit nothing."""
+        """Return the points in m, shape (n, 3), and the intensities of a scan, without rays that had no hit."""
         points, intensities = self.points(scan), scan.intensities.ravel()
         kept = np.isfinite(scan.ranges.ravel())
         return points[kept], np.maximum(intensities[kept], least_intensity)
 
     def old_cloud(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
-        """A scan as ``sensor_msgs/msg/PointCloud``."""
+        """Return a scan as ``sensor_msgs/msg/PointCloud``."""
         message = self.message("sensor_msgs/msg/PointCloud", frame)
         points, intensities = self.finite(scan, least_intensity)
         point, channel = get_message("geometry_msgs/msg/Point32"), get_message("sensor_msgs/msg/ChannelFloat32")
@@ -106,7 +109,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         return message
 
     def range_message(self, frame: str, scan: Scan, radiation: str) -> Any:
-        """A Range of the least distance."""
+        """Return a Range with the minimum distance of a scan."""
         message = self.message("sensor_msgs/msg/Range", frame)
         lidar = self.lidar
         spans = [sweep.max_angle - sweep.min_angle for sweep in (lidar.horizontal, lidar.vertical)]
@@ -136,7 +139,7 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
     PARAMETERS = RayParameters
 
     def make_topics(self) -> None:
-        """Make the topic, of the type that the parameters ask for."""
+        """Create the topic with the type that the parameters request."""
         kinds = {
             "LaserScan": self._scan,
             "PointCloud2": self._cloud,
@@ -155,7 +158,7 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
         self.output = self.node.publisher(f"sensor_msgs/msg/{kind}", "~/out", SENSOR_QOS)
 
     def publish(self, scan: Scan) -> None:
-        """Publish a scan as the type that the parameters ask for."""
+        """Publish a scan with the type that the parameters request."""
         self.output.publish(self._publish(scan))
 
     def _scan(self, scan: Scan) -> Any:
@@ -189,7 +192,7 @@ class OldLaser(_OneLidar[LaserParameters]):
     KIND: ClassVar[str] = _SCAN
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self.output = self.node.publisher(self.KIND, self.parameters.topic_name, SENSOR_DATA_QOS.depth)
 
     @property
@@ -198,21 +201,21 @@ class OldLaser(_OneLidar[LaserParameters]):
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def publish(self, scan: Scan) -> None:
-        """Publish it."""
+        """Publish a scan as the plugin's message."""
         self.output.publish(self.output_message(self.classic_frame(), scan))
 
     def output_message(self, frame: str, scan: Scan) -> Any:
-        """The message of a scan."""
+        """Return the message of a scan: a LaserScan."""
         return self.scan_message(frame, scan)
 
 
 class OldBlockLaser(OldLaser):
-    """``libgazebo_ros_block_laser.so`` of ROS 1: points."""
+    """``libgazebo_ros_block_laser.so`` of ROS 1, which publishes points."""
 
     KIND = "sensor_msgs/msg/PointCloud"
 
     def output_message(self, frame: str, scan: Scan) -> Any:
-        """The message of a scan."""
+        """Return the message of a scan: a PointCloud."""
         return self.old_cloud(frame, scan)
 
 
@@ -225,14 +228,14 @@ class RangeParameters(LaserParameters):
 
 
 class OldRange(OldLaser):
-    """``libgazebo_ros_range.so`` of ROS 1: the least distance."""
+    """``libgazebo_ros_range.so`` of ROS 1, which publishes the minimum distance."""
 
     PARAMETERS = RangeParameters
     IGNORED = ("gaussianNoise", "fov")
     KIND = "sensor_msgs/msg/Range"
 
     def output_message(self, frame: str, scan: Scan) -> Any:
-        """The message of a scan."""
+        """Return the message of a scan: a Range."""
         return self.range_message(frame, scan, getattr(self.parameters, "radiation", ""))
 
 
@@ -250,18 +253,18 @@ class VelodyneParameters(LaserParameters):
 class Velodyne(_OneLidar[VelodyneParameters]):
     """``libgazebo_ros_velodyne_laser.so`` of velodyne_simulator: points with intensity, ring and time.
 
-    One firing of all lasers comes after the other; in an organized cloud each is a row.
+    The points are ordered by the firings of all lasers; in an organized cloud each firing is a row.
     """
 
     PARAMETERS = VelodyneParameters
     IGNORED = ("gaussianNoise",)
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self.output = self.node.publisher(_CLOUD, self.parameters.topic_name, SENSOR_QOS)
 
     def publish(self, scan: Scan) -> None:
-        """Publish a scan as a cloud."""
+        """Publish a scan as a point cloud."""
         parameters = self.parameters
         message = self.message(_CLOUD, self.classic_frame())
         shape = scan.ranges.shape
@@ -284,13 +287,13 @@ class Velodyne(_OneLidar[VelodyneParameters]):
 
 
 class GzLidar(_LidarPlugin[NoParameters]):
-    """``gpu_lidar`` and ``lidar`` of gz: a scan, and a cloud of its points."""
+    """``gpu_lidar`` and ``lidar`` of gz, which publish a scan and a cloud of its points."""
 
     _scans: Output
     _clouds: Output
 
     def make_topics(self) -> None:
-        """Make the topics."""
+        """Create the topics."""
         self._frame = self.gz_frame()
         self._scans = self.gz_output(_SCAN, "scan")
         topic = self.sensor.sensor.topic or self.gz_topic("scan")
@@ -299,11 +302,11 @@ class GzLidar(_LidarPlugin[NoParameters]):
         )
 
     def is_wanted(self) -> bool:
-        """Return whether a subscriber exists."""
+        """Return whether a topic has a subscription."""
         return self._scans.is_wanted or self._clouds.is_wanted
 
     def publish(self, scan: Scan) -> None:
-        """Publish scan and points."""
+        """Publish the scan and the points."""
         self._scans.publish(self.scan_message(self._frame, scan))
         if self._clouds.is_wanted:
             message = self.message(_CLOUD, self._frame)

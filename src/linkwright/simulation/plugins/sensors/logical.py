@@ -1,4 +1,4 @@
-"""The logical camera of gz: the names and poses of the models in its view, without an image.
+"""The logical camera of gz: publishes the names and poses of the models in its view, without an image.
 
 Source: gz-sensors (topic, view), ros_gz (messages). A model is in view when the origin of its frame is.
 """
@@ -21,11 +21,11 @@ class GzLogicalCamera(OneTopic[NoParameters]):
     """``logical_camera`` of gz."""
 
     def make_sensor(self) -> None:
-        """Take the shape of its view."""
+        """Read the shape of the view frustum."""
         self._view = self.sensor.sensor.logical_camera or LogicalCamera()
 
     def make_topics(self) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self.output = self.gz_output(_IMAGE, "logical_camera")
 
     def measure(self) -> None:
@@ -42,7 +42,10 @@ class GzLogicalCamera(OneTopic[NoParameters]):
 
 
 def is_in_view(view: LogicalCamera, pose: Transform) -> bool:
-    """Whether the origin of a frame is in view; its pose is that in the frame of the camera, which looks along x."""
+    """Return whether the origin of a frame is in view.
+
+    `pose` is the pose of the frame in the frame of the camera, which looks along x.
+    """
     x, y, z = pose[:3]
     across = tan(view.horizontal_fov / 2)
     return view.near <= x <= view.far and abs(y) <= x * across and abs(z) <= x * across / view.aspect_ratio

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The simulation, with the arguments of gazebo_ros' file of this name."""
+"""Launch the simulation, with the arguments of the gazebo_ros file of this name."""
 
 import shlex
 
@@ -61,7 +61,7 @@ def start_server(context):
 
 
 def generate_launch_description():
-    """Return the arguments, and the server once they are known."""
+    """Return the arguments, and a function that starts the server once they are known."""
     empty = get_package_share_path("gazebo_ros") / "worlds" / "empty.world"
     declared = {
         "world": (str(empty), "The world: path of a file"),

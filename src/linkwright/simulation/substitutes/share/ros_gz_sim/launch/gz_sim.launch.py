@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The simulation as ``gz sim`` starts it, with the arguments of ros_gz_sim's file of this name."""
+"""Launch the simulation as ``gz sim`` does, with the arguments of the ros_gz_sim file of this name."""
 
 import shlex
 
@@ -39,7 +39,7 @@ def start(context):
 
 
 def generate_launch_description():
-    """Return the arguments, and the server once they are known."""
+    """Return the arguments, and a function that starts the server once they are known."""
     arguments = [
         DeclareLaunchArgument(name, default_value=default, description=description)
         for name, (default, description) in ARGUMENTS.items()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model that is put into the world, with the arguments of ros_gz_sim's file of this name."""
+"""Spawn a model in the world, with the arguments of the ros_gz_sim file of this name."""
 
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
@@ -26,7 +26,7 @@ PARAMETERS = {"model_string": "string", "entity_name": "name", "roll": "R", "pit
 
 
 def generate_launch_description():
-    """Return the node that puts it there."""
+    """Return the node that spawns the model."""
     arguments = [
         DeclareLaunchArgument(name, default_value=default, description=description)
         for name, (default, description) in ARGUMENTS.items()
