@@ -1,1 +1,1 @@
-"""Spoken commands: from sound to words, and from words to a robot's actions; without ROS."""
+"""Voice commands: from sound to words, and from words to a robot's actions, without ROS."""

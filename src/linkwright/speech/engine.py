@@ -1,7 +1,7 @@
 """The interface of speech recognition engines.
 
-Engines are found through entry points of the group ``linkwright.speech_engines``: each names a callable that takes
-`EngineOptions`, returns a `SpeechEngine`, and raises LinkwrightError if its library or model is missing.
+Engines are found through entry points of the group ``linkwright.speech_engines``. Each entry point names a callable
+that takes `EngineOptions`, returns a `SpeechEngine`, and raises LinkwrightError if its library or model is missing.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ class Heard:
     """A result of an engine, partial or final.
 
     Attributes:
-        text: the phrase, as in the options; empty for speech that is none of the phrases.
+        text: the phrase, as in the options; empty for speech that does not match any phrase.
         confidence: the confidence of the least certain word, 0 to 1.
         final: whether the utterance is over; otherwise the result may change.
         start: the start of the utterance, in seconds of sound since the engine was created.
-        end: the end of the recognized sound.
+        end: the end of the recognized sound, in the same seconds.
         nearest: if the text is empty, the most similar phrase; empty if none is similar.
     """
 
@@ -45,8 +45,8 @@ class EngineOptions:
 
     Attributes:
         phrases: all phrases to recognize; no other text may be returned.
-        language: ``en``, ``zh`` or another of BCP 47, for engines that need to know.
-        model: file or folder of the model, for engines that have one; None takes the engine's usual place.
+        language: ``en``, ``zh`` or another BCP 47 tag, for engines that depend on the language.
+        model: the file or folder of the model, for engines that have one; None for the engine's default location.
     """
 
     phrases: tuple[str, ...]
@@ -55,35 +55,38 @@ class EngineOptions:
 
 
 class SpeechEngine(ABC):
-    """Recognises phrases in a stream of sound. One thread at a time calls it."""
+    """Recognises phrases in a stream of sound; all calls are made by one thread at a time."""
 
     @abstractmethod
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process the next block of the stream, of any length; returns new results, in order."""
+        """Process the next block of the stream, of any length, and return new results in order."""
 
     @abstractmethod
     def finish(self) -> Sequence[Heard]:
-        """End the utterance, as when a button is released, and return its final results. The stream may continue."""
+        """End the utterance, for example when a button is released, and return its final results.
+
+        The stream may continue.
+        """
 
     @property
     def problem(self) -> Diagnostic | None:
-        """The reason why it recognises nothing at the moment, or less than it should; None when all is well."""
+        """The reason why the engine recognises less than it should, or None."""
         return None
 
     def close(self) -> None:  # noqa: B027 - few engines hold anything
-        """Release its resources. Nothing else is called afterwards."""
+        """Release the engine's resources. No other method is called afterwards."""
 
 
 def engine_names() -> tuple[str, ...]:
-    """The engines that are installed."""
+    """Return the names of the installed engines."""
     return tuple(extensions(_GROUP))
 
 
 def make_engine(name: str, options: EngineOptions) -> SpeechEngine:
-    """Make an engine by its name.
+    """Create an engine by its name.
 
     Raises:
-        LinkwrightError: VOICE101 there is no such engine; else an error of the engine itself.
+        LinkwrightError: VOICE101, there is no such engine; or an error of the engine itself.
     """
     found = extensions(_GROUP).get(name)
     if found is None:

@@ -1,1 +1,1 @@
-"""Commands: phrases with numbers and units, and the file that maps them to actions."""
+"""Commands: phrases with numbers and units, and the file that maps phrases to actions."""

@@ -1,4 +1,4 @@
-"""Reading the actions of a command file, checked against the types of their messages."""
+"""Read the actions of a command file, and check them against the types of their messages."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class ActionReader:
     Args:
         document: the document with the command.
         keys: the keys of the command.
-        places: the places of the file.
+        places: the places that the file defines.
         samples: an example value for each slot that all phrases of the command have.
 
     Attributes:
@@ -59,7 +59,7 @@ class ActionReader:
         """Read the action.
 
         Raises:
-            LinkwrightError: VOICE302 there is not exactly one action, or it is invalid; VOICE305 it does not fit its
+            LinkwrightError: VOICE302, there is not exactly one action, or it is invalid; VOICE305, it does not fit its
                 type.
         """
         given = [kind for kind in self.KINDS if self._keys.node(kind) is not None]
@@ -178,7 +178,7 @@ class ActionReader:
         return Launch(package, file, arguments)
 
     def _call(self, keys: Keys, fields: str, find: Callable[[str], Any]) -> tuple[str, str, dict[str, Any]]:
-        """Name, type and fields of a message to be sent, checked with a value in each slot."""
+        """Return the name, type and fields of a message to send, checked with an example value in each slot."""
         name = keys.text("topic" if fields == "message" else "name", needed=True)
         kind = keys.text("type", needed=True)
         values = self._fields(keys, fields)

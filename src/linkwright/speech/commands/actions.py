@@ -1,4 +1,4 @@
-"""Actions of commands, as the file of commands declares them."""
+"""Actions of commands, as the command file declares them."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ class Drive:
 
     Attributes:
         x: forward, as a multiple of the robot's speed; backward is negative.
-        y: to the left, likewise.
-        turn: to the left, as a multiple of its turning speed.
-        duration: s.
-        distance: m.
-        angle: rad.
+        y: to the left, as a multiple of the robot's speed.
+        turn: to the left, as a multiple of the robot's turning speed.
+        duration: the duration in s.
+        distance: the distance in m.
+        angle: the angle in rad.
     """
 
     x: float = 0.0
@@ -45,7 +45,7 @@ class Drive:
 
 @dataclass(frozen=True, slots=True)
 class ScaleSpeed:
-    """Multiply the speed from now on.
+    """Multiply the speed for all following commands.
 
     Attributes:
         factor: the factor of the speeds.
@@ -56,10 +56,10 @@ class ScaleSpeed:
 
 @dataclass(frozen=True, slots=True)
 class SetSpeed:
-    """Set the speed from now on.
+    """Set the speed for all following commands.
 
     Attributes:
-        speed: m/s.
+        speed: the speed in m/s.
     """
 
     speed: Amount
@@ -67,11 +67,11 @@ class SetSpeed:
 
 @dataclass(frozen=True, slots=True)
 class GoTo:
-    """Navigate to a place by nav2_msgs/action/NavigateToPose.
+    """Navigate to a place with nav2_msgs/action/NavigateToPose.
 
     Attributes:
-        place: name of a place of the file.
-        action: name of the action.
+        place: the name of a place in the file.
+        action: the name of the action.
     """
 
     place: str | Slot
@@ -83,9 +83,9 @@ class SendGoal:
     """Send a goal to any action.
 
     Attributes:
-        action: its name.
-        type_name: its type.
-        goal: fields of the goal.
+        action: the name of the action.
+        type_name: the type of the action.
+        goal: the fields of the goal.
     """
 
     action: str
@@ -98,9 +98,9 @@ class CallService:
     """Call a service; a ``message`` in its response is spoken.
 
     Attributes:
-        name: of the service.
-        type_name: its type.
-        request: fields of the request.
+        name: the name of the service.
+        type_name: the type of the service.
+        request: the fields of the request.
     """
 
     name: str
@@ -113,9 +113,9 @@ class Publish:
     """Publish a message.
 
     Attributes:
-        topic: where.
-        type_name: its type.
-        message: its fields.
+        topic: the topic.
+        type_name: the message type.
+        message: the fields of the message.
     """
 
     topic: str
@@ -128,7 +128,8 @@ class Stop:
     """Stop, and end everything that commands have started.
 
     Attributes:
-        publishes: what is published besides, for others that drive the robot; also when it begins to move otherwise.
+        publishes: messages that stop other nodes that drive the robot; also published before a command starts another
+            motion.
     """
 
     publishes: tuple[Publish, ...] = ()
@@ -136,12 +137,12 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class Launch:
-    """Start a launch file, which the next stop ends. No shell reads any part of it.
+    """Start a launch file, which the next stop ends. No part of it is passed to a shell.
 
     Attributes:
-        package: where the file is.
-        file: its name.
-        arguments: of the launch file.
+        package: the package that contains the file.
+        file: the name of the file.
+        arguments: the arguments of the launch file.
     """
 
     package: str
@@ -155,7 +156,9 @@ MOTIONS = Drive, GoTo, Launch
 
 
 def filled(template: Any, values: Values) -> Any:
-    """Fill a template: a text that is a slot alone becomes its value, other texts have it inserted.
+    """Fill a template with the values of slots.
+
+    A text that consists of one slot becomes its value; other texts have values inserted.
 
     Args:
         template: texts, numbers, and lists and mappings of them.
@@ -175,10 +178,10 @@ def filled(template: Any, values: Values) -> Any:
 
 
 def amount(given: Amount | None, values: Values) -> float | None:
-    """The number of an amount."""
+    """Return the number that an amount represents, or None if there is no amount."""
     return float(values[given.name]) if isinstance(given, Slot) else given
 
 
 def shown(value: Value) -> str:
-    """Format a value for a sentence or a message: numbers to a thousandth."""
+    """Format a value for a sentence or a message; numbers are rounded to thousandths."""
     return value if isinstance(value, str) else f"{round(value, 3):g}"

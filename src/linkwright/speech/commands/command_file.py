@@ -1,4 +1,4 @@
-"""The file of commands in YAML, read strictly, with errors at their places."""
+"""The command file in YAML, read strictly, with errors at their positions."""
 
 from __future__ import annotations
 
@@ -37,23 +37,23 @@ _PLACE = ("x", "y", "yaw", "frame", "names")
 
 
 def read_command_file(path: str | Path) -> CommandSet:
-    """Read a file of commands.
+    """Read a command file.
 
     Raises:
-        LinkwrightError: VOICE301 it cannot be read; VOICE302 something in it is wrong; VOICE303 a phrase is;
-            VOICE304 two commands share a phrase; VOICE305 a message does not fit its type; VOICE306 there are more
-            phrases than engines take.
+        LinkwrightError: VOICE301, it cannot be read; VOICE302, it is invalid; VOICE303, a phrase is invalid; VOICE304,
+            two commands share a phrase; VOICE305, a message does not fit its type; VOICE306, there are more phrases
+            than engines accept.
     """
     return parse_commands(read_source(Path(path), phrase("file of commands"), "VOICE301"))
 
 
 def parse_commands(source: SourceText) -> CommandSet:
-    """The commands in the text of a file; see `read_command_file`."""
+    """Return the commands in the text of a file; see `read_command_file`."""
     return _Reader(source).read()
 
 
 class _Reader:
-    """Reads one text."""
+    """Reads the text of one command file."""
 
     def __init__(self, source: SourceText) -> None:
         self._document = YamlDocument(source, "VOICE302")
@@ -90,7 +90,7 @@ class _Reader:
         return Place(keys.number("x", needed=True), keys.number("y", needed=True), keys.number("yaw"), frame)
 
     def _name(self, slot: str, name: str, node: yaml.Node | None) -> None:
-        """Read the names of a place or an object; without any, its key."""
+        """Read the spoken names of a place or an object; without names, its key is used."""
         texts = self._texts(node) if node is not None else {ANY: [(name, None)]}
         spoken = self._slot_values.setdefault(slot, {})
         for language, names in texts.items():
@@ -164,7 +164,10 @@ class _Reader:
         return read
 
     def _texts(self, node: yaml.Node) -> dict[str, list[tuple[str, yaml.Node | None]]]:
-        """Language -> texts with their places, of a text, a list of texts, or a mapping of languages to these."""
+        """Return texts with their positions by language.
+
+        The node is a text, a list of texts, or a mapping of languages to these.
+        """
         if isinstance(node, yaml.MappingNode):
             keys = Keys(self._document, node, phrase("texts by language"), None)
             return {language: keys.texts(language) for language in keys.names()}

@@ -1,4 +1,4 @@
-"""A robot's commands: understanding texts, and the phrases for engines."""
+"""A robot's commands: understands texts, and provides the phrases for engines."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Place:
     """A place to which a robot can be sent.
 
     Attributes:
-        x, y: in metres.
-        yaw: in radians.
-        frame: that the pose is in.
+        x, y: the position in metres.
+        yaw: the yaw in radians.
+        frame: the frame of the pose.
     """
 
     x: float
@@ -39,11 +39,11 @@ class Command:
 
     Attributes:
         intent: its name.
-        phrases: language -> its phrases.
+        phrases: its phrases by language.
         action: the action.
-        question: language -> the question before it is executed; empty to execute it at once.
-        response: language -> the answer; empty for the default.
-        moves: whether it takes the place of another motion.
+        question: by language, the question before the command is executed; empty to execute it immediately.
+        response: by language, the answer; empty for the default answer.
+        moves: whether it replaces another motion.
     """
 
     intent: str
@@ -60,7 +60,7 @@ class Understood:
 
     Attributes:
         command: the command.
-        values: slot -> its spoken value.
+        values: the spoken values by slot.
         language: the language of the phrase; `ANY` for a phrase that is valid in all languages.
     """
 
@@ -74,11 +74,11 @@ class CommandSet:
     """The commands of a file.
 
     Attributes:
-        commands: in the order of the file.
-        names: slot of names -> spoken form -> the name.
-        said: slot -> language -> its possible values.
-        places: name -> where it is.
-        answers: ``yes`` and ``no`` -> language -> its spoken forms.
+        commands: the commands in the order of the file.
+        names: for each slot of names, the names by their spoken forms.
+        said: for each slot, its possible spoken values by language.
+        places: the places by name.
+        answers: for ``yes`` and ``no``, the spoken forms by language.
     """
 
     commands: tuple[Command, ...]
@@ -88,9 +88,9 @@ class CommandSet:
     answers: Mapping[str, Mapping[str, tuple[Template, ...]]]
 
     def understand(self, text: str) -> Understood | None:
-        """Find the command that a text is, in any language; None for none.
+        """Find the command that a text expresses, in any language; return None if there is none.
 
-        Of several commands, the one with the most literal words, and of these the first in the file.
+        Of several commands, the one with the most literal words is returned, and of these the first in the file.
         """
         words = words_of(text)
         best: tuple[int, Understood] | None = None
@@ -113,17 +113,17 @@ class CommandSet:
         return tuple(command for command in self.commands if isinstance(command.action, Stop))
 
     def is_stop(self, text: str) -> bool:
-        """Whether a text contains a phrase that stops."""
+        """Return whether a text contains a phrase that stops the robot."""
         words = words_of(text)
         return any(has_words(words, template.pieces[0]) for stop in self.stops for template in _all(stop.phrases))
 
     def is_other(self, text: str) -> bool:
-        """Whether a text is exactly a command that does not stop."""
+        """Return whether a text is exactly a command that does not stop the robot."""
         found = self.understand(text)
         return found is not None and not isinstance(found.command.action, Stop)
 
     def answer(self, text: str) -> bool | None:
-        """True for a yes, False for a no; None for another text."""
+        """Return True if a text means yes, False if it means no, and None for any other text."""
         words = words_of(text)
         for name, is_yes in (("yes", True), ("no", False)):
             if any(template.values(words, {}) is not None for template in _all(self.answers[name])):
@@ -131,17 +131,17 @@ class CommandSet:
         return None
 
     def phrases(self, language: str) -> tuple[str, ...]:
-        """All phrases of a language, for `EngineOptions`."""
+        """Return all phrases in a language, for `EngineOptions`."""
         values = self._slot_values(language)
         return tuple(dict.fromkeys(text for template in self._templates(language) for text in template.spoken(values)))
 
     def phrase_count(self, language: str) -> int:
-        """The number of phrases in a language, without making them."""
+        """Return the number of phrases in a language without generating them."""
         values = self._slot_values(language)
         return sum(prod(len(values[slot]) for slot in template.slots) for template in self._templates(language))
 
     def _slot_values(self, language: str) -> dict[str, tuple[str, ...]]:
-        """Return the spoken values of each slot."""
+        """Return the spoken values of each slot in a language."""
         return {
             slot: tuple(text for name in (language, ANY) for text in texts.get(name, ()))
             for slot, texts in {**SAYABLE, **self.said}.items()
@@ -153,7 +153,7 @@ class CommandSet:
 
 
 def chosen(texts: ByLanguage, language: str) -> str:
-    """Return the text in a language, else in English, else any; empty if there is none."""
+    """Return the text in a language, else in English, else in any language; empty if there is none."""
     for name in (language, ANY, "en"):
         if name in texts:
             return texts[name]

@@ -38,7 +38,7 @@ _POWERS = {"十": 10, "百": 100, "千": 1000}
 
 
 def number(words: Words) -> float | None:
-    """The number that all of the words mean, at least 0; None for none."""
+    """Return the number, at least 0, that all of the words together mean, or None."""
     if not words:
         return None
     if len(words) == 1 and words[0][0].isdigit():
@@ -66,7 +66,7 @@ def _english(words: Words) -> float | None:
 
 
 def _whole(words: Words) -> int | None:
-    """An integer in English, up to 9999."""
+    """Return the value of an integer in English, up to 9999, or None."""
     for name, power in (("thousand", 1000), ("hundred", 100)):
         if name in words:
             at = words.index(name)
@@ -98,7 +98,7 @@ def _chinese(words: Words) -> float | None:
 
 
 def _chinese_whole(words: Words) -> int | None:
-    """An integer in Chinese, up to 9999; 一百八 is 180."""
+    """Return the value of an integer in Chinese, up to 9999, or None; 一百八 is 180."""
     total, digit, power, zero = 0, None, 10_000, False
     for word in words:
         if word in _DIGITS and digit is None:

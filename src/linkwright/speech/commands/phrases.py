@@ -26,7 +26,7 @@ _MANY_OPTIONAL = 6
 
 
 class TemplateError(ValueError):
-    """A phrase is malformed; the reason is its text, a `Phrase`."""
+    """Raised when a phrase is malformed; its text, a `Phrase`, gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +35,8 @@ class Template:
 
     Attributes:
         text: the text in the file.
-        pieces: the literal words between the slots of `slots`; one more than slots.
-        slots: in their order.
+        pieces: the literal words before, between and after the slots; one more than there are slots.
+        slots: the slots in their order.
     """
 
     text: str
@@ -49,14 +49,14 @@ class Template:
         return sum(map(len, self.pieces))
 
     def values(self, words: Words, names: Names) -> dict[str, Value] | None:
-        """The values of the slots; None if the words do not match."""
+        """Return the values of the slots, or None if the words do not match."""
         return self._rest(words, 0, names)
 
     def spoken(self, values: Mapping[str, Sequence[str]]) -> Iterator[str]:
         """Yield all phrases of the template, with all values of its slots.
 
         Args:
-            values: slot -> its possible values.
+            values: the possible values by slot.
         """
         for chosen in product(*(values.get(slot, ()) for slot in self.slots)):
             text = self.text
@@ -83,11 +83,11 @@ class Template:
 
 
 def templates(text: str, slots: Sequence[str]) -> list[Template]:
-    """Expand the brackets of a phrase.
+    """Expand the brackets of a phrase into templates.
 
     Args:
         text: the phrase in the file.
-        slots: those that there are besides the ones of quantities.
+        slots: the slots that exist in addition to those for quantities.
 
     Raises:
         TemplateError: a bracket is not closed, a slot occurs twice or is unknown, or no literal word is left.

@@ -1,4 +1,4 @@
-"""Spoken quantities: a number and its unit, in metres, radians and seconds."""
+"""Spoken quantities: numbers with units, converted to metres, radians and seconds."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ _EACH_SECOND: Words = ("每", "秒")
 
 
 def quantity(slot: str, words: Words) -> float | None:
-    """The value of words for a slot of `SAYABLE`, in its unit; None if they do not fit."""
+    """Return the value of words for a slot of `SAYABLE`, in the slot's unit; None if they do not fit."""
     if slot == "number":
         return number(words)
     if slot == "speed" and words[:2] == _EACH_SECOND:

@@ -1,4 +1,4 @@
-"""Reading mappings of a YAML file with known keys; errors name keys and places."""
+"""Read mappings with known keys in a YAML file; errors contain the keys and positions."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ class Keys:
     """Reads the keys of a mapping.
 
     Args:
-        document: it is in.
+        document: the document that contains the mapping.
         node: the mapping.
         what: a description for messages.
-        known: the keys that there are; None for any.
+        known: the known keys; None to allow any key.
 
     Raises:
-        LinkwrightError: it is not a mapping, or a key is unknown or occurs twice.
+        LinkwrightError: the node is not a mapping, or a key is unknown or occurs twice.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class Keys:
         return cls(document, pair, phrase("texts by language"), None)
 
     def names(self) -> list[str]:
-        """The present keys."""
+        """Return the keys that are present."""
         return list(self._values)
 
     def node(self, key: str) -> yaml.Node | None:
@@ -61,11 +61,11 @@ class Keys:
         return None if node is None or node.tag == _NULL else node
 
     def error(self, message: Phrase, node: yaml.Node | None = None, hint: Phrase | None = None) -> LinkwrightError:
-        """The error for something at a node, or at the mapping."""
+        """Return the error for a problem at a node, or at the mapping."""
         return self._document.error(message, node or self._node, hint)
 
     def mapping(self, key: str) -> list[tuple[str, yaml.Node]] | None:
-        """The keys and values of the mapping under a key; None where there is nothing."""
+        """Return the keys and values of the mapping under a key, or None if it is missing."""
         node = self.node(key)
         if node is None:
             return None
@@ -73,7 +73,7 @@ class Keys:
         return [(name, inner._values[name]) for name in inner.names()]
 
     def text(self, key: str, *, needed: bool = False) -> str:
-        """Return the text under a key; empty if there is none and none is required."""
+        """Return the text under a key; empty if it is missing and not required."""
         node = self.node(key)
         if node is None and not needed:
             return ""
@@ -82,7 +82,7 @@ class Keys:
         return str(node.value)
 
     def number(self, key: str, *, needed: bool = False) -> float:
-        """Return the number under a key; 0 if there is none and none is required."""
+        """Return the number under a key; 0 if it is missing and not required."""
         node = self.node(key)
         if node is None and not needed:
             return 0.0
@@ -95,14 +95,14 @@ class Keys:
         return value
 
     def flag(self, key: str) -> bool:
-        """The boolean under a key; False without one."""
+        """Return the boolean under a key; False if it is missing."""
         node = self.node(key)
         if not isinstance(node, yaml.ScalarNode) or node.value.lower() not in ("true", "false"):
             raise self._missing(key, node, phrase("true or false"))
         return bool(node.value.lower() == "true")
 
     def texts(self, key: str) -> list[tuple[str, yaml.Node | None]]:
-        """The texts under a key, one or a list, each with its place."""
+        """Return the texts under a key, one or a list, each with its position."""
         node = self.node(key)
         items: list[yaml.Node | None] = list(node.value) if isinstance(node, yaml.SequenceNode) else [node]
         found: list[tuple[str, yaml.Node | None]] = []
@@ -113,7 +113,7 @@ class Keys:
         return found
 
     def plain(self, key: str) -> Any:
-        """The value of a key as lists, mappings, numbers and texts; an empty mapping without one."""
+        """Return the value of a key as lists, mappings, numbers and texts; an empty mapping if it is missing."""
         node = self.node(key)
         if node is None:
             return {}

@@ -1,4 +1,4 @@
-"""Splitting texts into words, normalised over engines: capitals, punctuation, blanks between Chinese characters."""
+"""Split texts into words, normalised across engines: case, punctuation, blanks between Chinese characters."""
 
 from __future__ import annotations
 
@@ -13,11 +13,14 @@ _WORD = re.compile(rf"\d+(?:\.\d+)?|[{_HAN}]|(?:(?![{_HAN}])[^\W\d_])+(?:['’][
 
 
 def words_of(text: str) -> Words:
-    """Split a text: ``Turn left, 90°!`` is turn, left, 90, °, and ``左转 九十度`` is 左, 转, 九, 十, 度."""
+    """Split a text into words.
+
+    For example, ``Turn left, 90°!`` becomes turn, left, 90, °, and ``左转 九十度`` becomes 左, 转, 九, 十, 度.
+    """
     return tuple(_WORD.findall(unicodedata.normalize("NFKC", text).lower().replace("’", "'")))
 
 
 def has_words(words: Words, wanted: Words) -> bool:
-    """Whether words occur in a text in this order, adjacent."""
+    """Return whether a text contains the wanted words in this order without gaps."""
     length = len(wanted)
     return any(words[at : at + length] == wanted for at in range(len(words) - length + 1))

@@ -1,1 +1,1 @@
-"""Adapters of engines of others, each a module that imports its library on demand."""
+"""Adapters for third-party engines, each a module that imports its library on demand."""

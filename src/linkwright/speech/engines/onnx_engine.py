@@ -1,8 +1,8 @@
-"""The engine ``onnx``: a user's network in an ONNX file that classifies a stretch of sound (keyword spotting).
+"""The engine ``onnx``: a user's network in an ONNX file that classifies a section of sound (keyword spotting).
 
-Its input is ``[1, n]`` float32, the sound at 16 kHz with full scale at 1; its output ``[1, classes]``, scores or
-probabilities. The metadata ``names`` has the classes, as JSON (a list, or an object of numbers and names) or with
-commas between them. Classes that are none of the phrases, such as ``background``, represent all other sound.
+Its input is ``[1, n]`` float32, the sound at 16 kHz with full scale at 1; its output is ``[1, classes]``, scores or
+probabilities. The metadata ``names`` contains the classes, as JSON (a list, or an object of numbers and names) or
+separated by commas. Classes that do not match any phrase, such as ``background``, represent all other sound.
 
 Speech between two silences is cut to ``n`` samples around its middle, or padded with silence on both sides.
 """
@@ -27,16 +27,16 @@ from linkwright.speech.sound.spectra import HOP, MelFrames
 LEAST_PROBABILITY = 0.6
 """The least probability of a class that counts."""
 
-_BEFORE = RATE // 5  # samples kept from before speech starts
-_LONGEST = 10 * RATE  # the most samples kept
+_BEFORE = RATE // 5  # samples before the start of speech that are included
+_LONGEST = 10 * RATE  # the maximum number of samples in an utterance
 _FULL = 32_768.0
 
 
 class OnnxEngine(SpeechEngine):
-    """The engine ``onnx``; its model is the option ``model``.
+    """The engine ``onnx``, whose model is set by the option ``model``.
 
     Raises:
-        LinkwrightError: VOICE102 onnxruntime is not installed; VOICE104 the file is not such a network.
+        LinkwrightError: VOICE102, onnxruntime is not installed; VOICE104, the file is not such a network.
     """
 
     def __init__(self, options: EngineOptions) -> None:
@@ -50,10 +50,10 @@ class OnnxEngine(SpeechEngine):
         self._phrases = {_plain(phrase): phrase for phrase in options.phrases}
         self._frames, self._activity = MelFrames(), VoiceActivity()
         self._buffer: Samples = np.zeros(0, np.int16)
-        self._heard = 0  # samples
+        self._heard = 0  # the number of samples
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process a block. There are no partial results: the network runs when an utterance is over."""
+        """Process a block; there are no partial results, because the network runs when an utterance is over."""
         self._buffer = np.concatenate((self._buffer, samples))[-_LONGEST:]
         self._heard += len(samples)
         found: list[Heard] = []
@@ -67,7 +67,7 @@ class OnnxEngine(SpeechEngine):
         return found
 
     def finish(self) -> Sequence[Heard]:
-        """End the utterance."""
+        """End the utterance, and return its result."""
         if not self._activity.speaking:
             return []
         self._activity.end()
@@ -90,7 +90,10 @@ def _plain(text: str) -> str:
 
 
 def _fitted(utterance: Samples, length: int) -> NDArray[np.float32]:
-    """Sound of a length: the middle of it, or all of it with silence on both sides."""
+    """Return sound of a given length.
+
+    It is the middle of the utterance, or all of it with silence on both sides.
+    """
     first = (len(utterance) - length) // 2
     whole: NDArray[np.float32] = np.zeros(length, np.float32)
     if first >= 0:
@@ -101,7 +104,7 @@ def _fitted(utterance: Samples, length: int) -> NDArray[np.float32]:
 
 
 def _probabilities(scores: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Convert scores to probabilities, unless they are some."""
+    """Convert scores to probabilities, unless they already are probabilities."""
     if scores.min() >= 0.0 and abs(scores.sum() - 1.0) < 1e-3:
         return scores
     powers: NDArray[np.float64] = np.exp(scores - scores.max())
@@ -118,7 +121,7 @@ def _session(path: Path) -> Any:
 
 
 def _form(session: Any, path: Path) -> tuple[str, int, tuple[str, ...]]:
-    """Name and length of the input, and the names of the classes."""
+    """Return the name and length of the input, and the names of the classes."""
     inputs, outputs = session.get_inputs(), session.get_outputs()
     shape = inputs[0].shape if len(inputs) == 1 else []
     if len(shape) != 2 or not isinstance(shape[1], int) or not 0 < shape[1] <= _LONGEST:

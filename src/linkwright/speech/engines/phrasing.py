@@ -1,4 +1,4 @@
-"""Converting phrases to the vocabulary of an engine, and its results to phrases."""
+"""Convert phrases to the vocabulary of an engine, and its results to phrases."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Phrasing:
     """Phrases in the vocabulary of an engine.
 
     Attributes:
-        phrases: the words of the engine -> the phrase as the user wrote it.
+        phrases: the phrases as the user wrote them, by the words of the engine.
     """
 
     phrases: Mapping[Words, str]
@@ -28,16 +28,16 @@ class Phrasing:
     def of(cls, phrases: Iterable[str], knows: Callable[[str], bool], model: Path | str) -> Phrasing:
         """Convert phrases to an engine's vocabulary.
 
-        A word that the engine does not know is tried in small letters and, where it is written without spaces, as
-        Chinese is, divided into the fewest known words.
+        A word that the engine does not know is tried in lower case. In a language that is written without spaces, such
+        as Chinese, it is also divided into the fewest known words.
 
         Args:
-            phrases: as the user wrote them.
+            phrases: the phrases as the user wrote them.
             knows: returns whether a word is in the engine's vocabulary.
             model: the name of the model, for errors.
 
         Raises:
-            LinkwrightError: VOICE103 it does not know some words.
+            LinkwrightError: VOICE103, the engine does not know some words.
         """
         found: dict[Words, str] = {}
         missing: dict[str, None] = {}
@@ -61,7 +61,8 @@ class Phrasing:
         """Split recognised words into the fewest phrases.
 
         Returns:
-            Each phrase with its first word and the one after its last; None where the words are not such a sequence.
+            Each phrase with the indices of its first word and of the word after its last; None if the words are not a
+            sequence of phrases.
         """
         longest = max(map(len, self.phrases), default=0)
         best: list[list[tuple[str, int, int]] | None] = [[]]
@@ -78,7 +79,7 @@ class Phrasing:
 
 
 def _known(word: str, knows: Callable[[str], bool]) -> list[str] | None:
-    """The words of a vocabulary that make up a word."""
+    """Return the words of a vocabulary that make up a word, or None."""
     for spelling in (word, word.lower()):
         if knows(spelling):
             return [spelling]

@@ -1,7 +1,8 @@
-"""The engine ``pocketsphinx``: a grammar of phrases; its wheel carries a model of American English.
+"""The engine ``pocketsphinx``: a grammar of phrases; its wheel contains a model of American English.
 
 The grammar has no model of other speech: in our measurements a quarter of other utterances was recognized as one of the
-phrases, and more in noise. So it is an engine for push-to-talk; Vosk or enrolled words are better where available.
+phrases, and more in noise. It is therefore an engine for push-to-talk; Vosk or enrolled words are better where
+available.
 """
 
 from __future__ import annotations
@@ -22,22 +23,22 @@ from linkwright.speech.sound.samples import RATE, Samples
 _LANGUAGE = "en"
 _GRAMMAR = "phrases"
 _MODEL_FILES = ("mdef", "means", "variances", "transition_matrices")
-_FILLERS = ("<", "[", "(")  # how pocketsphinx's names of silence and noise begin, and of no word at all
+_FILLERS = ("<", "[", "(")  # prefixes of pocketsphinx's names for silence and noise, which no word has
 _USUAL_FIT = -8.0
 """The score that all of 72 correctly recognized phrases exceeded, and a quarter of other sounds."""
 
-_LEAST = 1e-300  # pocketsphinx may return a probability that underflows
+_LEAST = 1e-300  # avoids the logarithm of a probability that underflows to 0
 
 
 class PocketsphinxEngine(SpeechEngine):
-    """Recognises phrases with pocketsphinx; a confidence rates how well sounds fit the words, 0.5 for the usual fit.
+    """Recognises phrases with pocketsphinx; the confidence rates the acoustic fit, 0.5 for the usual fit.
 
-    The probability of pocketsphinx itself is useless: it is shared among all paths through the grammar that sound
+    The probability from pocketsphinx itself is not useful: it is shared among all paths through the grammar that sound
     alike, and a fifth of clear phrases had less than 0.1.
 
     Raises:
-        LinkwrightError: VOICE102 pocketsphinx is not installed; VOICE103 the dictionary lacks a word; VOICE104 the
-            folder holds no model; VOICE105 the language is not English and no model is given.
+        LinkwrightError: VOICE102, pocketsphinx is not installed; VOICE103, the dictionary lacks a word; VOICE104, the
+            folder does not contain a model; VOICE105, the language is not English and no model is given.
     """
 
     def __init__(self, options: EngineOptions) -> None:
@@ -64,7 +65,7 @@ class PocketsphinxEngine(SpeechEngine):
         self._partial = ""
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process a block. Partial results are phrases that match the words so far."""
+        """Process a block; partial results are phrases that match the words so far."""
         self._waiting += samples.astype("<i2").tobytes()
         size = self._endpointer.frame_bytes
         found: list[Heard] = []
@@ -76,8 +77,8 @@ class PocketsphinxEngine(SpeechEngine):
         return found
 
     def finish(self) -> Sequence[Heard]:
-        """End the utterance."""
-        rest, self._waiting = self._waiting or b"\0\0", b""  # it takes no end without a sample
+        """End the utterance, and return its final results."""
+        rest, self._waiting = self._waiting or b"\0\0", b""  # pocketsphinx cannot end an utterance without a sample
         found = self._decode(self._endpointer.end_stream(rest)) if self._endpointer.in_speech else []
         return [*found, *self._end()]
 
@@ -86,7 +87,7 @@ class PocketsphinxEngine(SpeechEngine):
         self._end()
 
     def _decode(self, speech: bytes | None) -> list[Heard]:
-        """Decode the part that the endpointer detects as speech."""
+        """Decode the part of the sound that the endpointer detects as speech."""
         if speech is None:
             return []
         if not self._speaking:
@@ -112,7 +113,10 @@ class PocketsphinxEngine(SpeechEngine):
         return [Heard(text, confidence, False, self._endpointer.speech_start, now)]
 
     def _best(self) -> tuple[str, float]:
-        """The recognised phrase, as the user wrote it, and its confidence; an empty phrase for none."""
+        """Return the recognised phrase, as the user wrote it, and its confidence.
+
+        The phrase is empty if none was recognised.
+        """
         found = self._decoder.hyp()
         if found is None:
             return "", 0.0
@@ -120,7 +124,10 @@ class PocketsphinxEngine(SpeechEngine):
         return self._phrasing.phrases.get(tuple(words), ""), self._confidence()
 
     def _confidence(self) -> float:
-        """The confidence: the score of the words beside that of the best phones in any order."""
+        """Return the confidence of the result.
+
+        It compares the score of the words with the best sequence of phones in any order.
+        """
         spoken = [segment for segment in self._decoder.seg() or () if not segment.word.startswith(_FILLERS)]
         frames = sum(segment.end_frame - segment.start_frame + 1 for segment in spoken)
         if not frames:
@@ -130,7 +137,7 @@ class PocketsphinxEngine(SpeechEngine):
 
 
 def _jsgf(phrasing: Phrasing) -> str:
-    """A grammar of complete phrases (JSpeech Grammar Format, W3C note of June 2000)."""
+    """Return a grammar of complete phrases (JSpeech Grammar Format, W3C note of June 2000)."""
     alternatives = " | ".join(" ".join(words) for words in phrasing.phrases)
     return f"#JSGF V1.0;\ngrammar {_GRAMMAR};\npublic <said> = {alternatives};\n"
 
@@ -156,7 +163,10 @@ _TRIAL = "import json, sys, pocketsphinx; pocketsphinx.Decoder(**json.loads(sys.
 
 
 def _try_in_another_process(folder: Path, settings: dict[str, Any]) -> None:
-    """Load a model in another process first: the library ends the process over a damaged one."""
+    """Load a model in a separate process first.
+
+    The library ends the process if a model is damaged.
+    """
     given = [sys.executable, "-c", _TRIAL, json.dumps(settings)]
     trial = subprocess.run(  # noqa: S603 - this very interpreter
         given, check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace"

@@ -1,11 +1,11 @@
 """The engine ``vosk``: a grammar of phrases, with a pretrained model.
 
-The grammar is the phrases and ``[unk]``, which matches all other speech. A result with ``[unk]``, or with a word of
-less confidence than `LEAST_CONFIDENCE`, is rejected: in our measurements this reduced false commands in read texts from
-one in sixty to none, at the cost of one correct command in a hundred.
+The grammar consists of the phrases and ``[unk]``, which matches all other speech. A result with ``[unk]``, or with a
+word of less confidence than `LEAST_CONFIDENCE`, is rejected. In our measurements this reduced false commands in read
+texts from one in sixty to none, at the cost of one correct command in a hundred.
 
-Partial results are those of the best path, which arrive at once; with confidences Vosk delays them until it has built a
-lattice. They begin after the last ``[unk]``, so that "stop" is recognized in the middle of other speech, too.
+Partial results are those of the best path, which arrive immediately; with confidences Vosk delays them until it has
+built a lattice. They start after the last ``[unk]``, so that "stop" is also recognized in the middle of other speech.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ MODELS = {language: f"vosk-{language}" for language in LANGUAGES}
 """The models that are fetched by name, by language."""
 
 _UNKNOWN = "[unk]"
-_SILENT = -1  # of Vosk's levels of logging
+_SILENT = -1  # the log level of Vosk that suppresses messages
 _ACOUSTIC_MODEL = Path("am") / "final.mdl"
 
 
@@ -40,9 +40,9 @@ class VoskEngine(SpeechEngine):
     """The engine ``vosk``.
 
     Raises:
-        LinkwrightError: MODEL102 the language's model has not been fetched; VOICE102 Vosk is not installed; VOICE103
-            the model does not know a word; VOICE104 the folder holds no model of Vosk; VOICE105 there is no model
-            for the language.
+        LinkwrightError: MODEL102, the language's model has not been downloaded; VOICE102, Vosk is not installed;
+            VOICE103, the model does not know a word; VOICE104, the folder does not contain a Vosk model; VOICE105,
+            there is no model for the language.
     """
 
     def __init__(self, options: EngineOptions) -> None:
@@ -55,11 +55,11 @@ class VoskEngine(SpeechEngine):
         self._recognizer = vosk.KaldiRecognizer(model, RATE, json.dumps([*grammar, _UNKNOWN], ensure_ascii=False))
         self._recognizer.SetWords(True)
         self._partial: list[str] = []
-        self._samples = 0  # heard so far
-        self._began = 0.0  # when the partial result did
+        self._samples = 0  # the number of samples so far
+        self._began = 0.0  # start time of the partial result
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process a block. Partial results have the least confidence that counts: their own is unknown."""
+        """Process a block; partial results get the minimum accepted confidence, because theirs is unknown."""
         if not len(samples):
             return []
         self._samples += len(samples)
@@ -68,7 +68,7 @@ class VoskEngine(SpeechEngine):
         return self._changed(self._recognizer.PartialResult())
 
     def finish(self) -> Sequence[Heard]:
-        """End the utterance."""
+        """End the utterance, and return its final results."""
         return self._final(self._recognizer.FinalResult())
 
     def _final(self, result: str) -> list[Heard]:
@@ -94,7 +94,7 @@ class VoskEngine(SpeechEngine):
         ]
 
     def _changed(self, result: str) -> list[Heard]:
-        """The partial result, when its words have changed and are one phrase or several."""
+        """Return the partial result if its words have changed and form one or more phrases, otherwise nothing."""
         words = json.loads(result).get("partial", "").split()
         if words == self._partial:
             return []

@@ -1,1 +1,1 @@
-"""Words enrolled by the user, recognised by their distance from the recordings, in any language."""
+"""Words that the user has enrolled, recognised in any language by their distance from the recordings."""

@@ -1,4 +1,4 @@
-"""The engine ``enrolled``: words that the user recorded three times each, in any language, without a model."""
+"""The engine ``enrolled``: words that the user has recorded three times each, in any language, without a model."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from linkwright.speech.sound.activity import VoiceActivity, unsteady_noise
 from linkwright.speech.sound.samples import RATE, Samples
 from linkwright.speech.sound.spectra import BANDS, HOP, MelFrames, Powers
 
-_BEFORE = 20  # frames kept from before speech starts: a word begins softly
-_EARLIER = 30  # frames before those, used only to measure the noise
-_STEP = 5  # new frames before an utterance is matched again
-_TOO_LONG = 2.5  # times the longest take: too long for a word
+_BEFORE = 20  # frames before the start of speech that are included, because a word starts softly
+_EARLIER = 30  # earlier frames, used only to measure the noise
+_STEP = 5  # number of new frames after which an utterance is matched again
+_TOO_LONG = 2.5  # times the longest take: longer utterances are not words
 _NEAR = 0.1
 """The confidence from which a word is reported as the nearest: most missed words in noise have it, and one of twenty
 other words.
@@ -37,11 +37,11 @@ class EnrolledEngine(SpeechEngine):
     The file may appear, change and disappear at run time: it is checked with each block.
 
     Args:
-        options: `model` is the file of words, `words_path` if it is None. Only its words among the phrases are
-            recognized; the others help to reject. Case and outer spaces are ignored.
+        options: `model` is the file of words, or `words_path` if it is None. Only words that are among the phrases are
+            recognized; the others help to reject sound. Case and surrounding spaces are ignored.
 
     Raises:
-        LinkwrightError: the file is there and cannot be read, see `Words.read`.
+        LinkwrightError: the file exists but cannot be read, see `Words.read`.
     """
 
     def __init__(self, options: EngineOptions) -> None:
@@ -64,11 +64,14 @@ class EnrolledEngine(SpeechEngine):
 
     @property
     def problem(self) -> Diagnostic | None:
-        """VOICE201 no enrolled word is used; VOICE202, VOICE203 the file was changed and is damaged; None for none."""
+        """The reason why the engine recognises less than it should, or None.
+
+        VOICE201, no enrolled word is used; VOICE202, VOICE203, the file was changed and is damaged.
+        """
         return self._problem
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """See `SpeechEngine.hear`; a word is reported as a partial result with the block in which it ends."""
+        """Process a block; a word becomes a partial result with the block in which it ends."""
         self._follow_file()
         heard: list[Heard] = []
         for frame in self._frames.feed(samples):
@@ -83,7 +86,7 @@ class EnrolledEngine(SpeechEngine):
         return heard
 
     def finish(self) -> Sequence[Heard]:
-        """See `SpeechEngine.finish`."""
+        """End the utterance, and return its final results."""
         return self._end() if self._activity.speaking else []
 
     def _store(self, frame: NDArray[np.float64], speech: bool) -> None:
@@ -98,7 +101,7 @@ class EnrolledEngine(SpeechEngine):
         return int(_TOO_LONG * longest) + 2 * _BEFORE
 
     def _look(self) -> list[Heard]:
-        """The partial result of an utterance."""
+        """Return the partial result of an utterance if it has changed, otherwise an empty list."""
         self._looked = self._seen
         guess = self._guess()
         name = self._name(guess)
@@ -108,7 +111,7 @@ class EnrolledEngine(SpeechEngine):
         return [self._result(name, guess, final=False)]
 
     def _end(self) -> list[Heard]:
-        """End the utterance."""
+        """End the utterance, and return its final result."""
         guess = self._guess()
         self._activity.end()
         name = self._name(guess)
@@ -126,7 +129,7 @@ class EnrolledEngine(SpeechEngine):
         return self._recogniser.guess(self._buffer, self._activity.floor if noise is None else noise)
 
     def _name(self, guess: Guess | None) -> str | None:
-        """The recognised phrase, if any."""
+        """Return the recognised phrase, or None."""
         if guess is None:
             return None
         if guess.confidence < (_OF_A_NUMBER if has_number(words_of(guess.name)) else ACCEPTED):

@@ -1,4 +1,4 @@
-"""Enrolling words: whether a recording is usable, and the reason if not."""
+"""Enrol words: decide whether a recording is usable, and give the reason if not."""
 
 from __future__ import annotations
 
@@ -13,29 +13,29 @@ from linkwright.speech.sound.samples import Samples
 from linkwright.speech.sound.spectra import HOP, WINDOW, mel_frames
 
 _SHORTEST, _LONGEST = 15, 300  # frames: 0.15 s and 3 s
-_EDGE = 3  # frames at the beginning or end of a recording in which there is no speech yet, or no more
-_QUIETEST = 60.0  # effective value of the loudest 50 ms, in steps of 16 bits: -55 dB of full scale
-_LEAST_ABOVE_NOISE = 8.0  # dB, mean of the bands of the loudest frames
+_EDGE = 3  # frames at either end of a recording that must not contain speech
+_QUIETEST = 60.0  # RMS value of the loudest 50 ms, in units of a 16-bit sample: -55 dB of full scale
+_LEAST_ABOVE_NOISE = 8.0  # dB, mean over the bands of the loudest frames
 _CLIPPED_SHARE = 0.01
 _CLIPPED_AT = 32_700
-_UNLIKE = 0.7  # of its distance to a word played backwards: another word is farther three times in four
-_MUCH_ALIKE = 0.85  # of its distance to another word
+_UNLIKE = 0.7  # times its distance to a reversed word; different words exceed this three times in four
+_MUCH_ALIKE = 0.85  # times its distance to another word
 
 
 def enrol(words: Words, name: str, samples: Samples, has_gaps: bool = False) -> tuple[Diagnostic, ...]:
-    """Add a recording of a word, if it is usable.
+    """Add a recording of a word if it is usable.
 
     Args:
-        words: the words that receive the take, unless a finding is an error.
+        words: the words to which the take is added, unless a finding is an error.
         name: the phrase of the word.
         samples: a recording that contains the word once, preferably with some tenths of a second of silence around it.
         has_gaps: whether some of the sound was lost.
 
     Returns:
-        The findings. Errors, which reject the recording: VOICE204 the name cannot be used; VOICE205 nothing is audible,
-        or too little above the noise; VOICE206 it is too short or too long; VOICE207 it is clipped; VOICE208 it differs
-        from the earlier takes of the word; VOICE211 its beginning or its end is cut off; VOICE212 the sound has gaps. A
-        warning: VOICE209 it sounds much like another word.
+        The findings. Errors, which reject the recording: VOICE204, the name cannot be used; VOICE205, nothing is
+        audible, or too little above the noise; VOICE206, it is too short or too long; VOICE207, it is clipped;
+        VOICE208, it differs from the earlier takes of the word; VOICE211, its beginning or its end is cut off;
+        VOICE212, the sound has gaps. A warning: VOICE209, it sounds very similar to another word.
     """
     reason = name_problem(name)
     if reason is not None:
@@ -75,7 +75,10 @@ def enrol(words: Words, name: str, samples: Samples, has_gaps: bool = False) -> 
 
 
 def _compared(words: Words, name: str, take: Take) -> Diagnostic | None:
-    """Compare a take with those of its word and with other words; a word's first take has nothing to compare with."""
+    """Compare a take with other takes of its word and with other words.
+
+    Returns a finding if the take does not fit. The first take of a word is not compared.
+    """
     if not words.takes(name):
         return None
     costs, backwards = Recogniser(words, rooms=()).compare(take)
@@ -101,7 +104,7 @@ def _above(powers: NDArray[np.float64], noise: NDArray[np.float64]) -> NDArray[n
 
 
 def _unfit(name: str, samples: Samples, first: int, last: int) -> Diagnostic | None:
-    """The reason why the sound itself is unusable."""
+    """Return the reason why the sound itself is not usable, or None."""
     spoken = samples[first * HOP : (last - 1) * HOP + WINDOW].astype(np.float64) if last > first else np.zeros(0)
     loudest = 0.0
     if len(spoken):

@@ -1,13 +1,13 @@
-"""Recognising enrolled words, with a confidence.
+"""Recognise enrolled words, with a confidence.
 
 A word counts only if nothing else is nearer: no other word, not the background, and no take played backwards, which is
-speech of the same voice but not a word. Then logistic regression rates it, with three inputs. The first is the largest
-distance of the sound from the best take, relative to the distances between the user's own takes of the word: it
-separates words that differ in one sound. The second is the take's cost relative to the background and to takes played
-backwards. The third is the level of the sound above the noise: in noise all costs approach each other, and a word must
-fit better. The absolute cost is not used, because it differs between voices and microphones.
+speech of the same voice but not a word. Then logistic regression computes the confidence from three inputs. The first
+is the largest distance of the sound from the best take, relative to the distances between the user's own takes of the
+word: it separates words that differ in a single speech sound. The second is the take's cost relative to the background
+and to takes played backwards. The third is the level of the sound above the noise: in noise all costs become similar,
+and a word must fit better. The absolute cost is not used, because it differs between voices and microphones.
 
-Each take is compared as it was recorded, and with the echo of rooms; a match with the latter needs more confidence.
+Each take is compared as it was recorded, and with the reverberation of rooms; the latter matches need more confidence.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ ACCEPTED = 0.5
 
 _LEAST = 1e-3
 _NEVER = np.float32(1e9)
-_REVERBERATION_HEARD = 20.0  # dB above the noise: below, noise covers how words fade, and all are like a far one
+_REVERBERATION_HEARD = 20.0  # dB above noise: below it, noise hides the decay of words, and all words seem far away
 
 
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """The enrolled word nearest to a sound.
+    """The enrolled word that is nearest to a sound.
 
     Attributes:
-        name: of the word.
-        confidence: the probability that this word was spoken and nothing else, 0 to 1.
-        first: the frame of the sound with which it begins.
-        last: the frame with which it ends.
+        name: the name of the word.
+        confidence: the probability that exactly this word was spoken, 0 to 1.
+        first: the first frame of the word in the sound.
+        last: the last frame of the word in the sound.
     """
 
     name: str
@@ -53,7 +53,7 @@ class Recogniser:
 
     Args:
         words: all enrolled words; those that are not requested help to reject other words.
-        rooms: the rooms in which they may be spoken, besides the one in which they were enrolled.
+        rooms: the rooms in which the words may be spoken, in addition to the one in which they were enrolled.
     """
 
     def __init__(self, words: Words, rooms: tuple[Room, ...] = ROOMS) -> None:
@@ -72,8 +72,8 @@ class Recogniser:
         """Find the nearest word.
 
         Args:
-            powers: of the utterance, with some frames of background before and after it.
-            noise: power of the background, shape ``(BANDS,)``.
+            powers: the powers of the utterance, with some frames of background before and after it.
+            noise: the power of the background, shape ``(BANDS,)``.
         """
         match = self._templates.match(powers, noise)
         if 10.0 * log10(loudness(powers) / float(noise.sum())) < _REVERBERATION_HEARD:
@@ -97,17 +97,17 @@ class Recogniser:
         return dict(zip(self.names, costs, strict=True)), self._nonsense(match)
 
     def prepare(self) -> None:
-        """Compute in advance, so that the first recognition of a word does not take longer."""
+        """Compute cached values in advance, so that the first recognition of a word does not take longer."""
         for word in range(len(self.names)):
             self._own_worst(word)
 
     def _own_worst(self, word: int) -> float:
-        """The median over a word's takes of the worst distance from the nearest other take."""
+        """Return the median over a word's takes of the worst distance from the nearest other take."""
         if word not in self._own:
             takes = self._takes[word]
             alone = Templates(takes)
             matches = [alone.match(take.powers, take.noise) for take in takes] if len(takes) > 1 else []
-            nearest = [int(np.argsort(match.cost)[1]) for match in matches]  # except itself
+            nearest = [int(np.argsort(match.cost)[1]) for match in matches]  # the nearest take except itself
             found = [alone.worst(match, take) for match, take in zip(matches, nearest, strict=True)]
             self._own[word] = float(np.median(found)) if found else _USUAL_WORST
         return self._own[word]
@@ -116,11 +116,11 @@ class Recogniser:
         return np.array([match.cost[self._word == number].min() for number in range(len(self.names))])
 
     def _nonsense(self, match: Match) -> float:
-        """The distance of the nearest take that is played backwards."""
+        """Return the distance to the nearest take played backwards."""
         return float(match.cost[self._word == -1].min())
 
     def _figures(self, match: Match, cost: float, word: int, take: int, above_noise: float) -> NDArray[np.float64]:
-        """The features of the confidence, shape ``(4,)``."""
+        """Return the inputs of the regression for the confidence, shape ``(4,)``."""
         cost = max(cost, _LEAST)
         worst = log(max(self._templates.worst(match, take), _LEAST) / max(self._own_worst(word), _LEAST))
         background, nonsense = (
@@ -130,16 +130,16 @@ class Recogniser:
 
 
 def _backwards(takes: tuple[Take, ...]) -> Take:
-    """The take of median length, reversed."""
+    """Return the take of median length, reversed."""
     take = sorted(takes, key=lambda one: len(one.powers))[len(takes) // 2]
     return Take(take.powers[::-1], take.noise)
 
 
-_USUAL_WORST = 15.0  # of a word with a single take
-_CLEAR = 30.0  # dB above the noise: more makes no difference
-_WEIGHTS = np.array([-5.29, -4.40, -3.06, 0.12])  # fitted to 16 synthetic voices of five languages, clean and in noise
+_USUAL_WORST = 15.0  # for a word with a single take
+_CLEAR = 30.0  # dB above the noise: a higher level makes no difference
+_WEIGHTS = np.array([-5.29, -4.40, -3.06, 0.12])  # fitted to 16 synthetic voices in five languages, clean and in noise
 _OFFSET = -9.5
-_OFFSET_FAR = -11.5  # reverberation blurs the differences between words: a take in a room needs more
+_OFFSET_FAR = -11.5  # reverberation blurs differences between words, so these takes need to fit better
 
 
 def _confidence(figures: NDArray[np.float64], *, is_far: bool) -> float:

@@ -1,9 +1,9 @@
-"""Takes as a room would return them, so that words enrolled close to the microphone are recognised from farther away.
+"""Takes as they would sound in a room, which recognises words enrolled near the microphone from farther away.
 
-A room adds the sound of before to that of now. In each band its power fades exponentially, by 60 dB in the
-reverberation time (Polack's model of late reverberation), and the energy of all of it is a share of that of the direct
-sound. So the powers of a take are enough: they are convolved with that decay, as Hirsch and Finster adapt models of
-words to rooms.
+A room adds earlier sound to the current sound. In each band its power decays exponentially, by 60 dB in the
+reverberation time (Polack's model of late reverberation), and its total energy is a fraction of the energy of the
+direct sound. The powers of a take are therefore sufficient: they are convolved with this decay, in the way that Hirsch
+and Finster adapt models of words to rooms.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from linkwright.speech.enrolled.words import Take
 from linkwright.speech.sound.samples import RATE
 from linkwright.speech.sound.spectra import HOP
 
-_FADED = 30.0  # dB: how far the echo fades before a take ends
+_FADED = 30.0  # dB: attenuation of the reverberation at which a take ends
 
 
 @dataclass(frozen=True, slots=True)
 class Room:
-    """A room, and how far away the microphone is.
+    """A room and the distance of the microphone in it.
 
     Attributes:
-        reverberation: s in which sound fades by 60 dB.
-        direct: energy of the direct sound relative to that of the reverberation, in dB.
+        reverberation: the time in s in which sound decays by 60 dB.
+        direct: the energy of the direct sound relative to the reverberation, in dB.
     """
 
     reverberation: float
     direct: float
 
     def returns(self, take: Take) -> Take:
-        """A take as it would be in this room, with the time in which it fades away."""
+        """Return a take as it would sound in this room, extended by the decay."""
         frame = HOP / RATE
         kept = 10.0 ** (-6.0 * frame / self.reverberation)
         faded = round(_FADED / 60.0 * self.reverberation / frame)

@@ -1,9 +1,9 @@
-"""The file of enrolled words: spectra of their recordings, from which no voice can be played back.
+"""The file of enrolled words: spectra of their recordings, from which the voice cannot be played back.
 
-The file is JSON, version 1: ``{"format": "linkwright enrolled words", "version": 1, "words": [...]}``, each word
-``{"name": "stop", "takes": [{"frames": BASE64, "noise": BASE64}, ...]}``. ``frames`` are the bands of
-`linkwright.speech.sound.spectra` from the first to the last frame of the word, frame after frame, a byte each: the
-level in steps of 0.5 dB above a power of 1. ``noise`` is the level of that take's background, a byte for each band.
+The file is JSON, version 1: ``{"format": "linkwright enrolled words", "version": 1, "words": [...]}``, with words of
+the form ``{"name": "stop", "takes": [{"frames": BASE64, "noise": BASE64}, ...]}``. ``frames`` contains the bands of
+`linkwright.speech.sound.spectra` from the first to the last frame of the word, frame after frame, one byte each: the
+level in steps of 0.5 dB above a power of 1. ``noise`` is the level of the take's background, one byte per band.
 """
 
 from __future__ import annotations
@@ -40,7 +40,10 @@ _MOST_FRAMES = 400
 
 
 def words_path() -> Path:
-    """The path of the user's file: ``XDG_CONFIG_HOME/linkwright/voice/words.json``, or the same below ``~/.config``."""
+    """Return the path of the user's file.
+
+    It is ``XDG_CONFIG_HOME/linkwright/voice/words.json``, or the same path below ``~/.config``.
+    """
     return config_folder() / "voice" / "words.json"
 
 
@@ -49,8 +52,8 @@ class Take:
     """One recording of a word.
 
     Attributes:
-        powers: of the frames of the word.
-        noise: power of the background, shape ``(BANDS,)``.
+        powers: the powers of the frames of the word.
+        noise: the power of the background, shape ``(BANDS,)``.
     """
 
     powers: Powers
@@ -70,27 +73,27 @@ class Words:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The words, by their phrases."""
+        """The phrases of the words."""
         return tuple(self._takes)
 
     def takes(self, name: str) -> tuple[Take, ...]:
-        """The takes of a word; empty for an unknown one."""
+        """Return the takes of a word; empty for an unknown word."""
         return self._takes.get(name, ())
 
     def add(self, name: str, take: Take) -> None:
-        """Add a take; the oldest of more than `MOST_TAKES` is removed."""
+        """Add a take; the oldest take is removed if there are more than `MOST_TAKES`."""
         self._takes[name] = (*self.takes(name), take)[-MOST_TAKES:]
 
     def remove(self, name: str) -> None:
-        """Remove a word and all of its takes; an unknown word is ignored."""
+        """Remove a word with all of its takes; an unknown word is ignored."""
         self._takes.pop(name, None)
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Words:
-        """Read the words of a file.
+        """Read the words from a file.
 
         Raises:
-            LinkwrightError: VOICE202 it cannot be read; VOICE203 it is not a file of words, or it is damaged.
+            LinkwrightError: VOICE202, it cannot be read; VOICE203, it is not a file of words, or it is damaged.
         """
         shown = display_path(Path(path))
         try:
@@ -110,7 +113,7 @@ class Words:
         return cls(_words(document, shown))
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the file whole or not at all; its folder is made if it is missing.
+        """Write the file atomically; its folder is created if it is missing.
 
         Raises:
             OSError: it cannot be written.
@@ -128,7 +131,7 @@ class Words:
 
 
 def name_problem(name: str) -> Phrase | None:
-    """The reason why a word cannot have a name; None for a valid one."""
+    """Return the reason why a word cannot have a name, or None if the name is valid."""
     if not name.strip():
         return phrase("it is empty")
     if len(name) > _LONGEST_NAME:
@@ -139,7 +142,7 @@ def name_problem(name: str) -> Phrase | None:
 
 
 def rounded(powers: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Powers rounded as in a file."""
+    """Return powers rounded as in a file."""
     return _decoded(_levels(powers)).reshape(powers.shape)
 
 

@@ -1,1 +1,1 @@
-"""Nodes of voice control: capturing sound, recognising commands, carrying them out."""
+"""Nodes of voice control, which capture sound, recognise commands, and execute them."""

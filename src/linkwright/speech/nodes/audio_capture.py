@@ -1,8 +1,8 @@
-"""audio_capture: publishes sound of a WAV file or of the microphone on audio_common's topics.
+"""audio_capture: publishes the sound of a WAV file or of the microphone on the topics of audio_common.
 
-Topics and parameters are those of the node of ros-drivers' audio_common: ``audio``, ``audio_stamped`` and, latched,
-``audio_info``. Deliberate differences: what is published is always 16 kHz, mono, S16LE, which is that node's default,
-and never MP3.
+Topics and parameters are those of the node in ros-drivers' audio_common: ``audio``, ``audio_stamped`` and, latched,
+``audio_info``. Deliberate difference: the format is always 16 kHz, mono, S16LE, which is that node's default, and never
+MP3.
 """
 
 from __future__ import annotations
@@ -31,13 +31,16 @@ _MOST_CHUNK = 10 * RATE
 class AudioCapture(SingleNode):
     """The running node.
 
-    Parameters: ``device``, a microphone by number or part of its name; ``file``, a WAV file to publish instead, paced
-    by the node's clock, starting with the first subscriber and followed by silence, or with ``loop`` by the file again;
-    ``chunk``, the samples of a message.
+    Parameters:
+
+    - ``device``: a microphone by number or part of its name.
+    - ``file``: a WAV file to publish instead, paced by the node's clock. It starts with the first subscriber and is
+      followed by silence, or with ``loop`` by the file again.
+    - ``chunk``: the number of samples in a message.
 
     Raises:
-        LinkwrightError: VOICE401 or VOICE402 the file cannot be read, VOICE412 or VOICE413 there is no microphone,
-            VOICE414 a parameter is invalid.
+        LinkwrightError: VOICE401 or VOICE402, the file cannot be read; VOICE412 or VOICE413, there is no microphone;
+            VOICE414, a parameter is invalid.
     """
 
     DEFAULT_NAME = "audio_capture_node"
@@ -130,7 +133,7 @@ class AudioCapture(SingleNode):
 
 
 class RobotAudioCapture(AudioCapture):
-    """The same with topics of our robots, below ``/audio``."""
+    """The same node with the topics of our robots, in the namespace ``/audio``."""
 
     DEFAULT_NAME = "audio_capture"
     NAMESPACE = NAMESPACE

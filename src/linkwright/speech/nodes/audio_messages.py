@@ -1,6 +1,6 @@
-"""Converting sound to messages of audio_common_msgs, and back from any of their formats.
+"""Convert sound to messages of audio_common_msgs, and from any of their formats.
 
-audio_capture publishes interleaved samples in one of GStreamer's formats (``S16LE``), which it publishes on
+audio_capture publishes interleaved samples in one of GStreamer's formats (``S16LE``), which it announces on
 ``audio_info``. Without an AudioInfo, the format is audio_capture's default: 16 kHz, mono, S16LE.
 """
 
@@ -36,11 +36,11 @@ _FORMAT = re.compile(r"[SU]8|[SU](16|24|32)(LE|BE)|F(32|64)(LE|BE)")
 
 @dataclass(frozen=True, slots=True)
 class AudioForm:
-    """The format of AudioData's bytes, as an AudioInfo declares it.
+    """The format of the bytes in AudioData, as an AudioInfo declares it.
 
     Attributes:
         channels: the number of channels, whose samples are interleaved.
-        rate: samples a second of each.
+        rate: the sample rate of each channel, in Hz.
         sample_format: GStreamer's name, such as ``S16LE``, ``U8`` or ``F32LE``.
     """
 
@@ -49,10 +49,10 @@ class AudioForm:
     sample_format: str = "S16LE"
 
     def __post_init__(self) -> None:
-        """Check that it can be read.
+        """Check that the format is supported.
 
         Raises:
-            LinkwrightError: VOICE411 sound of this form is not read.
+            LinkwrightError: VOICE411, sound in this format is not supported.
         """
         if not 1 <= self.channels <= _MOST_CHANNELS:
             raise _unreadable(phrase("it has {channels} channels", channels=self.channels))
@@ -63,10 +63,10 @@ class AudioForm:
 
     @classmethod
     def of(cls, info: Any) -> AudioForm:
-        """Read the format of an AudioInfo.
+        """Read the format from an AudioInfo.
 
         Raises:
-            LinkwrightError: VOICE411 sound of this form is not read, such as MP3.
+            LinkwrightError: VOICE411, sound in this format, such as MP3, is not supported.
         """
         if info.coding_format not in ("", WAVE):
             raise _unreadable(phrase("it is coded as '{coding}'", coding=info.coding_format))
@@ -80,7 +80,7 @@ def _unreadable(why: Phrase) -> LinkwrightError:
 
 
 class AudioReader:
-    """Converts a stream of AudioData to the samples of engines: mono, 16 bits, 16 kHz.
+    """Converts a stream of AudioData to samples for engines: mono, 16 bits, 16 kHz.
 
     Args:
         form: the format of the messages.
@@ -98,9 +98,9 @@ class AudioReader:
         return self._form
 
     def read(self, data: bytes | bytearray | memoryview | NDArray[np.uint8] | Sequence[int]) -> Samples:
-        """The samples of the next AudioData's field ``data``; a cut sample waits for its rest."""
+        """Return the samples of the next AudioData's field ``data``; an incomplete sample waits for its rest."""
         whole = self._rest + bytes(data)
-        if self._is_as_engines_take_it:  # ten times a second, all day
+        if self._is_as_engines_take_it:  # a fast path, because this runs ten times a second all day
             used = len(whole) // 2 * 2
             self._rest = whole[used:]
             return np.frombuffer(whole[:used], "<i2").astype(np.int16)
@@ -117,7 +117,7 @@ def _sample_bytes(form: AudioForm) -> int:
 
 
 def _values(data: bytes, form: AudioForm) -> NDArray[np.float64]:
-    """The samples in the stream's channels and rate, full scale at 1; bytes beyond the last whole one are left out."""
+    """Return samples in the stream's channels and rate, full scale at 1; an incomplete sample is left out."""
     size, kind = _sample_bytes(form), form.sample_format[0]
     order = ">" if form.sample_format.endswith("BE") else "<"
     data = data[: len(data) // size * size]
@@ -136,7 +136,7 @@ def _values(data: bytes, form: AudioForm) -> NDArray[np.float64]:
 
 
 def audio_info(form: AudioForm) -> Any:
-    """The AudioInfo of a format; its bit rate is in kbit/s, as audio_capture has it."""
+    """Return the AudioInfo of a format; its bit rate is in kbit/s, as in audio_capture."""
     info = get_message(AUDIO_INFO)()
     info.channels, info.sample_rate, info.sample_format = form.channels, form.rate, form.sample_format
     info.bitrate = form.channels * form.rate * 8 * _sample_bytes(form) // 1000
@@ -145,18 +145,18 @@ def audio_info(form: AudioForm) -> Any:
 
 
 def audio_data(data: bytes) -> Any:
-    """An AudioData of samples."""
+    """Return an AudioData with samples."""
     message = get_message(AUDIO)()
     message.data = np.frombuffer(data, np.uint8)
     return message
 
 
 def audio_stamped(data: bytes, stamp: Any) -> Any:
-    """An AudioDataStamped of samples.
+    """Return an AudioDataStamped with samples.
 
     Args:
-        data: the samples' bytes.
-        stamp: when the first of them was heard, a builtin_interfaces/Time.
+        data: the bytes of the samples.
+        stamp: the time of the first sample, a builtin_interfaces/Time.
     """
     message = get_message(AUDIO_STAMPED)()
     message.header.stamp = stamp

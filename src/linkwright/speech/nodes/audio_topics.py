@@ -1,4 +1,4 @@
-"""Publishing sound on the topics of audio_common's audio_capture."""
+"""Publish sound on the topics of audio_common's audio_capture."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NAMESPACE = "/audio"
 
 
 class AudioTopics:
-    """The topics ``audio``, ``audio_stamped`` and ``audio_info`` of an audio source: mono PCM of 16 bits at 16 kHz.
+    """The topics ``audio``, ``audio_stamped`` and ``audio_info`` of an audio source: mono 16-bit PCM at 16 kHz.
 
     Args:
         node: the node that publishes.
@@ -42,11 +42,11 @@ class AudioTopics:
         self._stamps.restart()
 
     def publish(self, samples: Samples, lost: float = 0.0) -> None:
-        """Publish the next block of the stream, whose last sample was recorded now or some time ago.
+        """Publish the next block of the stream, whose last sample was recorded now or earlier.
 
         Args:
             samples: the block.
-            lost: seconds that are missing in it or before it.
+            lost: seconds of sound that are missing in the block or before it.
         """
         data = samples.astype("<i2").tobytes()
         now = self._node.get_clock().now()

@@ -1,4 +1,4 @@
-"""The dialogue: understanding, asking back, carrying out and answering commands."""
+"""The dialogue: understand commands, ask for confirmation, execute them, and answer."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ class Conversation:
     Args:
         node: the node.
         commands: the commands.
-        language: the language of answers, until the user speaks another.
+        language: the language of answers until the user speaks another language.
         driver: moves the robot.
         requests: calls services and actions of other nodes.
-        patience: the timeout of a question, s.
+        patience: the timeout of a question, in s.
         report_command: called with each command that is executed: its intent, and ``slot=value`` for each filled slot,
             in m, rad, s and m/s.
         respond: called with each answer of the robot.
@@ -66,11 +66,11 @@ class Conversation:
 
     @property
     def is_busy(self) -> bool:
-        """Whether something is active that a stop would end."""
+        """Whether there is an activity that a stop would end."""
         return self._driver.is_moving or self._requests.is_active
 
     def handle(self, text: str) -> bool:
-        """Execute the command of a text, or ask back; return whether it was understood."""
+        """Execute the command in a text, or ask for confirmation; return whether the text was understood."""
         answer = self._commands.answer(text) if self._asked is not None else None
         if self._asked is not None and answer is not None:
             understood, asked_for = self._asked
@@ -112,21 +112,21 @@ class Conversation:
             self._respond(chosen(stop.response, self._language) or text)
 
     def rest(self, why: Phrase) -> None:
-        """Stop driving because the speaker is lost."""
+        """Stop driving because the source of the commands is lost, and say why."""
         self._driver.stop()
         self.answer(why)
 
     def answer(self, text: Phrase) -> None:
-        """Answer in the language that was spoken last."""
+        """Answer in the language that the user spoke last."""
         self._respond(localized(text, language_of(self._language) or ENGLISH))
 
     def drive_ended(self, ending: Ending) -> None:
-        """Handle the end of a drive: done, or out of time."""
+        """Handle the end of a drive, which has finished or timed out."""
         if ending == "stuck":
             self.answer(phrase("I am stuck, and stop"))
 
     def goal_ended(self, reached: bool, reason: str) -> None:
-        """Handle the end of a goal: reached, or not."""
+        """Handle the end of a goal, which was reached or has failed."""
         if reached:
             self.answer(phrase("I am done"))
         elif reason:
@@ -154,7 +154,7 @@ class Conversation:
             self._respond(str(filled(chosen(found.command.response, self._language) or text, values)))
 
     def _done(self, found: Understood) -> Phrase | None:
-        """Carry out an action; None, or the reason why it cannot be done."""
+        """Execute an action; return None, or the reason why it cannot be executed."""
         action, values = found.command.action, found.values
         if found.command.moves:
             self._make_way(found)
@@ -180,12 +180,12 @@ class Conversation:
         return None
 
     def _make_way(self, found: Understood) -> None:
-        """End the motion that another one replaces."""
+        """End the motion that another one replaces, and notify other nodes."""
         action = found.command.action
         self._requests.leave(but=action.action if isinstance(action, GoTo) else "")
         if not isinstance(action, Drive) and self._driver.is_moving:
             self._driver.stop()
-        if not isinstance(action, Publish):  # its subscriber may start on it
+        if not isinstance(action, Publish):  # the subscriber of the message may start a motion
             self._notify_others()
 
     def _notify_others(self) -> None:

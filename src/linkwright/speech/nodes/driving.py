@@ -1,4 +1,4 @@
-"""Driving by commands: endlessly, for a time, a distance or an angle, by odometry where there is any."""
+"""Drive by commands: without an end, or for a time, a distance or an angle, measured by odometry if available."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ Ending: TypeAlias = Literal["done", "stuck"]
 class Driver:
     """Publishes velocities.
 
-    A distance or an angle is measured by ``odom`` (nav_msgs/msg/Odometry) where it is heard, else it is the speed times
-    the time. Time is the node's, which may be simulated.
+    A distance or an angle is measured by ``odom`` (nav_msgs/msg/Odometry) if it is received; otherwise it is the speed
+    multiplied by the time. Time is the node's time, which may be simulated.
 
     Args:
-        node: publishes.
-        topic: where.
-        speed: m/s.
-        turn_speed: rad/s.
-        ended: called when a way is done, or takes far too long.
+        node: the node that publishes.
+        topic: the topic of the velocities.
+        speed: the speed in m/s.
+        turn_speed: the turning speed in rad/s.
+        ended: called when a drive is finished or takes far too long.
     """
 
     def __init__(
@@ -54,16 +54,16 @@ class Driver:
 
     @property
     def is_moving(self) -> bool:
-        """Whether it drives."""
+        """Whether the robot is driving."""
         return self._drive is not None
 
     @property
     def is_endless(self) -> bool:
-        """Whether it drives without an end."""
+        """Whether the robot is driving without an end."""
         return self._drive is not None and self._left is None
 
     def begin(self, drive: Drive, values: Values) -> None:
-        """Start to drive; replaces the previous command.
+        """Start a drive, which replaces the previous one.
 
         Args:
             drive: the command.
@@ -81,19 +81,19 @@ class Driver:
         self._timer.reset()
 
     def stop(self) -> None:
-        """Stop; a zero velocity is published even where nothing moves."""
+        """Stop the robot; a zero velocity is published even if it does not move."""
         self._drive = None
         self._timer.cancel()
         self._topic.review(may_change=False)
         self._topic.stop()
 
     def scale(self, factor: float) -> float:
-        """Scale the speed, within bounds; returns the factor of all speeds from now on."""
+        """Scale the speed within bounds; return the factor that now applies to all speeds."""
         self._scale = min(max(self._scale * factor, _SCALES[0]), _SCALES[1])
         return self._scale
 
     def set_speed(self, speed: float) -> float:
-        """Set the speed in m/s; returns the one within the bounds."""
+        """Set the speed in m/s; return the speed within the bounds."""
         self.scale(speed / (self._usual_speed * self._scale))
         return self._usual_speed * self._scale
 
@@ -127,18 +127,18 @@ class Driver:
         self._ended(ending)
 
     def _rate(self) -> float:
-        """The rate at which the distance or angle is covered."""
+        """Return the rate at which the distance or angle is covered."""
         assert self._drive is not None, "it drives"
         if self._kind == "angle":
             return abs(self._drive.turn) * self._turn_speed * self._scale
         return hypot(self._drive.x, self._drive.y) * self._speed * self._scale
 
     def _expected(self) -> float:
-        """The expected duration in seconds of a distance or angle."""
+        """Return the expected duration in seconds of a distance or angle."""
         return self._left / self._rate() if self._left is not None and self._kind != "duration" else 0.0
 
     def _publish(self, part: float) -> None:
-        """Publish the velocity scaled by a factor."""
+        """Publish the velocity of the drive, scaled by a factor."""
         assert self._drive is not None, "it drives"
         self._part = part
         speed, turn = part * self._speed * self._scale, part * self._turn_speed * self._scale

@@ -1,4 +1,4 @@
-"""Running an engine of speech in a thread of its own."""
+"""Run a speech engine in a separate thread."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _Found: TypeAlias = Heard | Diagnostic | LinkwrightError | None
 """Results of the thread; None: all sound up to the end of the utterance was processed."""
 
 _MOST_GAPS = 100
-_NEAR = 0.2  # s: engines do not know to the frame where a word begins
+_NEAR = 0.2  # s: engines do not know the exact start of a word
 
 
 class Listener:
@@ -28,10 +28,10 @@ class Listener:
 
     Args:
         node: the node, which runs `heard` and `failed` as callbacks.
-        make: creates the engine, in the thread; it may take seconds.
+        make: creates the engine in the thread, which may take seconds.
         heard: called with each result.
-        finished: called when all speech before `finish` is recognized.
-        warn: called with the reason why an engine hears nothing, whenever that changes.
+        finished: called when all speech before `finish` was processed.
+        warn: called with the reason why an engine does not recognise anything, whenever it changes.
         failed: called with the error that ended the engine.
     """
 
@@ -46,7 +46,7 @@ class Listener:
     ) -> None:
         self._make, self._heard, self._finished, self._warn, self._failed = make, heard, finished, warn, failed
         self._handed = 0
-        self._gaps: deque[tuple[float, float]] = deque(maxlen=_MOST_GAPS)  # where, and how long
+        self._gaps: deque[tuple[float, float]] = deque(maxlen=_MOST_GAPS)  # position and length of each gap
         self._sound: SimpleQueue[Samples | bool | None] = SimpleQueue()
         self._found: deque[_Found] = deque()
         self._ready = node.create_guard_condition(self._deliver)
@@ -54,7 +54,10 @@ class Listener:
         self._thread.start()
 
     def hear(self, samples: Samples) -> bool:
-        """Pass a block of sound; False if the engine lags behind and the block was dropped."""
+        """Pass a block of sound to the engine.
+
+        Returns False if the engine lags behind and the block was dropped.
+        """
         if self._sound.qsize() >= _MOST_WAITING:
             self.note_gap(samples.size / RATE)
             return False
@@ -67,7 +70,7 @@ class Listener:
         self._gaps.append((self._handed / RATE, seconds))
 
     def lost_in(self, heard: Heard) -> float:
-        """The seconds of sound that were missing in a result, or just before or after it."""
+        """Return the seconds of sound that were missing in a result, or just before or after it."""
         return sum(seconds for at, seconds in self._gaps if heard.start - _NEAR <= at <= heard.end + _NEAR)
 
     def finish(self) -> None:

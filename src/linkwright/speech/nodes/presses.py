@@ -1,4 +1,4 @@
-"""Presses of the talk button: one without any understood command is answered, once, when its sound was processed."""
+"""Presses of the talk button: a press without an understood command is answered once its sound was processed."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class _Press:
     """The results of one press.
 
     Attributes:
-        is_settled: whether a command of it was executed or answered.
-        has_gaps: whether sound of it was lost.
+        is_settled: whether a command of this press was executed or answered.
+        has_gaps: whether some of its sound was lost.
         unknown: the last recognized text that is not a command.
     """
 
@@ -30,14 +30,14 @@ class _Press:
 
 
 class Presses:
-    """Presses whose sound the engine still processes. It lags behind, so the next may have begun.
+    """Presses whose sound the engine is still processing; the next press may have begun before that.
 
     Args:
-        can_enrol: whether words are those that the user enrols in pages, and so can be enrolled where they are said.
+        can_enrol: whether the words are enrolled in pages, so the user can enrol words that were not understood.
 
     Attributes:
-        proposes_enrolling: whether the answer to the last press was that proposal. The next press, or a command, takes
-            it back.
+        proposes_enrolling: whether the answer to the last press proposed enrolling. The next press, or a command,
+            withdraws the proposal.
     """
 
     def __init__(self, *, can_enrol: bool = False) -> None:
@@ -52,14 +52,14 @@ class Presses:
         self._presses.append(_Press())
 
     def settle(self) -> None:
-        """Record that something was done or answered."""
+        """Record that a command was executed or answered."""
         self._missed = 0
         self.proposes_enrolling = False
         if self._presses:
             self._presses[0].is_settled = True
 
     def note_gap(self) -> None:
-        """Record lost sound since the last press."""
+        """Record that sound was lost since the last press."""
         if self._presses:
             self._presses[-1].has_gaps = True
 
@@ -69,7 +69,7 @@ class Presses:
             self._presses[0].unknown = heard
 
     def end(self) -> Phrase | None:
-        """End the oldest press, whose sound was processed; the answer to it, if any."""
+        """End the oldest press, whose sound was processed, and return the answer to it, or None."""
         if not self._presses:
             return None
         press = self._presses.popleft()

@@ -1,4 +1,4 @@
-"""Requests of commands to other nodes: goals of actions, services, messages, launch files."""
+"""Requests of commands to other nodes: action goals, service calls, messages, launch files."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Goals:
         node: the node that sends them.
         type_name: the type of the action.
         name: the name of the action.
-        ended: called with whether the goal was reached, and the reason if the server gives one; not called for a goal
+        ended: called with whether the goal was reached, and the server's reason if it gives one; not called for a goal
             that was canceled or replaced.
     """
 
@@ -45,17 +45,17 @@ class Goals:
 
     @property
     def is_served(self) -> bool:
-        """Whether there is a server."""
+        """Whether there is an action server."""
         return self._client.server_is_ready()
 
     def send(self, goal: Any) -> None:
-        """Send a goal in place of the one before."""
+        """Send a goal, which replaces the previous one."""
         self._number += 1
         self.is_active = True
         self._client.send_goal_async(goal).add_done_callback(partial(self._accepted, self._number))
 
     def leave(self) -> None:
-        """Cancel our goal."""
+        """Cancel the goal that was sent by this client."""
         handle, self._handle = self._handle, None
         self._number += 1
         if self.is_active and handle is not None:
@@ -90,7 +90,7 @@ class Goals:
 
 
 def pose_goal(node: Node, place: Place) -> Any:
-    """A goal of navigate_to_pose for a place."""
+    """Return a goal of navigate_to_pose for a place."""
     goal = get_action(NAVIGATE).Goal()
     goal.pose.header.frame_id = place.frame
     goal.pose.header.stamp = node.get_clock().now().to_msg()
@@ -117,11 +117,11 @@ class Requests:
 
     @property
     def is_active(self) -> bool:
-        """Whether a goal or a launch file of ours is active."""
+        """Whether a goal or a launch file of these requests is active."""
         return self._is_launched or any(goals.is_active for goals in self._goals.values())
 
     def prepare(self, action: object) -> None:
-        """Create the clients of an action that take a while to connect.
+        """Create the clients for an action that take some time to connect.
 
         A service gets its client when it is called, so that nothing waits for a service that only some commands need.
         """
@@ -134,7 +134,7 @@ class Requests:
             self._publishers[action.topic] = self._node.create_publisher(kind, action.topic, _DEPTH)
 
     def send_pose(self, action: str, place: Place) -> bool:
-        """Navigate to a place; whether there is a server."""
+        """Send a goal to navigate to a place; return whether there is a server."""
         goals = self._goals[action]
         if goals.is_served:
             goals.send(pose_goal(self._node, place))
@@ -142,7 +142,7 @@ class Requests:
         return False
 
     def send_goal(self, action: SendGoal, values: Values) -> bool:
-        """Send a goal; whether there is a server."""
+        """Send a goal; return whether there is a server."""
         goals = self._goals[action.action]
         if not goals.is_served:
             return False
@@ -152,7 +152,7 @@ class Requests:
         return True
 
     def call(self, action: CallService, values: Values) -> bool:
-        """Call a service; whether there is a server."""
+        """Call a service; return whether there is a server."""
         if not self._is_served(action):
             return False
         client = self._node.create_client(get_service(action.type_name), action.name)
@@ -169,27 +169,30 @@ class Requests:
         publisher.publish(message)
 
     def launch(self, action: Launch, values: Values) -> None:
-        """Start a launch file in a process of its own, in place of the one before."""
+        """Start a launch file in a separate process, which replaces the previous one."""
         self._end_launch()
         words = [f"{name}:={_word(value)}" for name, value in filled(action.arguments, values).items()]
         command = python_command(["-m", "linkwright", "launch", action.package, action.file, *words])
         self._launched = subprocess.Popen(command, stdin=subprocess.DEVNULL)  # noqa: S603 - fixed words, no shell
 
     def leave(self, but: str = "") -> None:
-        """Cancel our goals, but those of one action, and end our launch file."""
+        """Cancel the goals of these requests, except those of the action `but`, and end the launch file."""
         for name, goals in self._goals.items():
             if name != but:
                 goals.leave()
         self._end_launch()
 
     def cancel_all(self) -> None:
-        """End our launch file, and cancel all goals of the actions of commands, including those of other clients."""
+        """End the launch file, and cancel all goals of the commands' actions.
+
+        Goals of other clients are included.
+        """
         for goals in self._goals.values():
             goals.cancel_all()
         self._end_launch()
 
     def close(self) -> None:
-        """End everything, and wait for it."""
+        """End all goals and the launch file, and wait for their end."""
         self.leave()
         if self._ending is not None:
             self._ending.join()
@@ -199,7 +202,7 @@ class Requests:
         return self._launched is not None and self._launched.poll() is None
 
     def _end_launch(self) -> None:
-        """Interrupt the launch file without waiting for it."""
+        """Interrupt the launch file without waiting for its end."""
         launched, self._launched = self._launched, None
         if launched is None or launched.poll() is not None:
             return
@@ -226,7 +229,7 @@ class Requests:
 
 
 def _word(value: Any) -> str:
-    """The text of a launch argument's value."""
+    """Return the text of a launch argument's value."""
     return str(value).lower() if isinstance(value, bool) else shown(value)
 
 

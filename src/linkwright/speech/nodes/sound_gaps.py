@@ -1,7 +1,7 @@
-"""Detecting missing sound by stamps of blocks.
+"""Detect missing sound from the stamps of blocks.
 
-AudioDataStamped has no number that counts messages. A source of ours stamps each block with the end of the one before,
-and follows the clock slowly, so that a jump ahead means that sound was lost on the way.
+AudioDataStamped does not number its messages. Linkwright's sources stamp each block with the end of the previous one,
+and follow the clock slowly. A jump ahead therefore means that sound was lost in transit.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ _MOST_BEHIND = 10 * NANOSECONDS_PER_SECOND
 """A suspended source publishes its backlog late; one that is later than this has restarted."""
 
 _MOST_AHEAD = NANOSECONDS_PER_SECOND
-_DRIFT = 0.01  # the share of a block by which stamps approach the clock with each block
+_DRIFT = 0.01  # the fraction of a block by which stamps approach the clock with each block
 
 _STEADY = 5 * 10**6
-_STEADY_BLOCKS = 3  # that follow each other without a jump: then the publisher counts samples
+_STEADY_BLOCKS = 3  # blocks without a jump, after which the publisher is taken to count samples
 _JUMP = 50 * 10**6
 
 
@@ -27,17 +27,17 @@ class SampleStamps:
         self._next: int | None = None
 
     def restart(self) -> None:
-        """Start a new stream, unrelated to the one before."""
+        """Start a new stream, unrelated to the previous one."""
         self._next = None
 
     def stamp(self, samples: int, now: int, lost: float = 0.0) -> int:
-        """The stamp of a block's first sample.
+        """Return the stamp of a block's first sample.
 
         Args:
-            samples: how many it has.
+            samples: the number of samples in the block.
             now: the time when its last sample was recorded, or later.
-            lost: seconds that are missing in it or before it: the stamp jumps over them, but over no more than a second
-                that has not passed.
+            lost: seconds of sound missing in the block or before it: the stamp jumps over them, but at most one second
+                into the future.
         """
         length = samples * NANOSECONDS_PER_SECOND // RATE
         began = max(0, now - length)
@@ -50,30 +50,30 @@ class SampleStamps:
 
 
 class SoundGaps:
-    """Detects missing sound before a block from stamps, if its publisher counts samples."""
+    """Detects missing sound before a block from stamps, if the publisher counts samples."""
 
     def __init__(self) -> None:
         self._next: int | None = None
         self._steady = 0
-        self._small = 0  # jumps too small to be reported on their own
+        self._small = 0  # sum of jumps that are too small to report individually
 
     def restart(self) -> None:
-        """Start a new stream, whose publisher is taken to stamp it in the same way."""
+        """Start a new stream whose publisher is assumed to stamp it in the same way."""
         self._next = None
         self._small = 0
 
     def missing(self, stamp: int, samples: int) -> float:
-        """The seconds of sound missing before a block.
+        """Return the seconds of sound that are missing before a block.
 
         Args:
-            stamp: of its first sample, nanoseconds.
-            samples: how many it has, at 16 kHz.
+            stamp: the stamp of its first sample, in nanoseconds.
+            samples: the number of samples, at 16 kHz.
         """
         length = samples * NANOSECONDS_PER_SECOND // RATE
         jump = 0 if self._next is None else stamp - self._next
         self._next = stamp + length
         if jump <= _STEADY:
-            # Only a publisher that stamps blocks on arrival is ever early after it was late.
+            # Only the stamps of a publisher that uses the arrival times of blocks can be early after they were late.
             self._steady, self._small = (self._steady + 1, self._small) if jump >= -_STEADY else (0, 0)
             return 0.0
         if self._steady < _STEADY_BLOCKS:

@@ -1,7 +1,8 @@
-"""voice_commander of my_robot_voice: turns spoken commands into velocities, goals, services and messages.
+"""voice_commander of my_robot_voice: turns spoken commands into velocities, goals, service calls and messages.
 
-An engine of `linkwright.speech` recognises the sound on ``audio/audio_stamped``, and the file of commands defines its
-meaning. Sound counts while ``voice/listen`` reports a held button, or always with ``open_listening``.
+An engine of `linkwright.speech` recognises the sound on ``audio/audio_stamped``, and the command file defines the
+meaning of the words. Sound counts while ``voice/listen`` reports that a button is held, or always with
+``open_listening``.
 """
 
 from __future__ import annotations
@@ -51,16 +52,24 @@ _NEARLY = 0.5
 class VoiceCommander(SingleNode):
     """The running node.
 
-    Parameters: ``engine`` (empty: only texts are accepted), ``language``, ``model``, ``words_file`` (of the engine
-    ``enrolled``), ``commands_file``, ``confidence`` (0 to 1: less certain commands are not executed),
-    ``open_listening``, ``speed`` (m/s), ``turn_speed`` (rad/s), ``silence_timeout`` (s of silence after which an
-    endless drive stops), ``confirmation_timeout`` (s), ``stamped`` (not set: follows the subscribers of ``cmd_vel``),
-    ``frame_id``.
+    Parameters:
 
-    A stop is executed at once, on a partial and uncertain result, while a button is held or the robot moves.
+    - ``engine``: the engine; if empty, only texts are accepted.
+    - ``language``, ``model``: the language and the model of the engine.
+    - ``words_file``: the file of the engine ``enrolled``.
+    - ``commands_file``: the command file.
+    - ``confidence``: 0 to 1; less certain commands are not executed.
+    - ``open_listening``: whether to listen without a held button.
+    - ``speed`` in m/s, ``turn_speed`` in rad/s.
+    - ``silence_timeout``: seconds of silence after which an endless drive stops.
+    - ``confirmation_timeout``: seconds to wait for a confirmation.
+    - ``stamped``: whether velocities are stamped; if not set, this follows the subscribers of ``cmd_vel``.
+    - ``frame_id``: the frame of stamped velocities.
+
+    A stop is executed immediately, even on a partial and uncertain result, while a button is held or the robot moves.
 
     Raises:
-        LinkwrightError: VOICE301 to VOICE306, the file of commands; NODE433, a parameter cannot have its value.
+        LinkwrightError: VOICE301 to VOICE306, the command file is invalid; NODE433, a parameter has an invalid value.
     """
 
     DEFAULT_NAME = "voice_commander"
@@ -77,7 +86,7 @@ class VoiceCommander(SingleNode):
             self._start()
 
     def close(self) -> None:
-        """Stop the robot, and close."""
+        """Stop the robot, and close the node."""
         if self._listener is not None:
             self._listener.close()
         if self._conversation.is_busy:
@@ -126,10 +135,11 @@ class VoiceCommander(SingleNode):
         )
         self._commands = commands
         self._listen_to_texts()
-        # Not simulated time, which may be paused.
+        # Use the steady clock: simulated time may be paused, and a pause must not hold back the silence check.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         self._silence = node.create_timer(silence, self._silent, clock=clock, autostart=False)
-        # Pages write enrolled words to the default file. A node that always listens ignores what is not a command.
+        # Pages write enrolled words to the default file. A node that always listens ignores speech that is not a
+        # command.
         self._presses = Presses(can_enrol=engine == "enrolled" and not words and not self._open)
         self._proposal: Publisher[Any] = node.create_publisher(_BOOL, "voice/propose_enrolling", _DEPTH)
         if engine:
@@ -201,7 +211,7 @@ class VoiceCommander(SingleNode):
         if self._held and not held and self._listener is not None:
             self._listener.finish()
         if held:
-            self._gaps.restart()  # nothing is published while no button is held
+            self._gaps.restart()  # the source does not publish while no button is held
         if held and not self._held:
             self._presses.begin()
             self._publish_proposal()
@@ -215,7 +225,7 @@ class VoiceCommander(SingleNode):
             return
         self._publish_text["text"](heard.text)
         stopped, self._stopped = self._stopped, False
-        # After a stop nothing else of the utterance is done, but a command in which the word is: "go to the stop sign".
+        # After a stop, only a command that contains the stop word is executed in this utterance: "go to the stop sign".
         if stopped and not (self._commands.is_stop(heard.text) and self._commands.is_other(heard.text)):
             return
         if self._is_done_or_answered(heard):
@@ -236,29 +246,29 @@ class VoiceCommander(SingleNode):
         elif heard.text and not is_certain and self._is_addressed and heard.confidence >= _NEARLY * self._confidence:
             self._conversation.answer(phrase("I am not sure that I heard '{text}': please repeat", text=heard.text))
         else:
-            return bool(heard.text) and is_certain  # it was not understood, and that was answered
+            return bool(heard.text) and is_certain  # speech was not understood, and this was answered
         return True
 
     def _press_heard(self) -> None:
-        """Handle the end of a press of the button whose sound was processed."""
+        """Handle the end of a button press whose sound was processed."""
         answer = self._presses.end()
         self._publish_proposal()
         if answer is not None and not self._open:
             self._conversation.answer(answer)
 
     def _publish_proposal(self) -> None:
-        """Publish whether enrolling is proposed, where that has changed."""
+        """Publish whether enrolling is proposed, if this has changed."""
         if self._presses.proposes_enrolling != self._proposed:
             self._proposed = self._presses.proposes_enrolling
             self._proposal.publish(self._proposal.msg_type(data=self._proposed))
 
     @property
     def _is_addressed(self) -> bool:
-        """Whether a result was addressed to the robot; it arrives after the button is released."""
+        """Whether a result was addressed to the robot; results may arrive after the button was released."""
         return self._held or not self._open
 
     def _stop_early(self, text: str) -> None:
-        """Stop by a partial result, unless that word belongs to another command."""
+        """Stop on a partial result, unless the stop word belongs to another command."""
         if not self._commands.is_stop(text) or self._commands.is_other(text):
             return
         if self._conversation.is_busy or (self._held and not self._stopped):
@@ -291,7 +301,7 @@ class VoiceCommander(SingleNode):
     # --- recognized text -----------------------------------------------------------------------------------------
 
     def _execute(self, text: str, *, by_voice: bool) -> bool:
-        """Carry out the command of a text; whether it was understood."""
+        """Execute the command in a text; return whether it was understood."""
         if not by_voice:
             self._publish_text["text"](text)
         understood = self._conversation.handle(text)

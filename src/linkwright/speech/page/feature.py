@@ -1,4 +1,4 @@
-"""Publishes the sound of pages' microphones as audio_common_msgs, and sends them recognized commands and answers."""
+"""Publish the sound of pages' microphones as audio_common_msgs, and send them recognized commands and answers."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _LONGEST_TEXT = 500
 class VoiceFeature(PageFeature):
     """Publishes the speech of one page at a time, and sends recognized commands to the pages that watch.
 
-    The topics of sound exist while a page has its microphone open, the others while a page watches.
+    The sound topics exist while a page has its microphone open, the other topics while a page watches.
     """
 
     def __init__(self, viewer: FeatureHost) -> None:
@@ -67,11 +67,14 @@ class VoiceFeature(PageFeature):
         self._words = WordBook()
 
     def opening(self) -> list[ServerMessage]:
-        """Return whether there is a node to talk to; others may answer too, such as one that seeks objects."""
+        """Return whether there is a node to talk to.
+
+        Other nodes may answer, too, such as an object search node.
+        """
         return [VoiceNode(self._node.count_publishers(_TOPICS["command"]) > 0)]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Publish sound or a text, set the talking page, or start or stop sending to a page."""
+        """Publish sound or a text, set the talking page, or start or stop sending messages to a page."""
         if isinstance(message, SoundBlock):
             self._hear(page, message)
         elif isinstance(message, Talk):
@@ -124,7 +127,7 @@ class VoiceFeature(PageFeature):
         self._review()
 
     def _pass_on(self) -> None:
-        """Publish whether a button is held; another page's press starts a new command."""
+        """Publish whether a button is held; a press in another page starts a new command."""
         holder = self._floor.holder
         if holder is self._holder or self._listen is None:
             return
@@ -139,9 +142,10 @@ class VoiceFeature(PageFeature):
         publisher.publish(publisher.msg_type(data=held))
 
     def _listeners_changed(self, event: QoSPublisherMatchedInfo) -> None:
-        """Publish for subscribers that appear after the button was pressed: other processes match with some delay.
+        """Publish the button state again for subscribers that appear after the button was pressed.
 
-        The topic is not latched, because manual publishers do not latch it either.
+        Other processes match with some delay. The topic is not latched, because manual publishers do not latch it
+        either.
         """
         if event.current_count > self._receivers and self._holder is not None and self._listen is not None:
             self._publish_held(self._listen, held=True)
@@ -198,7 +202,7 @@ class VoiceFeature(PageFeature):
         self._review()
 
     def _review(self) -> None:
-        """Send the pages that watch the changed state."""
+        """Send the changed state to the pages that watch."""
         if not self._watchers:
             return
         graph = self._node.graph

@@ -1,4 +1,4 @@
-"""The page that talks among several, and the bounds of its sound."""
+"""The page that currently talks among several, and the limits of its sound."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _CLOCK_TOLERANCE = 1.05
 
 
 class Floor:
-    """The pages that have a microphone open. The one that holds the button longest talks."""
+    """The pages that have a microphone open; the page that has held its button longest talks."""
 
     def __init__(self) -> None:
         self._modes: dict[Page, TalkMode] = {}
@@ -24,7 +24,7 @@ class Floor:
         return bool(self._modes)
 
     def set(self, page: Page, mode: TalkMode) -> None:
-        """Set a page's mode of its microphone; it is queued after those with the same mode."""
+        """Set the microphone mode of a page, which is queued after pages with the same mode."""
         if self._modes.get(page) == mode:
             return
         self._modes.pop(page, None)
@@ -51,7 +51,7 @@ class SoundBudget:
     The two are counted separately because lost sound may be sent as silence.
 
     Args:
-        clock: seconds.
+        clock: returns the time in seconds.
     """
 
     def __init__(self, clock: Callable[[], float]) -> None:
@@ -60,7 +60,7 @@ class SoundBudget:
         self._sound = self._lost = _LEAD
 
     def spend(self, sound: float, lost: float) -> bool:
-        """Return whether so many seconds are within the bounds."""
+        """Return whether a number of seconds of sound and of loss is within the limits, and count it."""
         now = self._clock()
         gained = (now - self._at) * _CLOCK_TOLERANCE
         self._at = now

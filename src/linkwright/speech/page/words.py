@@ -1,4 +1,4 @@
-"""Enrolling words: a page's recording becomes an example of a word in the user's file."""
+"""Enrol words: a page's recording becomes an example of a word in the user's file."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Recording:
     """A word that is being recorded.
 
     Args:
-        name: the word.
+        name: the name of the word.
     """
 
     def __init__(self, name: str) -> None:
@@ -44,19 +44,22 @@ class Recording:
         self._length = 0
 
     def add(self, samples: Samples) -> None:
-        """Append the next block; a recording that is too long is cut off at the end."""
+        """Append the next block; a recording that is too long is cut off at its end."""
         if self._length < _LONGEST:
             self._blocks.append(samples)
             self._length += samples.size
 
     @property
     def samples(self) -> Samples:
-        """All samples."""
+        """All recorded samples."""
         return np.concatenate([np.zeros(0, np.int16), *self._blocks])
 
 
 class WordBook:
-    """The user's file of words, and its pages. It is read again before each change, because other programs write it."""
+    """The user's file of words and the pages that show it.
+
+    The file is read again before each change, because other programs write it.
+    """
 
     def __init__(self) -> None:
         self._watchers: set[Page] = set()
@@ -64,7 +67,7 @@ class WordBook:
         self._judged = 0
 
     def receive(self, page: Page, message: object) -> None:
-        """Carry out a request."""
+        """Carry out the request of a page."""
         match message:
             case WatchWords(watched=True):
                 self._watchers.add(page)
@@ -85,14 +88,14 @@ class WordBook:
                 self._send_file(page)
 
     def hear(self, page: Page, samples: Samples) -> bool:
-        """Add sound of a page that records a word; returns whether it does."""
+        """Add sound of a page that is recording a word; return whether the page is recording."""
         recording = self._recordings.get(page)
         if recording is not None:
             recording.add(samples)
         return recording is not None
 
     def page_closed(self, page: Page) -> None:
-        """Forget a page, and its recording."""
+        """Remove a page and its recording."""
         self._watchers.discard(page)
         self._recordings.pop(page, None)
 
@@ -118,7 +121,7 @@ class WordBook:
             )
 
     def _change(self, page: Page, change: Callable[[Words], object]) -> bool:
-        """Change the file, and send it to all pages; or send the page the reason why that failed."""
+        """Change the file and send it to all pages; if this fails, send the page the reason."""
         try:
             words = _read()
             change(words)
@@ -160,7 +163,7 @@ def _read() -> Words:
 
 
 def _rename(words: Words, name: str, new_name: str) -> None:
-    """Rename a word, which keeps its takes."""
+    """Rename a word, keeping its takes."""
     reason = name_problem(new_name)
     if reason is None and new_name in words.names and new_name != name:
         reason = phrase("there is a word of that name")

@@ -1,1 +1,1 @@
-"""Sound as samples: its form, files, features."""
+"""Sound as samples: format, files and features."""

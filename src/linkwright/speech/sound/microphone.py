@@ -1,4 +1,4 @@
-"""The microphone, through PortAudio by the library sounddevice."""
+"""The microphone, accessed through PortAudio with the library sounddevice."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class Microphone:
     A device that cannot be read at 16 kHz is read at its own rate and resampled.
 
     Args:
-        device: number or part of the name, as ``python -m sounddevice`` lists them; empty for the system's default.
-        block: samples that are delivered at once, about.
+        device: a number or part of a name, as ``python -m sounddevice`` lists them; empty for the system's default.
+        block: the approximate number of samples per block.
         heard: called with each block, in a thread of PortAudio.
 
     Raises:
-        LinkwrightError: VOICE412 there is no PortAudio; VOICE413 the device is not there or cannot be opened.
+        LinkwrightError: VOICE412, PortAudio is missing; VOICE413, the device does not exist or cannot be opened.
     """
 
     def __init__(self, device: str, block: int, heard: Callable[[Samples], None]) -> None:
@@ -80,7 +80,7 @@ def _library() -> Any:
     except ModuleNotFoundError:
         message = phrase("the package '{package}' is not installed", package="sounddevice")
         raise LinkwrightError(Diagnostic("VOICE412", message, hint=install_hint("voice"))) from None
-    except OSError as error:  # the library that it loads is missing
+    except OSError as error:  # sounddevice is installed, but PortAudio is missing
         message = phrase("the system's microphone cannot be used: {reason}", reason=foreign(error))
         raise LinkwrightError(Diagnostic("VOICE412", message, hint=hint)) from None
     return sounddevice

@@ -1,7 +1,7 @@
-"""Resampling a stream to `RATE` without aliases, with a polyphase filter, block by block.
+"""Resample a stream to `RATE` without aliasing, with a polyphase filter, block by block.
 
 The filter is a sinc in a Kaiser window whose pass band ends at 0.92 of half the lower rate; frequencies above that half
-are attenuated by at least 60 dB. The output begins with the first sample of the input: the filter's delay is removed.
+are attenuated by at least 60 dB. The output starts with the first sample of the input: the filter's delay is removed.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ HIGHEST_RATE = 384_000
 
 _PASSED = 0.92
 _KAISER = 7.0
-_ZEROS = 32  # of the sinc, on each side
-_AT_ONCE = 8_192  # output samples of one multiplication
+_ZEROS = 32  # zero crossings of the sinc on each side
+_AT_ONCE = 8_192  # output samples per multiplication
 
 
 class Resampler:
     """Resamples a stream of any rate to `RATE`.
 
     Args:
-        rate: the input rate, in samples a second, `LOWEST_RATE` to `HIGHEST_RATE`.
+        rate: the input rate in samples per second, `LOWEST_RATE` to `HIGHEST_RATE`.
     """
 
     def __init__(self, rate: int) -> None:
@@ -42,10 +42,10 @@ class Resampler:
         self._table = table / table.sum(axis=1, keepdims=True)
         self._half = half
         self._buffer: NDArray[np.float64] = np.zeros(half - 1)
-        self._position = 0  # of the next output, in 1/up of an input sample, counted from the first that is kept
+        self._position = 0  # of the next output, in 1/up of an input sample, counted from the first one kept
 
     def feed(self, values: NDArray[np.floating]) -> Samples:
-        """Process the next block, shape ``(n,)``, full scale at 1; returns the samples that follow from it.
+        """Process the next block, shape ``(n,)``, full scale at 1, and return the samples that result from it.
 
         They are delayed by half the filter, 2 ms or less at usual rates; `flush` returns the rest.
         """
@@ -65,12 +65,15 @@ class Resampler:
         return to_samples(found)
 
     def flush(self) -> Samples:
-        """The samples still in the filter at the end of the stream."""
+        """Return the samples that are still in the filter at the end of the stream."""
         return self.feed(np.zeros(self._half + 1))
 
 
 def resample(values: NDArray[np.floating], rate: int) -> Samples:
-    """Resample a whole sound, shape ``(n,)``, full scale at 1, to `RATE`; its duration stays, to a sample."""
+    """Resample a complete sound, full scale at 1, shape ``(n,)``, to `RATE`.
+
+    Its duration is kept to one sample.
+    """
     if rate == RATE:
         return to_samples(values)
     resampler = Resampler(rate)
@@ -79,6 +82,9 @@ def resample(values: NDArray[np.floating], rate: int) -> Samples:
 
 
 def to_samples(values: NDArray[np.floating]) -> Samples:
-    """Convert values with full scale at 1 to 16 bits; values beyond full scale are clipped, NaN is silence."""
+    """Convert values with full scale at 1 to 16 bits.
+
+    Values beyond full scale are clipped, and NaN becomes silence.
+    """
     steps = np.rint(np.clip(np.nan_to_num(values, nan=0.0), -1.0, 1.0) * 32_768.0)
     return np.asarray(np.clip(steps, -32_768, 32_767), dtype=np.int16)

@@ -1,4 +1,4 @@
-"""The form of sound in this room."""
+"""The format of sound in this room."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mel spectra of a stream, for voice activity and recognition.
+"""Mel spectra of a stream, for voice activity detection and recognition.
 
 Windows of 25 ms every 10 ms, a first-order pre-emphasis, 26 triangular bands from 80 to 7600 Hz of equal width on the
 mel scale (O'Shaughnessy's, as in HTK).
@@ -38,7 +38,7 @@ class MelFrames:
         self._last = 0.0
 
     def feed(self, samples: Samples) -> Powers:
-        """Process the next block; returns the frames that it completes, perhaps none."""
+        """Process the next block, and return the frames that it completes, if there are any."""
         if not len(samples):
             return np.zeros((0, BANDS))
         values = samples.astype(np.float64)
@@ -58,12 +58,15 @@ class MelFrames:
 
 
 def mel_frames(samples: Samples) -> Powers:
-    """The frames of a whole sound."""
+    """Return the frames of a complete sound."""
     return MelFrames().feed(samples)
 
 
 def _filters() -> NDArray[np.float64]:
-    """The filters of the bands, shape ``(_FFT // 2 + 1, BANDS)``; each sums to 1: white noise is equal in all."""
+    """Return the filters of the bands, shape ``(_FFT // 2 + 1, BANDS)``.
+
+    Each sums to 1, so white noise is equal in all bands.
+    """
     lowest, highest = (2595.0 * log10(1.0 + hertz / 700.0) for hertz in (_LOWEST, _HIGHEST))
     mel = np.linspace(lowest, highest, BANDS + 2)
     edges = 700.0 * (10.0 ** (mel / 2595.0) - 1.0)

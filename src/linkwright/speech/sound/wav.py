@@ -1,6 +1,6 @@
-"""WAV files: read in any common format, written as 16 kHz mono.
+"""Read WAV files in any common format, and write them as 16 kHz mono.
 
-The module `wave` of Python reads neither floating point nor the extensible form that many recorders write.
+Python's module `wave` reads neither floating point nor the extensible form that many recorders write.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _DEPTHS = {(_PCM, 8), (_PCM, 16), (_PCM, 24), (_PCM, 32), (_FLOAT, 32), (_FLOAT,
 
 @dataclass(frozen=True, slots=True)
 class _Form:
-    """The format in the chunk ``fmt``."""
+    """The format in the ``fmt`` chunk."""
 
     kind: int
     channels: int
@@ -37,10 +37,10 @@ class _Form:
 def read_wav(path: str | os.PathLike[str]) -> Samples:
     """Read a WAV file: PCM of 8 to 32 bits or floating point, channels averaged, resampled to `RATE`.
 
-    A truncated file, as of a recorder that was killed, gives its remaining samples.
+    A truncated file, for example from a recorder that was killed, gives its existing samples.
 
     Raises:
-        LinkwrightError: VOICE401 it cannot be read; VOICE402 it is not a WAV file, or its format is not supported.
+        LinkwrightError: VOICE401, it cannot be read; VOICE402, it is not a WAV file, or its format is not supported.
     """
     shown = display_path(Path(path))
     try:
@@ -59,7 +59,7 @@ def parse_wav(data: bytes, name: str) -> Samples:
         name: its name in errors.
 
     Raises:
-        LinkwrightError: VOICE402.
+        LinkwrightError: VOICE402, it is not a WAV file, or its format is not supported.
     """
     form, sound = _chunks(data, name)
     if (form.kind, form.bits) not in _DEPTHS:
@@ -87,7 +87,7 @@ def parse_wav(data: bytes, name: str) -> Samples:
 
 
 def wav_bytes(samples: Samples) -> bytes:
-    """The bytes of a WAV file with samples: of 16 bits, mono, at `RATE`."""
+    """Return samples as the bytes of a WAV file: 16 bits, mono, at `RATE`."""
     sound = samples.astype("<i2").tobytes()
     head = struct.pack("<4sI4s4sIHHIIHH4sI", b"RIFF", 36 + len(sound), b"WAVE", b"fmt ", 16, _PCM, 1, RATE,
                        2 * RATE, 2, 16, b"data", len(sound))  # fmt: skip
@@ -95,7 +95,7 @@ def wav_bytes(samples: Samples) -> bytes:
 
 
 def _chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
-    """The format, and the bytes of the samples."""
+    """Return the format and the bytes of the samples."""
     if data[:4] != b"RIFF" or data[8:12] != b"WAVE":
         raise _no_wav(name, phrase("it does not begin as WAV files do"))
     form: _Form | None = None
@@ -117,7 +117,7 @@ def _chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
 
 
 def _values(sound: bytes, form: _Form) -> NDArray[np.float64]:
-    """The samples of all channels, interleaved, full scale at 1."""
+    """Return the samples of all channels, interleaved, full scale at 1."""
     if form.kind == _FLOAT:
         return np.frombuffer(sound, f"<f{form.bits // 8}").astype(np.float64)
     if form.bits == 8:
