@@ -1,4 +1,4 @@
-"""Sweeps: a scenario, run over parameters and seeds, becomes a table."""
+"""Sweeps: run a scenario over parameters and seeds, and collect the results in a table."""
 
 from linkwright.sweep.scenario import Normal, Uniform, scenario
 

@@ -1,4 +1,4 @@
-"""The finished runs of a sweep, stored line by line in a file beside its table, so that it can resume."""
+"""The finished runs of a sweep, stored line by line in a file next to its table, so that it can resume."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ class Journal:
 
     Args:
         table: the file of the table.
-        fingerprint: that of the plan; a journal of another plan is not resumed.
+        fingerprint: the fingerprint of the plan; the journal of another plan is not resumed.
         resume: whether to resume an existing journal.
 
     Attributes:
-        path: its file.
-        outcomes: row -> outcome.
+        path: the file of the journal.
+        outcomes: the outcomes by row number.
 
     Raises:
-        LinkwrightError: SWEEP107 there is a journal, and `resume` is not set; SWEEP108 it is of another plan;
-            SWEEP109 there is none; SWEEP110 it cannot be written.
+        LinkwrightError: SWEEP107, there is a journal, and `resume` is not set; SWEEP108, it belongs to another plan;
+            SWEEP109, there is none; SWEEP110, it cannot be written.
     """
 
     def __init__(self, table: Path, fingerprint: str, *, resume: bool) -> None:
@@ -78,13 +78,13 @@ class Journal:
         """Store an outcome.
 
         Raises:
-            LinkwrightError: SWEEP110 it cannot be written.
+            LinkwrightError: SWEEP110, it cannot be written.
         """
         self.outcomes[outcome.row] = outcome
         self._write(_line(outcome))
 
     def remove(self) -> None:
-        """Remove the file: the sweep is finished."""
+        """Remove the file, because the sweep is finished."""
         self.path.unlink()
 
     def _write(self, line: dict[str, Any]) -> None:
@@ -110,7 +110,7 @@ def refusing(path: Path) -> Iterator[None]:
     """Report a file that cannot be written as a diagnostic.
 
     Raises:
-        LinkwrightError: SWEEP110.
+        LinkwrightError: SWEEP110, the file cannot be written.
     """
     try:
         yield

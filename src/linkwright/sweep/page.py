@@ -47,8 +47,8 @@ def summary(table: Table, name: str, command: str, planned: int) -> str:
 
     Args:
         table: the finished runs of the sweep.
-        name: that of the scenario.
-        command: the command line that reruns a row, without its number.
+        name: the name of the scenario.
+        command: the command line that reruns a row, without the row number.
         planned: the number of planned runs.
     """
     failed = table.failed
@@ -86,7 +86,7 @@ def _escaped(text: Phrase) -> str:
 
 
 def _finite(table: Table, name: str) -> list[int]:
-    """Return the places of the rows in which a result is a number; True and False count as 1 and 0."""
+    """Return the indices of the rows whose result is a number; True and False count as 1 and 0."""
     values = table.columns[name]
     return [place for place, value in enumerate(values) if isinstance(value, int | float) and isfinite(value)]
 

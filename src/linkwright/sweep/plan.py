@@ -1,4 +1,4 @@
-"""The runs of a scenario: the values and the seed of each."""
+"""The runs of a scenario, each with its values and its seed."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Run:
     """One run of a scenario.
 
     Attributes:
-        row: its number, from 1 on.
-        parameters: name -> value.
+        row: the row number, starting at 1.
+        parameters: the values by parameter name.
         seed: the seed.
     """
 
@@ -32,10 +32,10 @@ class Run:
 
 
 def planned(scenario: Scenario) -> list[Run]:
-    """Return all runs of a scenario, the seeds of the same values one after the other.
+    """Return all runs of a scenario, in which the seeds for the same values follow each other.
 
-    A drawn value depends only on the seed and on the name of the parameter: with other values beside it, or more
-    seeds, the same seed draws the same value.
+    A drawn value depends only on the seed and on the name of the parameter: the same seed draws the same value when
+    other parameters or the number of seeds change.
     """
     lists = {name: values for name, values in scenario.parameters.items() if not isinstance(values, Uniform | Normal)}
     drawn = {seed: _drawn(scenario, seed) for seed in scenario.seeds}
@@ -49,15 +49,15 @@ def planned(scenario: Scenario) -> list[Run]:
 
 
 def with_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None) -> Scenario:
-    """Return a scenario with other values than those of its file.
+    """Return a scenario with other values than those in its file.
 
     Args:
         scenario: the scenario.
-        texts: name of a parameter -> values in YAML with commas between them.
-        seeds: the number of seeds; None for those of the file.
+        texts: for each parameter name, values in YAML, separated by commas.
+        seeds: the number of seeds; None for the seeds of the file.
 
     Raises:
-        LinkwrightError: SWEEP106 there is no such parameter; SWEEP105 the values are not valid.
+        LinkwrightError: SWEEP106, there is no such parameter; SWEEP105, the values are not valid.
     """
     parameters = dict(scenario.parameters)
     for name, text in texts.items():

@@ -1,4 +1,4 @@
-"""Drawings of a sweep as SVG, which need only a browser."""
+"""SVG plots of a sweep, which only need a browser."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Axis:
 
     @classmethod
     def of_names(cls, names: Sequence[str], begin: float, end: float) -> Axis:
-        """Return an axis with a place for each name, the first at 0."""
+        """Return an axis with a position for each name, the first at 0."""
         return cls(-0.5, len(names) - 0.5, [(float(place), name) for place, name in enumerate(names)], begin, end)
 
     def __call__(self, value: float) -> float:
@@ -62,7 +62,7 @@ class Axis:
 
 
 def histogram(values: Sequence[float], label: str) -> str:
-    """Return a histogram of a result."""
+    """Return a histogram of a result as SVG."""
     counts, edges = np.histogram(np.asarray(values, dtype=float), bins=min(_BARS, max(len(set(values)), 5)))
     across = Axis.of_numbers([float(edges[0]), float(edges[-1])], _LEFT, _WIDTH - _RIGHT)
     upwards = Axis.of_numbers([float(counts.max())], _HEIGHT - _BOTTOM, _TOP, from_zero=True)
@@ -80,7 +80,10 @@ def histogram(values: Sequence[float], label: str) -> str:
 def scatter(
     across_values: Sequence[object], values: Sequence[float], rows: Sequence[object], across_label: str, label: str
 ) -> str:
-    """Return a plot of a result against a parameter: a point for each run, a line through the means of equal values."""
+    """Return a plot of a result against a parameter.
+
+    It has a point for each run, and a line through the means of equal values.
+    """
     numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in across_values)
     names = [] if numbers else list(dict.fromkeys(map(str, across_values)))
     places = [
@@ -102,7 +105,10 @@ def scatter(
 
 
 def _means(places: Sequence[float], values: Sequence[float], across: Axis, upwards: Axis) -> str:
-    """Return a line through the mean of the values at each position; nothing if few positions recur."""
+    """Return a line through the mean of the values at each position.
+
+    It is empty if few positions occur repeatedly.
+    """
     groups: dict[float, list[float]] = {}
     for place, value in zip(places, values, strict=True):
         groups.setdefault(place, []).append(value)
@@ -138,6 +144,6 @@ def _drawing(across: Axis, upwards: Axis, label: str, content: str, across_label
 
 
 def _round_step(least: float) -> float:
-    """Return the next of 1, 2, 5, 10, ... times a power of ten."""
+    """Return the next larger number of the form 1, 2 or 5 times a power of ten."""
     power = 10.0 ** floor(log10(least))
     return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= least * (1 - 1e-9))

@@ -1,4 +1,4 @@
-"""Processes of a Ray cluster that run a scenario."""
+"""Run a scenario in processes of a Ray cluster."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ _scenario: Scenario | None = None
 
 
 def run_on_ray(path: Path, runs: Iterable[Run], address: str, report: Report) -> None:
-    """Run a scenario on a Ray cluster, which receives the files of the scenario's folder.
+    """Run a scenario on a Ray cluster, which receives the files in the scenario's folder.
 
-    If a process or machine is lost, its run is tried once more.
+    If a process or machine is lost, its run is repeated once.
 
     Args:
         path: the scenario's file.
         runs: the runs.
-        address: that of the cluster, as ``ray.init`` takes it.
-        report: called with the outcome of each run when it is done.
+        address: the address of the cluster, as ``ray.init`` accepts it.
+        report: called with the outcome of each run when the run has finished.
 
     Raises:
-        LinkwrightError: SWEEP113 ray is not installed; SWEEP114 there is no cluster at the address.
+        LinkwrightError: SWEEP113, ray is not installed; SWEEP114, there is no cluster at the address.
     """
     ray = _connected(path, address)
     try:
@@ -69,7 +69,7 @@ def run_on_ray(path: Path, runs: Iterable[Run], address: str, report: Report) ->
 
 
 def _connected(path: Path, address: str) -> Any:
-    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # Ray sends no usage data without the user's consent
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # Ray must not send usage data without consent
     try:
         import ray  # type: ignore[import-not-found, import-untyped, unused-ignore]
     except ModuleNotFoundError as error:
@@ -91,10 +91,12 @@ def _connected(path: Path, address: str) -> Any:
 
 
 def _reach(address: str) -> None:
-    """Check that an address with a port accepts connections: Ray would retry for minutes, and log each attempt.
+    """Check that an address with a port accepts connections.
+
+    Ray would retry for minutes, and log each attempt.
 
     Raises:
-        OSError: it does not.
+        OSError: the address does not accept connections.
     """
     host, _, port = address.removeprefix("ray://").rpartition(":")
     if host and port.isdigit():
@@ -102,7 +104,10 @@ def _reach(address: str) -> None:
 
 
 def _run_there(name: str, run: Run) -> Outcome:
-    """Make a run in a process of the cluster, whose working directory has the files that were sent."""
+    """Execute a run in a process of the cluster.
+
+    The working directory of the process contains the files that were sent.
+    """
     global _scenario  # noqa: PLW0603 - the process is used for one run after the other
     path = Path(name).absolute()
     if _scenario is None or _scenario.path != path:

@@ -1,4 +1,4 @@
-"""Running a scenario once."""
+"""Run a scenario once."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class Outcome:
     """The outcome of a run.
 
     Attributes:
-        row: the number of the run.
-        results: what the scenario returned.
-        error: why there are no results; empty if the run succeeded.
+        row: the row number of the run.
+        results: the results that the scenario returned.
+        error: the reason why there are no results; empty if the run succeeded.
     """
 
     row: int
@@ -37,13 +37,13 @@ class Outcome:
 
 
 class BadResultError(Exception):
-    """A scenario returned a value that a table cannot store."""
+    """Raised when a scenario returns a value that a table cannot store."""
 
 
 def prepare(path: Path) -> Scenario:
     """Load a scenario to run it in this process, with its folder as the working directory.
 
-    ROS's modules can be imported in it, such as ``rclpy`` and ``geometry_msgs.msg``.
+    The scenario can import ROS modules, such as ``rclpy`` and ``geometry_msgs.msg``.
 
     Raises:
         LinkwrightError: see `load_scenario`.
@@ -55,7 +55,7 @@ def prepare(path: Path) -> Scenario:
 
 
 def run_once(scenario: Scenario, run: Run) -> Outcome:
-    """Run a scenario; an exception that it raises becomes the outcome's error."""
+    """Run a scenario; an exception that it raises becomes the error of the outcome."""
     try:
         return Outcome(run.row, results_of(scenario, run))
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
@@ -65,11 +65,11 @@ def run_once(scenario: Scenario, run: Run) -> Outcome:
 
 
 def results_of(scenario: Scenario, run: Run) -> dict[str, Result]:
-    """Run a scenario and check its results; ``random`` and ``numpy.random`` start with the seed.
+    """Run a scenario and check its results; ``random`` and ``numpy.random`` are seeded first.
 
     Raises:
-        BadResultError: a table cannot store them.
-        Exception: whatever the scenario raises.
+        BadResultError: a table cannot store the results.
+        Exception: any exception that the scenario raises.
     """
     random.seed(run.seed)
     np.random.seed(run.seed % _SEEDS)

@@ -1,4 +1,4 @@
-"""Scenarios, and reading one from its file."""
+"""Scenarios, and loading one from its file."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Uniform:
 
 @dataclass(frozen=True, slots=True)
 class Normal:
-    """A number that is drawn for each seed, normally distributed."""
+    """A number that is drawn for each seed from a normal distribution."""
 
     mean: float
     stddev: float
@@ -61,9 +61,9 @@ class Scenario:
     """A function that is run once for each combination of values and each seed.
 
     Attributes:
-        path: its file.
+        path: the file of the scenario.
         function: takes the parameters by name, and ``seed`` if it has such a parameter; returns results by name.
-        parameters: name -> its values.
+        parameters: the values by parameter name.
         seeds: the seeds.
     """
 
@@ -74,7 +74,7 @@ class Scenario:
 
     @property
     def takes_seed(self) -> bool:
-        """Whether the function takes the seed."""
+        """Whether the function has a parameter for the seed."""
         return SEED in inspect.signature(self.function).parameters
 
 
@@ -88,10 +88,10 @@ def scenario(*, seeds: int | Sequence[int] = 1, **parameters: Values) -> Callabl
             ...
             return {"distance": ..., "arrived": ...}
 
-    is run forty times: for each friction with each seed, and a mass that is drawn for the seed.
+    This function is run forty times: for each friction with each seed, and with a mass that is drawn for the seed.
 
     Args:
-        seeds: how many seeds, from 0 on, or the seeds themselves.
+        seeds: the number of seeds, starting at 0, or the seeds themselves.
         parameters: for each parameter of the function a list of values, or a distribution.
     """
 
@@ -103,11 +103,11 @@ def scenario(*, seeds: int | Sequence[int] = 1, **parameters: Values) -> Callabl
 
 
 def load_scenario(path: Path) -> Scenario:
-    """Return the scenario of a file, which is run as a module; modules beside it can be imported.
+    """Load a scenario from its file, which is run as a module; it can import modules from its folder.
 
     Raises:
-        LinkwrightError: SWEEP101 it cannot be read; SWEEP102 it cannot be run; SWEEP103 there is no scenario in it, or
-            more than one; SWEEP104 its parameters are not those of the function; SWEEP105 the values are not valid.
+        LinkwrightError: SWEEP101, it cannot be read; SWEEP102, it cannot be run; SWEEP103, it does not contain exactly
+            one scenario; SWEEP104, its parameters are not those of the function; SWEEP105, the values are not valid.
     """
     module = _loaded(path)
     found = [candidate for candidate in vars(module).values() if callable(candidate) and hasattr(candidate, _DECLARED)]
@@ -130,10 +130,10 @@ def load_scenario(path: Path) -> Scenario:
 
 
 def check_values(name: str, values: object, span: Span | None = None) -> None:
-    """Refuse values that a parameter cannot be run over.
+    """Check that a parameter can be varied over the given values.
 
     Raises:
-        LinkwrightError: SWEEP105.
+        LinkwrightError: SWEEP105, the values are not valid.
     """
     if isinstance(values, Uniform | Normal):
         numbers = (values.low, values.high) if isinstance(values, Uniform) else (values.mean, values.stddev)
@@ -236,7 +236,7 @@ def _cannot_run(path: Path, error: BaseException) -> LinkwrightError:
 
 
 def line_of(path: Path, error: BaseException) -> int | None:
-    """Return the line of a file in which an error was raised, or that called the code that raised it."""
+    """Return the line of a file that raised an error, or that called the code that raised it."""
     lines = [
         frame_summary.lineno
         for frame_summary in traceback.extract_tb(error.__traceback__)

@@ -1,4 +1,4 @@
-"""A sweep from its plan to its table."""
+"""Run a sweep from its plan to its table."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Runner = Callable[[Sequence[Run], Callable[[Outcome], None]], None]
 
 @dataclass(frozen=True)
 class Sweep:
-    """A scenario to run, and the files of its results.
+    """A scenario to run, and the files for its results.
 
     Attributes:
         scenario: the scenario.
@@ -36,22 +36,24 @@ class Sweep:
 
     @property
     def page(self) -> Path:
-        """The file of the summary."""
+        """The file of the summary page."""
         return self.table.with_suffix(".html")
 
     def run(self, runner: Runner, *, resume: bool, progress: Callable[[int, int, int], None]) -> Table:
-        """Make all runs that are not done yet, and write table and summary, also after an interruption.
+        """Execute all unfinished runs, and write the table and the summary.
+
+        The files are also written after an interruption.
 
         Args:
-            runner: makes them.
+            runner: executes the runs.
             resume: whether to resume an unfinished sweep.
             progress: called with the numbers of finished, planned and failed runs.
 
         Returns:
-            The table; without the runs that an interruption prevented.
+            The table, without the runs that an interruption prevented.
 
         Raises:
-            LinkwrightError: of the journal, see `Journal`; SWEEP110 a file cannot be written.
+            LinkwrightError: an error of the journal, see `Journal`; SWEEP110, a file cannot be written.
         """
         runs = planned(self.scenario)
         with Journal(self.table, fingerprint(self.scenario, runs), resume=resume) as journal:

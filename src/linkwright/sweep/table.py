@@ -1,4 +1,4 @@
-"""The results of a sweep as one table: CSV or Parquet."""
+"""The results of a sweep as one table, in CSV or Parquet."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ FORMATS = (".csv", ".parquet")
 
 @dataclass(frozen=True)
 class Table:
-    """The rows of a sweep, in the order of their numbers, whichever was finished first.
+    """The rows of a sweep in the order of their numbers, regardless of the order in which they finished.
 
     Attributes:
         parameters: the names of parameters, and ``seed``.
-        results: the names of results, in the order in which the rows have them.
-        columns: name -> a value for each row: ``row``, parameters, ``seed``, results, ``error``; None for a value that
+        results: the names of results, in the order of their first occurrence in the rows.
+        columns: by name, a value for each row: ``row``, parameters, ``seed``, results, ``error``; None for a value that
             a row does not have.
     """
 
@@ -35,7 +35,7 @@ class Table:
 
     @classmethod
     def of(cls, runs: Sequence[Run], outcomes: Mapping[int, Outcome]) -> Table:
-        """Return the table of the runs that are done."""
+        """Return the table of the finished runs."""
         done = [(run, outcomes[run.row]) for run in runs if run.row in outcomes]
         names = tuple(dict.fromkeys(name for _, outcome in done for name in outcome.results))
         parameters = tuple(runs[0].parameters) if runs else ()
@@ -51,15 +51,15 @@ class Table:
 
     @property
     def failed(self) -> list[int]:
-        """Return the places of the rows with an error."""
+        """The indices of the rows with an error."""
         return [place for place, error in enumerate(self.columns["error"]) if error]
 
 
 def check_format(path: Path) -> None:
-    """Refuse a file that a table cannot be written to, before the first run.
+    """Check before the first run that a table can be written in the format of a file.
 
     Raises:
-        LinkwrightError: SWEEP110 its extension is not that of a table; SWEEP111 pyarrow is not installed.
+        LinkwrightError: SWEEP110, its extension is not that of a table; SWEEP111, pyarrow is not installed.
     """
     if path.suffix not in FORMATS or path.is_dir():
         message = phrase("'{path}' cannot be the file of a table", path=str(path))
@@ -69,12 +69,12 @@ def check_format(path: Path) -> None:
 
 
 def written(table: Table, path: Path) -> bytes:
-    """Return the bytes of a table in the format that its file's extension selects."""
+    """Return the table as bytes in the format that the file's extension selects."""
     return _parquet(table) if path.suffix == ".parquet" else _csv(table)
 
 
 def _csv(table: Table) -> bytes:
-    """Return CSV with a line of names; numbers as Python writes them, without loss."""
+    """Return the table as CSV with a header line; numbers are written as Python writes them, without loss."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table.columns)
@@ -99,7 +99,10 @@ def _parquet(table: Table) -> bytes:
 
 
 def _alike(values: Sequence[Result]) -> list[Result]:
-    """Convert values to one type, as a column of Parquet needs: floats if some are, else texts if they differ."""
+    """Convert values to one type, as a Parquet column requires.
+
+    Integers and floats become floats; other mixed types become texts.
+    """
     kinds = {type(value) for value in values if value is not None}
     if len(kinds) < 2:
         return list(values)

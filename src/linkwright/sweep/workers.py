@@ -1,4 +1,4 @@
-"""Processes of this machine that run a scenario."""
+"""Run a scenario in processes on this machine."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ Report = Callable[[Outcome], None]
 
 
 def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -> None:
-    """Run a scenario in processes of its own.
+    """Run a scenario in separate processes.
 
-    If one of them dies, another replaces it, and its run is tried once more.
+    If one of them dies, another replaces it, and its run is repeated once.
 
     Args:
         path: the scenario's file.
         runs: the runs.
-        workers: how many processes run at once.
-        report: called with the outcome of each run, in the order in which they end.
+        workers: the number of parallel processes.
+        report: called with the outcome of each run, in the order in which they finish.
     """
     waiting = deque(runs)
     attempts: dict[int, int] = {}
@@ -69,7 +69,7 @@ def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -
 
 
 class _Worker:
-    """A process that makes one run after the other, and the connection to it."""
+    """A process that executes one run after the other, and the connection to it."""
 
     def __init__(self, path: Path) -> None:
         spawn = multiprocessing.get_context("spawn")
@@ -81,9 +81,9 @@ class _Worker:
         theirs.close()
 
     def start_run(self, run: Run) -> None:
-        """Have it make a run."""
+        """Send a run to the process."""
         self.run = run
-        with suppress(OSError):  # it has died; the caller that waits for the outcome finds out
+        with suppress(OSError):  # the process has died, which the caller notices when it waits for the outcome
             self.connection.send(run)
 
     def outcome(self) -> Outcome | None:
@@ -95,11 +95,11 @@ class _Worker:
         return outcome
 
     def stop(self) -> None:
-        """End the process, even during a run."""
+        """End the process immediately, even during a run."""
         self._process.terminate()
 
     def end(self) -> str:
-        """Wait until it has ended, and return how."""
+        """Wait until the process has ended, and return a description of how it ended."""
         self.connection.close()
         self._process.join(_PATIENCE)
         if self._process.is_alive():
@@ -111,7 +111,7 @@ class _Worker:
 
 
 def _serve(path: Path, connection: Connection) -> None:
-    """Make the runs that the connection sends; the main function of a worker."""
+    """Execute the runs that the connection sends; this is the main function of a worker."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     sys.stdout = sys.stderr
@@ -127,7 +127,7 @@ def _serve(path: Path, connection: Connection) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process when its parent ends for whatever reason, so that no run outlives it."""
+    """End this process when its parent ends for any reason, so that no run outlives the parent."""
     parent = multiprocessing.parent_process()
     assert parent is not None, "it is a process of a pool"
     parent.join()
@@ -136,7 +136,7 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _no_interrupt() -> Iterator[None]:
-    """Block Ctrl-C while a process is started, because a process inherits the blocked signals."""
+    """Block Ctrl-C while a process is started, because processes inherit the blocked signals."""
     if sys.platform == "win32":
         yield
         return
