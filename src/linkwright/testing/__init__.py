@@ -1,4 +1,4 @@
-"""Testing nodes: graphs whose time passes only when the test advances it, so that an hour takes milliseconds.
+"""Test nodes in graphs whose time passes only when the test advances it: an hour takes milliseconds.
 
 With `SteppedSimulation` a simulated world advances in step with the graph.
 """

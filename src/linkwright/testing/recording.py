@@ -1,4 +1,4 @@
-"""The messages that were published on a topic during a test."""
+"""Record the messages that are published on a topic during a test."""
 
 from __future__ import annotations
 
@@ -18,10 +18,11 @@ from linkwright.graph import (
 
 
 class Recording:
-    """The messages of a topic, in the order of arrival; made by ``record`` of a stepped graph.
+    """The messages of a topic, in the order of arrival; created by ``record`` of a stepped graph.
 
-    It subscribes as soon as the topic's type is known, that is, when a node publishes or subscribes to the topic, so
-    it may be made before the node under test. It includes the messages that a transient local publisher stores.
+    It subscribes as soon as the topic's type is known, that is, when a node publishes or subscribes to the topic. It
+    can therefore be created before the node under test. It includes the messages that a transient local publisher
+    stores.
 
     Attributes:
         topic: the topic's absolute name.
@@ -47,14 +48,14 @@ class Recording:
         """The message that was received last.
 
         Raises:
-            AssertionError: there is none.
+            AssertionError: no message was received.
         """
         if not self.messages:
             raise AssertionError(f"nothing was published on '{self.topic}'")
         return self.messages[-1]
 
     def clear(self) -> None:
-        """Drop the messages that were received so far."""
+        """Drop the messages that have been received so far."""
         self.messages.clear()
         self.times.clear()
 

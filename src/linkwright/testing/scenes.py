@@ -1,4 +1,4 @@
-"""Worlds and robots for simulations, read again only after their files have changed."""
+"""Worlds and robots for simulations, which are only read again after their files have changed."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def read_world(name: str | Path) -> LoadedWorld:
     """Return a world by its file or name, with its includes, as `load_world` reads it.
 
     Raises:
-        LinkwrightError: those of `load_world`.
+        LinkwrightError: the errors of `load_world`.
     """
 
     def read() -> tuple[LoadedWorld, tuple[Path, ...]]:
@@ -44,7 +44,7 @@ def read_model(path: Path, arguments: Mapping[str, str]) -> Model:
     """Return the robot or model of a URDF, xacro or SDF file.
 
     Raises:
-        LinkwrightError: SIM142 the file contains no model; the file is wrong.
+        LinkwrightError: SIM142, the file contains no model; the file has errors.
     """
 
     def read() -> tuple[Model, tuple[Path, ...]]:

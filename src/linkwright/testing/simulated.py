@@ -43,7 +43,7 @@ _ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class AsyncSteppedSimulation(AsyncSteppedGraph):
-    """`SteppedSimulation` for tests that are coroutines; arguments and attributes are those described there."""
+    """`SteppedSimulation` for tests that are coroutines, with the same arguments and attributes."""
 
     def __init__(
         self,
@@ -122,7 +122,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         """The server that runs the plugins.
 
         Raises:
-            RuntimeError: the test has not begun.
+            RuntimeError: the test has not started.
         """
         if self._server is None:
             raise RuntimeError("use it as a context manager")
@@ -163,7 +163,9 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self.publish(topic, message)
 
     async def settle(self) -> None:
-        """Run all callbacks that are ready, and those that they cause, in graph and simulation; time does not pass.
+        """Run all callbacks that are ready, and those that they cause, in the graph and the simulation.
+
+        Time does not pass.
 
         Raises:
             Exception: the error of a callback.
@@ -179,8 +181,8 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         """Let time pass in the simulation and in the graph.
 
         Raises:
-            UnstableError: a value in the simulation is not a finite number any more.
-            Exception: the error of a callback; time has passed all the same.
+            UnstableError: a value in the simulation is no longer finite.
+            Exception: the error of a callback; time has passed nevertheless.
         """
         await self.settle()
         self._left += round(seconds * NANOSECONDS_PER_SECOND)
@@ -202,7 +204,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
     async def reset(self) -> None:
         """Restore the initial state of the world; simulated time and noise start again.
 
-        Nodes and recorded messages stay, and so does the time of day.
+        Nodes and recorded messages stay, and the time of day is not reset.
         """
         self.server.reset()
         self._left = 0
@@ -218,7 +220,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
 def _taking_what(
     make: Callable[_P, AsyncSteppedSimulation],
 ) -> Callable[[Callable[[_T, AsyncSteppedSimulation], None]], Callable[Concatenate[_T, _P], None]]:
-    """Give an ``__init__`` the signature of the asynchronous class, and pass it an instance of that."""
+    """Give an ``__init__`` the signature of the asynchronous class, and pass it an instance of that class."""
 
     def decorate(init: Callable[[_T, AsyncSteppedSimulation], None]) -> Callable[Concatenate[_T, _P], None]:
         @wraps(AsyncSteppedSimulation.__init__)
@@ -240,37 +242,37 @@ class SteppedSimulation(SteppedGraph):
     ...     1.0 < odometry.last.pose.pose.position.x < 1.25
     True
 
-    It uses neither threads nor real time. The world moves for a `period`. Then the graph calls the timers that are
-    due, publishes the time on ``/clock``, receives the messages of plugins and sensors and runs the callbacks that
-    these cause. After that the world moves again, with the commands that were received meanwhile. The same test gives
-    the same bits each time. Nodes written for rclpy run in it after `init_rclpy`, and follow simulated time with the
-    parameter ``use_sim_time``.
+    It uses neither threads nor real time. The world moves for a `period`. Then the graph calls the timers that are due,
+    publishes the time on ``/clock``, receives the messages of plugins and sensors, and runs the callbacks that they
+    cause. After that the world moves again, with the commands that were received in the meantime. The same test gives
+    the same bits each time. Nodes written for rclpy run in it after `init_rclpy`, and follow simulated time if the
+    parameter ``use_sim_time`` is set.
 
     It offers the services of a simulator: ``/spawn_entity``, ``/delete_entity``, ``/set_entity_state``,
-    ``/pause_physics`` and so on; `spawn` and `delete` call the first two with a file.
+    ``/pause_physics`` and so on; `spawn` and `delete` correspond to the first two.
 
     Topics have the names that ``linkwright sim`` gives them: ``/cmd_vel``, ``/odom``, ``/scan``. Worlds and robots are
-    read once in a process; a robot whose files have changed is read again.
+    read once per process; a robot whose files have changed is read again.
 
     Args:
-        world: a file in SDF, or the name of a world.
-        robot: a file in URDF, xacro or SDF to spawn in the world, or its ``package://`` address; None for no robot.
-        arguments: values for its ``<xacro:arg>``.
+        world: an SDF file, or the name of a world.
+        robot: a URDF, xacro or SDF file to spawn in the world, or its ``package://`` address; None for no robot.
+        arguments: values for the ``<xacro:arg>`` elements of the robot.
         pose: the robot's initial pose: x, y, z in m, roll, pitch, yaw in rad.
         seed: the seed of all noise.
-        friction: the coefficient of friction of the world's static models, above all of the ground; None for the
-            values of the file. Between two bodies in contact the lower value applies.
+        friction: the coefficient of friction of the world's static models, above all of the ground; None for the values
+            of the file. Between two bodies in contact the lower value applies.
         mass: the factor for the robot's masses and inertias.
-        noise: the factor for the noise of its sensors; 0 for exact ones.
-        robot_state_publisher: whether this node runs for the robot, with its description and the transforms of its
-            links, which follow ``/joint_states``.
-        period: how long the world moves between two steps of the graph, in s.
-        start: the time of day at the beginning, in seconds since the epoch.
+        noise: the factor for the noise of its sensors; 0 for exact measurements.
+        robot_state_publisher: whether a robot_state_publisher runs for the robot, with its description and the
+            transforms of its links, which follow ``/joint_states``.
+        period: the time that the world moves between two steps of the graph, in s.
+        start: the time of day at the start, in seconds since the epoch.
         strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
 
     Raises:
-        LinkwrightError: SIM101 MuJoCo is not installed; SIM150 there is no such world; SIM142 the file contains no
-            model; one of the files is wrong.
+        LinkwrightError: SIM101, MuJoCo is not installed; SIM150, there is no such world; SIM142, the file contains no
+            model; one of the files has errors.
     """
 
     _steps: AsyncSteppedSimulation
@@ -282,7 +284,7 @@ class SteppedSimulation(SteppedGraph):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._steps.server.close()  # rclpy's shutdown would take its nodes away first
+        self._steps.server.close()  # first, because rclpy's shutdown would destroy the server's nodes
         super().__exit__(kind, error, trace)
 
     @property
@@ -302,18 +304,18 @@ class SteppedSimulation(SteppedGraph):
         """Spawn another robot or model in the world, as ``/spawn_entity`` does with a text.
 
         Args:
-            robot: a file in URDF, xacro or SDF, or its ``package://`` address.
-            name: the model's name; that in the file if empty.
+            robot: a URDF, xacro or SDF file, or its ``package://`` address.
+            name: the model's name; empty for the name in the file.
             pose: the pose of its frame: x, y, z in m, roll, pitch, yaw in rad.
-            namespace: the namespace of the nodes of those plugins that name none.
-            arguments: values for its ``<xacro:arg>``.
+            namespace: the default namespace for the nodes of its plugins.
+            arguments: values for the ``<xacro:arg>`` elements of the robot.
 
         Returns:
             The model's name.
 
         Raises:
-            LinkwrightError: SIM102 there is a model of that name; SIM140 it cannot be simulated; SIM142 the file
-                contains no model; the file is wrong.
+            LinkwrightError: SIM102, there is already a model with this name; SIM140, it cannot be simulated; SIM142,
+                the file contains no model; the file has errors.
         """
         return self._steps.spawn(robot, name, pose=pose, namespace=namespace, arguments=arguments)
 
@@ -321,7 +323,7 @@ class SteppedSimulation(SteppedGraph):
         """Delete a model from the world.
 
         Raises:
-            LinkwrightError: SIM141 there is no model of that name.
+            LinkwrightError: SIM141, there is no model with this name.
         """
         self._steps.delete(name)
 
@@ -333,9 +335,9 @@ class SteppedSimulation(SteppedGraph):
         """Command the robot's velocity from the next step on.
 
         Args:
-            linear: forwards, in m/s.
-            angular: to the left, in rad/s.
-            topic: the topic on which it receives a ``Twist``.
+            linear: the forward velocity, in m/s.
+            angular: the yaw rate, positive to the left, in rad/s.
+            topic: the topic on which the robot receives a ``Twist``.
         """
         self._steps.drive(linear, angular, topic)
 
@@ -351,7 +353,7 @@ def _gripping(world: World, friction: float) -> World:
 
 
 class _Progress:
-    """Lets the services of a simulator pause it, and make single steps."""
+    """Lets the services of a simulator pause the simulation and run single steps."""
 
     def __init__(self, simulation: Simulation) -> None:
         self.paused = False
@@ -376,10 +378,10 @@ def _model(path: Path, arguments: Mapping[str, object]) -> Model:
 
 
 def _described(path: Path, arguments: Mapping[str, object]) -> str:
-    """Return the text of a robot.
+    """Return the description of a robot from its file.
 
     Raises:
-        LinkwrightError: what is wrong with it.
+        LinkwrightError: the file has errors.
     """
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     texts = {name: _text(value) for name, value in arguments.items()}
@@ -395,5 +397,5 @@ def _transform(pose: Sequence[float]) -> Transform:
 
 
 def _text(value: object) -> str:
-    """Return a value in the notation of xacro arguments."""
+    """Return a value as text in the notation of xacro arguments."""
     return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,4 +1,4 @@
-"""A graph for tests in coroutines, with time that passes in steps."""
+"""A graph for tests in coroutines, whose time passes in steps."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ _NODE = "test"
 class AsyncSteppedGraph:
     """A graph whose time passes only in `advance`: an hour of timers, rates and throttles takes milliseconds.
 
-    Everything runs in one thread, in an order that is the same each time. An error of a callback is raised by the
-    step in which it happens. For tests that are not coroutines there is `SteppedGraph`.
+    Everything runs in one thread, in a reproducible order. An error in a callback is raised by the step in which it
+    happens. For tests that are not coroutines, use `SteppedGraph`.
 
     Example::
 
@@ -43,15 +43,15 @@ class AsyncSteppedGraph:
                 assert chatter.last.data == "Hello: 7199"
 
     Args:
-        start: the time of day at the beginning, in seconds since the epoch.
+        start: the time of day at the start, in seconds since the epoch.
         strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
 
     Attributes:
         clock: the clock; ``clock.jump(seconds)`` changes only the time of day, like a corrected system clock.
         graph: the graph.
-        node: a node of the test's own, ``/test``, to make clients and the like with.
+        node: the node of the test, ``/test``, for creating clients and other endpoints.
         log: the log messages of nodes.
-        errors: the errors of callbacks, if it is not `strict`.
+        errors: the errors of callbacks, if the graph is not `strict`.
     """
 
     def __init__(self, *, start: float = 1_700_000_000.0, strict: bool = True) -> None:
@@ -80,7 +80,7 @@ class AsyncSteppedGraph:
         """The graph.
 
         Raises:
-            RuntimeError: the test has not begun.
+            RuntimeError: the test has not started.
         """
         if self._graph is None:
             raise RuntimeError("use it as a context manager")
@@ -88,14 +88,14 @@ class AsyncSteppedGraph:
 
     @property
     def node(self) -> Node:
-        """A node of the test's own."""
+        """The node of the test, ``/test``."""
         if self._node is None:
             self._node = self.graph.create_node(_NODE)
         return self._node
 
     @property
     def now(self) -> float:
-        """Seconds since the beginning of the test."""
+        """The seconds since the start of the test."""
         return self.clock.steady_ns() / 1e9
 
     def create_node(self, name: str, **options: Any) -> Node:
@@ -107,12 +107,15 @@ class AsyncSteppedGraph:
 
         Args:
             topic: the topic's name.
-            msg_type: its message class; by default that of its first publisher or subscriber.
+            msg_type: the message class; by default the class of its first publisher or subscriber.
         """
         return Recording(self.graph, self.node, topic, msg_type)
 
     def publish(self, topic: str, message: Any, qos_profile: QoSProfile | int = DEFAULT_QOS) -> None:
-        """Publish a message, which subscribers receive in the next step. The publisher stays for the next message."""
+        """Publish a message, which subscribers receive in the next step.
+
+        The publisher is reused for later messages.
+        """
         publisher = self._publishers.get(topic)
         if publisher is None:
             publisher = self.node.create_publisher(type(message), topic, qos_profile)
@@ -131,10 +134,12 @@ class AsyncSteppedGraph:
     spin = settle
 
     async def advance(self, seconds: float) -> None:
-        """Let time pass. Each timer is called when it is due, and the callbacks that it causes run before the next.
+        """Let time pass.
+
+        Each timer is called when it is due, and the callbacks that it causes run before the next timer.
 
         Raises:
-            Exception: the error of a callback; time has passed all the same.
+            Exception: the error of a callback; time has passed nevertheless.
         """
         await self.clock.advance(seconds)
         self._raise()
@@ -145,13 +150,13 @@ class AsyncSteppedGraph:
         Args:
             service: the service's name.
             request: the request.
-            timeout: how many seconds may pass before the response arrives.
+            timeout: the maximum seconds that may pass before the response arrives.
 
         Returns:
             The response.
 
         Raises:
-            LookupError: there is no service of that name.
+            LookupError: there is no service with this name.
             TimeoutError: the response did not arrive in time.
         """
         client = self._client(service)

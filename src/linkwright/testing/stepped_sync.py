@@ -1,4 +1,4 @@
-"""A graph for tests that are plain functions, with time that passes in steps."""
+"""A graph for tests that are plain functions, whose time passes in steps."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class SteppedGraph:
     ...     len(chatter), chatter.last.data
     (7200, 'Hello: 7199')
 
-    A node that is written for rclpy is tested in the same way: after `init_rclpy` nodes live in the test's graph, and
-    their callbacks are run by its steps; nothing has to spin::
+    A node that is written for rclpy is tested in the same way: after `init_rclpy` nodes are created in the test's
+    graph, and its steps run their callbacks without spinning::
 
         with SteppedGraph() as test:
             test.init_rclpy()
@@ -40,9 +40,9 @@ class SteppedGraph:
             assert len(chatter) == 20
 
     Args:
-        start: the time of day at the beginning, in seconds since the epoch.
+        start: the time of day at the start, in seconds since the epoch.
         strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
-        steps: the asynchronous graph to wrap, if it has a class of its own; `start` and `strict` are then its own.
+        steps: the asynchronous graph to wrap, if it is of a derived class; `start` and `strict` are then not used.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class SteppedGraph:
 
     @property
     def node(self) -> Node:
-        """A node of the test's own, ``/test``."""
+        """The node of the test, ``/test``."""
         return self._steps.node
 
     @property
@@ -100,17 +100,17 @@ class SteppedGraph:
 
     @property
     def now(self) -> float:
-        """Seconds since the beginning of the test."""
+        """The seconds since the start of the test."""
         return self._steps.now
 
     def init_rclpy(self, args: list[str] | None = None) -> Context:
-        """Initialise rclpy with the test's graph; it is shut down with the test.
+        """Initialise rclpy with the test's graph; it is shut down at the end of the test.
 
         Args:
-            args: the command line, with ROS arguments; none by default.
+            args: the command line, with ROS arguments; empty by default.
 
         Returns:
-            The default context of rclpy, in which nodes are made.
+            The default context of rclpy, in which nodes are created.
         """
         from linkwright.standins.rclpy_api.defaults import use_graph
 
@@ -143,7 +143,7 @@ class SteppedGraph:
         """Let time pass; see `AsyncSteppedGraph.advance`.
 
         Raises:
-            Exception: the error of a callback; time has passed all the same.
+            Exception: the error of a callback; time has passed nevertheless.
         """
         self._run(self._steps.advance(seconds))
 
@@ -151,7 +151,7 @@ class SteppedGraph:
         """Call a service of the graph; see `AsyncSteppedGraph.call`.
 
         Raises:
-            LookupError: there is no service of that name.
+            LookupError: there is no service with this name.
             TimeoutError: the response did not arrive in time.
         """
         return self._run(self._steps.call(service, request, timeout=timeout))
