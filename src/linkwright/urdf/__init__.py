@@ -1,4 +1,4 @@
-"""The robot model: reading, writing and printing URDF."""
+"""The robot model: read, write and print URDF."""
 
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import Pose, Quaternion, Vector3

@@ -1,6 +1,6 @@
-"""Links that fixed joints make one rigid body.
+"""Rigid bodies, each formed by links that fixed joints connect.
 
-Simulators merge such links, so what a link lacks another of its body may have.
+Simulators merge such links, so another link of the body may provide what a link lacks.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ WORLD = "world"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Body:
-    """Links that move as one.
+    """Links that move as one body.
 
     Attributes:
         joint: the joint that moves it; None for the body of the robot's root.
-        frames: link -> its frame in the frame of the body's first link.
+        frames: the frames of the links in the frame of the body's first link, by link name.
     """
 
     joint: Joint | None
@@ -30,7 +30,7 @@ class Body:
 
     @property
     def links(self) -> tuple[str, ...]:
-        """The names of its links, the one that the joint moves first."""
+        """The names of the body's links, starting with the link that the joint moves."""
         return tuple(self.frames)
 
 
@@ -43,20 +43,23 @@ class Bodies:
 
     @cached_property
     def all(self) -> tuple[Body, ...]:
-        """The bodies, that of the root first."""
+        """All bodies, starting with the body of the root."""
         return tuple(dict.fromkeys(self._by_link.values()))
 
     def of(self, link: str) -> Body | None:
-        """The body of a link."""
+        """Return the body of a link."""
         return self._by_link.get(link)
 
     def members(self, body: Body) -> list[Link]:
-        """The links of a body."""
+        """Return the links of a body."""
         assert self._robot is not None, "there are bodies only where there is a robot"
         return [self._robot.links[name] for name in body.frames]
 
     def turns(self, link: str) -> bool:
-        """Return whether a link's body can turn: not if only prismatic joints connect it to a link `WORLD`."""
+        """Return whether a link's body can rotate.
+
+        It cannot if only prismatic joints connect it to the link `WORLD`.
+        """
         body = self._by_link.get(link)
         while body is not None and body.joint is not None:
             if body.joint.type != "prismatic":
@@ -65,11 +68,11 @@ class Bodies:
         return body is None or WORLD not in body.frames
 
     def stands_for_others(self, link: Link) -> bool:
-        """Return whether a link's mass may be that of links with shapes and no mass that are fixed to it, too."""
+        """Return whether a link's mass may include massless links with shapes that are fixed to it."""
         return link.name in self._standing_for_others
 
     def mass(self, body: Body) -> float:
-        """The positive masses of a body's links together, in kg; added up once."""
+        """Return the total of the positive masses of a body's links, in kg; it is only computed once."""
         if body not in self._masses:
             inertials = [link.inertial for link in self.members(body)]
             self._masses[body] = sum(
@@ -79,7 +82,10 @@ class Bodies:
 
     @cached_property
     def _standing_for_others(self) -> frozenset[str]:
-        """The links with a mass next to massless links, one of which has a shape; frames between them do not matter."""
+        """The links with a mass next to massless links, one of which has a shape.
+
+        Empty links in between are ignored.
+        """
         links = self._robot.links if self._robot is not None else {}
         neighbours: dict[str, list[str]] = {name: [] for name in links}
         for joint in self._robot.joints.values() if self._robot is not None else ():

@@ -1,4 +1,4 @@
-"""The structure of a robot as Graphviz text, to the byte as ``urdf_to_graphviz`` writes it."""
+"""The structure of a robot as Graphviz text, byte for byte as ``urdf_to_graphviz`` writes it."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from linkwright.urdf.tree import parent_joints, walk
 
 
 def to_gv(robot: Robot) -> str:
-    """The links as boxes and the joints as ellipses, labelled with xyz in metres and rpy in radians.
+    """Return Graphviz text with links as boxes and joints as ellipses.
 
-    Numbers have six significant digits, as C++ streams print them; the angles come back from the quaternion.
+    Labels contain xyz in metres and rpy in radians. Numbers have six significant digits, as C++ streams print them; the
+    angles are converted back from the quaternion.
     """
     lines = ["digraph G {", "node [shape=box];", f'"{robot.root}" [label="{robot.root}"];']
     below = [joint for joint, _ in walk(robot)]
@@ -18,7 +19,7 @@ def to_gv(robot: Robot) -> str:
     lines.append("node [shape=ellipse, color=blue, fontcolor=blue];")
     above = parent_joints(robot)
     for joint in below:
-        # For a link with two parents urdfdom prints the joint it kept, under either of them.
+        # For a link with two parents, urdfdom prints the joint that it kept below each of them.
         kept = above[joint.child]
         x, y, z = kept.origin.xyz
         roll, pitch, yaw = rpy_from_quaternion(quaternion_of(kept.origin))

@@ -1,4 +1,4 @@
-"""The link tree as text, to the byte as ``check_urdf`` prints it."""
+"""The link tree as text, byte for byte as ``check_urdf`` prints it."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ DEEPEST = 200
 
 
 def tree_text(robot: Robot) -> str:
-    """The robot's name and its links, children in the order of their joints' names, four blanks a level.
+    """Return the robot's name and its links as an indented list.
 
-    From level `DEEPEST` on the blanks stay as many: those of a chain of a hundred thousand links fill the memory.
+    Children are ordered by joint name, with four blanks per level. From level `DEEPEST` on, the indentation no longer
+    grows: in a chain of a hundred thousand links it would fill the memory.
     """
     lines = [
         f"robot name is: {robot.name}",

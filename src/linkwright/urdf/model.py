@@ -1,8 +1,9 @@
-"""The robot model: what a URDF file says, typed.
+"""The robot model: the typed contents of a URDF file.
 
-Units are SI: metres, radians, kilograms, seconds, newtons. Every pose is that of a child frame in its parent frame.
-Every part keeps the element it was read from, which knows its place in the file (through xacro, where there was any).
-Source of meaning: REP-independent, the ROS ``urdf`` package's XML specification and urdfdom's reading of it.
+Units are SI: metres, radians, kilograms, seconds, newtons. Every pose is the pose of a child frame in its parent frame.
+Every part stores the element from which it was read, which knows its position in the file (through xacro, if it was
+used). Sources of the meaning, independent of REPs: the XML specification of the ROS package ``urdf``, and urdfdom's
+interpretation of it.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ Geometry = SimpleShape | Mesh
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """A colour (red, green, blue, alpha, each 0 to 1), a texture URI, or both; both None is a bare reference."""
+    """A colour (red, green, blue, alpha, each 0 to 1), a texture URI, or both; both are None in a reference by name."""
 
     name: str
     rgba: tuple[float, float, float, float] | None = None
@@ -41,7 +42,7 @@ class Material:
 
 @dataclass(frozen=True, slots=True)
 class Visual:
-    """A shape to draw. `material` is resolved by urdfdom's rules (first definition in the file wins), or None."""
+    """A shape to draw; `material` follows urdfdom's rules (the first definition in the file wins), or is None."""
 
     geometry: Geometry
     origin: Pose = IDENTITY_POSE
@@ -63,7 +64,7 @@ class Collision:
 
 @dataclass(frozen=True, slots=True)
 class Inertial:
-    """Mass in kg, centre-of-mass frame in the link frame, inertia tensor about it in kg m2."""
+    """The mass in kg, the pose of the centre of mass in the link frame, and the inertia tensor about it in kg m2."""
 
     mass: float
     ixx: float
@@ -78,7 +79,7 @@ class Inertial:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A rigid body; its frame is that of the joint above it."""
+    """A rigid body, whose frame is the frame of its parent joint."""
 
     name: str
     inertial: Inertial | None = None
@@ -89,7 +90,10 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """Lower and upper in rad or m, effort in N m or N, velocity in rad/s or m/s; the last three are URDF 1.2."""
+    """Joint limits: lower and upper in rad or m, effort in N m or N, velocity in rad/s or m/s.
+
+    The last three fields belong to URDF 1.2.
+    """
 
     lower: float = 0.0
     upper: float = 0.0
@@ -102,7 +106,7 @@ class Limit:
 
 @dataclass(frozen=True, slots=True)
 class Mimic:
-    """Position = multiplier * position of `joint` + offset (rad or m)."""
+    """A mimic relation: position = multiplier * position of `joint` + offset (rad or m)."""
 
     joint: str
     multiplier: float = 1.0
@@ -121,7 +125,7 @@ class Safety:
 
 @dataclass(frozen=True, slots=True)
 class Dynamics:
-    """Damping in N m s/rad or N s/m; friction in N m or N."""
+    """Joint dynamics: damping in N m s/rad or N s/m, friction in N m or N."""
 
     damping: float = 0.0
     friction: float = 0.0
@@ -129,7 +133,7 @@ class Dynamics:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """Reference positions in rad or m."""
+    """Reference positions of a joint, in rad or m."""
 
     rising: float | None = None
     falling: float | None = None
@@ -155,12 +159,12 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """A whole description. Links, joints and materials are in file order.
+    """A complete description. Links, joints and materials are in file order.
 
     Attributes:
-        version: the file's ``version`` attribute as (major, minor); (1, 0) when absent.
-        root: name of the one link without a parent joint.
-        extensions: elements other rooms read: ``gazebo``, ``ros2_control``, ``transmission``, ``sensor``, ...
+        version: the file's ``version`` attribute as (major, minor); (1, 0) if it is missing.
+        root: the name of the only link without a parent joint.
+        extensions: elements that other rooms read: ``gazebo``, ``ros2_control``, ``transmission``, ``sensor``, ...
     """
 
     name: str

@@ -1,16 +1,16 @@
-"""Reading a URDF document into a robot, and reporting all its mistakes at once.
+"""Read a URDF document into a robot, and report all its mistakes together.
 
-It accepts what urdfdom 3.0.1 accepts and, for files of version 1.1 and 1.2, what urdfdom 6.0.0 accepts. Where urdfdom
-stops at the first error, it continues.
+The reader accepts what urdfdom 3.0.1 accepts and, for files of version 1.1 and 1.2, what urdfdom 6.0.0 accepts. Where
+urdfdom stops at the first error, the reader continues.
 
-Reading links, their materials, and joints, by urdfdom's rules.
+Links, their materials, and joints are read by urdfdom's rules.
 
 A joint that cannot be read makes urdfdom refuse the whole model; all its mistakes are reported. A part of a link that
 cannot be read does not: the link stays, without that part and without the parts after it in the order inertial,
 visuals, collisions. Linkwright does the same, and reports the error.
 
-Of materials the first definition of a name in the file wins, those at robot level before those in links, even over
-the colour written in the visual itself. A definition in a later link does not help an earlier one.
+The first definition of a material name in the file wins. Definitions at robot level take precedence over those in
+links, even over the colour written in the visual itself. A definition in a later link does not apply to an earlier one.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def read_link(element: Element, materials: MaterialTable, findings: UrdfReport) 
 
 
 def _drop_what_urdfdom_drops(values: dict[str, Any], findings: UrdfReport) -> None:
-    """Keep only the parts before the first unreadable one, and report at its first error which ones are lost."""
+    """Keep only the parts before the first unreadable one, and mention the lost parts in its first error."""
     element: Element = values["element"]
     inertial = element.first("inertial")
     first_lost: tuple[ElementRule, Element] | None = None
@@ -74,7 +74,10 @@ def _drop_what_urdfdom_drops(values: dict[str, Any], findings: UrdfReport) -> No
 
 
 def _first_error(rule: ElementRule, part: Element, owner: Element, version: Version) -> Diagnostic:
-    """Return the error that urdfdom stops at, which reads the children of a part in the order of the rule."""
+    """Return the error at which urdfdom stops.
+
+    urdfdom reads the children of a part in the order of the rule.
+    """
     for child in rule.children:
         alone = UrdfReport(version)
         element = part.first(child.tag)
@@ -96,7 +99,7 @@ def _visual(fields: dict[str, Any], materials: MaterialTable, owner: Element) ->
 
 
 class MaterialTable:
-    """The materials known so far, by name, and the names that nothing defined."""
+    """The materials that are known so far, by name, and the names that were not defined."""
 
     __slots__ = ("_findings", "_undefined", "known")
 
@@ -145,7 +148,7 @@ class MaterialTable:
             assert element is not None
             color = element.first("color")
             if color is not None and "rgba" in color.attributes:
-                continue  # its colour is malformed, and that was said
+                continue  # its colour is malformed, which has been reported
             later = self.known.get(material.name)
             if later is not None:
                 hint = phrase("a later link defines it: move that definition to robot level")
@@ -162,9 +165,10 @@ def read_material(element: Element, owner: Element, findings: UrdfReport) -> Mat
 
 
 def read_joint(element: Element, findings: UrdfReport) -> Joint:
-    """Return a joint; if it cannot be read, report that and mark the findings as rejecting the model.
+    """Return a joint; if it cannot be read, report this and mark the findings as rejecting the model.
 
-    Without the tag ``<axis>`` the axis is 1 0 0 and, oddly but as in urdfdom, 0 0 0 for a tag without 'xyz'.
+    Without the element ``<axis>`` the axis is 1 0 0; for an element without 'xyz' it is 0 0 0, which is odd but as in
+    urdfdom.
     """
     before = findings.error_count
     rule = JOINT if element.attributes.get("type") in _HAS_AXIS else _WITHOUT_AXIS
@@ -229,8 +233,8 @@ class Reading:
     """The result of reading a description.
 
     Attributes:
-        robot: the robot, or None when urdfdom would refuse the model. It may be there beside errors: urdfdom, and so
-            we, keep a model whose link has a malformed part, and drop that part.
+        robot: the robot, or None if urdfdom would refuse the model. There may be a robot despite errors: like urdfdom,
+            Linkwright keeps a model in which a part of a link is malformed, and drops this part.
         diagnostics: all errors and warnings, in the order of the text.
     """
 
@@ -239,7 +243,7 @@ class Reading:
 
 
 def read(document: Document) -> Reading:
-    """Read a URDF document; it never raises for what the document says."""
+    """Read a URDF document; its content never raises an error."""
     findings = UrdfReport()
     robot = _read_robot(document.root, findings)
     return Reading(None if findings.rejected else robot, findings.in_order())
@@ -279,7 +283,7 @@ def _read_robot(root: Element, findings: UrdfReport) -> Robot | None:
 
 
 def _by_name(kind: str, parts: Iterable[PartT], findings: UrdfReport) -> dict[str, PartT]:
-    """Return links or joints by name; of several with one name the first."""
+    """Return links or joints by name; if several have the same name, the first one counts."""
     found: dict[str, PartT] = {}
     for part in parts:
         first = found.setdefault(part.name, part)
@@ -351,7 +355,7 @@ def _report_leftover_xacro(root: Element, extensions: list[Element], findings: U
 
 
 def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
-    """Report mimic joints without a leader, which urdfdom does not check."""
+    """Report mimic joints without the joint that they follow, which urdfdom does not check."""
     for joint in joints.values():
         if joint.mimic is None:
             continue

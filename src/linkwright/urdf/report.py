@@ -1,4 +1,4 @@
-"""Findings of the reader in words, in the order of the text: missing, malformed and misplaced parts of URDF."""
+"""Messages of the reader in the order of the text, about missing, malformed and misplaced parts of URDF."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ class Findings:
     """The findings of one reading, and whether they reject the robot.
 
     Attributes:
-        version: the URDF version the file is read as.
+        version: the URDF version as which the file is read.
         rejected: whether urdfdom would refuse the model.
-        count: how many findings there are so far.
-        error_count: how many of the findings so far are errors.
+        count: the number of findings so far.
+        error_count: the number of errors among them.
     """
 
     __slots__ = ("_found", "count", "error_count", "rejected", "version")
@@ -63,7 +63,7 @@ class Findings:
         hint: Phrase | None = None,
         notes: Sequence[Note] = (),
     ) -> None:
-        """Report an error that leaves no robot."""
+        """Report an error that makes urdfdom refuse the model."""
         self.rejected = True
         self._add(Severity.ERROR, code, message, element, attribute, hint, notes)
 
@@ -77,7 +77,7 @@ class Findings:
         hint: Phrase | None = None,
         notes: Sequence[Note] = (),
     ) -> None:
-        """Report an error in a part that urdfdom drops or misreads while it keeps the model."""
+        """Report an error in a part that urdfdom drops or misreads although it keeps the model."""
         self._add(Severity.ERROR, code, message, element, attribute, hint, notes)
 
     def warning(
@@ -90,11 +90,11 @@ class Findings:
         hint: Phrase | None = None,
         notes: Sequence[Note] = (),
     ) -> None:
-        """Report something that is read without complaint and is hardly meant."""
+        """Report something that urdfdom accepts without complaint but that is probably not intended."""
         self._add(Severity.WARNING, code, message, element, attribute, hint, notes)
 
     def duplicate(self, kind: str, name: str, element: Element, first: Element | None) -> None:
-        """Report a second element of one kind and name."""
+        """Report a second element of the same kind and name."""
         notes = (Note(phrase("first defined here"), first.span()),) if first else ()
         hint = phrase("give each {kind} a name of its own", kind=term(kind))
         self.reject(
@@ -107,18 +107,18 @@ class Findings:
         )
 
     def first_error(self) -> Diagnostic:
-        """Return the first error; there is one."""
+        """Return the first error; there must be one."""
         return next(found for found in self._found if found.severity is Severity.ERROR)
 
     def annotate(self, finding: Diagnostic, note: Note) -> None:
-        """Add a note to a finding, the latest one that is equal."""
+        """Add a note to a finding, or to the latest one that is equal to it."""
         for index in range(len(self._found) - 1, -1, -1):
             if self._found[index] == finding:
                 self._found[index] = finding.but(notes=(*finding.notes, note))
                 return
 
     def in_order(self) -> tuple[Diagnostic, ...]:
-        """Return all findings by place, and files in the order in which they first occurred."""
+        """Return all findings by position, with files in the order in which they first occurred."""
         files: dict[str, int] = {}
 
         def place(diagnostic: Diagnostic) -> tuple[int, int, int]:
@@ -176,7 +176,7 @@ _SHAPE_ALIASES = {"cube": "box", "cuboid": "box", "ball": "sphere", "tube": "cyl
 
 
 def owner_name(owner: Element) -> Phrase:
-    """The name of an element's owner in messages: ``joint 'elbow'``, ``the robot``."""
+    """Return the name of an element's owner in messages: ``joint 'elbow'``, ``the robot``."""
     name = owner.attributes.get("name")
     if owner.tag == "joint":
         return phrase("a joint without a name") if name is None else phrase("joint '{name}'", name=name)
@@ -188,7 +188,7 @@ def owner_name(owner: Element) -> Phrase:
 
 
 class UrdfReport(Findings):
-    """The findings of one reading, with messages for the reader of elements (`linkwright.schema.reading`)."""
+    """The findings of one reading, with messages for the element reader (`linkwright.schema.reading`)."""
 
     __slots__ = ()
 
@@ -208,7 +208,10 @@ class UrdfReport(Findings):
         self.error("URDF120", message, element, hint=hint)
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
-        """Report a malformed attribute; a colour of too few numbers is black, one of other words is unreadable."""
+        """Report a malformed attribute.
+
+        A colour with too few numbers becomes black; other malformed colours are unreadable.
+        """
         name, value = attribute.name, element.attributes[attribute.name]
         fields = {"name": name, "tag": rule.tag, "owner": owner_name(owner), "value": value}
         if attribute.type is JOINT_TYPE:
@@ -273,13 +276,13 @@ class UrdfReport(Findings):
         self.error("URDF130", message, misspelt or element, hint=hint)
 
     def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
-        """There is no shape."""
+        """Report that a geometry does not contain a shape."""
         assert rule.tag == "geometry"
         hint = phrase("put a box, cylinder, sphere or mesh in it")
         self.error("URDF131", phrase("<geometry> of {owner} is empty", owner=owner_name(owner)), element, hint=hint)
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
-        """Report an element in the place of a shape that is not one, or not in this version."""
+        """Report an element in the place of a shape that is not a shape, or not one in this version."""
         if child.tag in rule.child_rules:
             hint = phrase('write <robot version="1.1" ...>, or build it from a cylinder and two spheres')
             self.error(
@@ -310,7 +313,7 @@ class UrdfReport(Findings):
             text=text,
         )
         self.warning("URDF122", message, color, "rgba", hint=hint)
-        return BLACK  # urdfdom is silent here and paints it black
+        return BLACK  # urdfdom reports nothing, and uses black
 
 
 def _number_hint(rule: ElementRule, attribute: AttributeRule, value: str) -> Phrase | None:
@@ -320,7 +323,7 @@ def _number_hint(rule: ElementRule, attribute: AttributeRule, value: str) -> Phr
 
 
 def _joint_type_hint(written: str) -> Phrase:
-    """Return how to fix an unknown joint type."""
+    """Return a hint on how to fix an unknown joint type."""
     folded = written.strip().casefold()
     if folded in JOINT_TYPES:
         return phrase("write '{folded}'", folded=folded)
@@ -333,7 +336,7 @@ def _joint_type_hint(written: str) -> Phrase:
 
 
 def _shape_hint(written: str, shapes: tuple[ElementRule, ...]) -> Phrase:
-    """Return how to fix an unknown shape."""
+    """Return a hint on how to fix an unknown shape."""
     if written.startswith("xacro:"):
         return phrase("xacro did not evaluate this: expand the file with xacro first")
     names = [shape.tag for shape in shapes]

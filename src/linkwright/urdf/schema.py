@@ -1,11 +1,10 @@
-"""The language as data: elements and attributes that urdfdom reads, with type, default, unit, meaning and checks.
+"""The language as data: the elements and attributes that urdfdom reads, with type, default, unit, meaning and checks.
 
-Reader, writer, the hints of errors, hover texts, documentation and linting all use this table; the few rules that a
-table cannot express are functions here. Source: urdfdom 3.0.1 for URDF 1.0, urdfdom 6.0.0 for 1.1 and 1.2.
+The reader, the writer, error hints, hover texts, documentation and linting all use this table. Source: urdfdom 3.0.1
+for URDF 1.0, urdfdom 6.0.0 for 1.1 and 1.2.
 
-Rules of urdfdom that the table of elements cannot express.
-
-Each function gets a value that was read, reports its mistakes beyond its form, and returns the value to use.
+The functions here are rules of urdfdom that the table cannot express. Each function receives a value that was read,
+reports mistakes other than its syntax, and returns the value to use.
 """
 
 from __future__ import annotations
@@ -56,18 +55,21 @@ _UNSIGNED = ("effort", "velocity", "acceleration", "deceleration", "jerk")
 
 
 def pose_of(xyz: Vector3, rpy: Vector3, quaternion: Quaternion | None) -> Pose:
-    """Return the pose of an ``<origin>``; a quaternion is normalised, and one of zeros is the identity."""
+    """Return the pose of an ``<origin>``.
+
+    A quaternion is normalised, and a zero quaternion is the identity.
+    """
     if quaternion is None:
         return Pose(xyz, rpy)
     norm = sqrt(sum(part * part for part in quaternion))
     if abs(norm - 1) < _ROUNDING:
-        norm = 1.0  # what is written for a quaternion of unit length is read as the same one
+        norm = 1.0  # a quaternion that was written with unit length keeps its exact value
     x, y, z, w = (part / norm for part in quaternion) if norm > 0 else (0.0, 0.0, 0.0, 1.0)
     return Pose(xyz, rpy_from_quaternion((x, y, z, w)), (x, y, z, w))
 
 
 def check_origin(pose: Pose, element: Element, owner: Element, findings: Findings) -> Any:
-    """Check that there is one kind of rotation, and that angles are not in degrees."""
+    """Check that only one kind of rotation is given, and that angles are not in degrees."""
     if pose.quaternion is not None:
         if "rpy" not in element.attributes:
             return pose
@@ -88,7 +90,7 @@ def check_origin(pose: Pose, element: Element, owner: Element, findings: Finding
 
 
 def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Findings) -> Any:
-    """Check that every size is above zero, as URDF 1.2 requires; older versions accept anything."""
+    """Check that every size is positive, as URDF 1.2 requires; older versions accept any size."""
     if findings.version < (1, 2):
         return geometry
     good = True
@@ -116,7 +118,7 @@ def check_end(ends: tuple[str], element: Element, owner: Element, findings: Find
 
 
 def check_dynamics(dynamics: Dynamics, element: Element, owner: Element, findings: Findings) -> Any:
-    """Check that one of the two attributes is set."""
+    """Check that at least one of the two attributes is set."""
     if "damping" in element.attributes or "friction" in element.attributes:
         return dynamics
     message = phrase("<dynamics> of {owner} has neither 'damping' nor 'friction'", owner=owner_name(owner))
@@ -126,7 +128,10 @@ def check_dynamics(dynamics: Dynamics, element: Element, owner: Element, finding
 
 
 def check_limit(limit: Limit, element: Element, owner: Element, findings: Findings) -> Limit:
-    """Check ordered bounds and positive sizes, as URDF 1.2 requires; deceleration defaults to acceleration."""
+    """Check that bounds are ordered and sizes positive, as URDF 1.2 requires.
+
+    The deceleration defaults to the acceleration.
+    """
     if findings.version < (1, 2):
         return limit
     given = element.attributes
@@ -274,7 +279,7 @@ VISUAL = ElementRule(
         ),
     ),
     many=True,
-    make=dict,  # the link makes the visual, once it knows the material of the name
+    make=dict,  # the link creates the visual once it knows the named material
     located=True,
     field="visuals",
 )
@@ -297,7 +302,7 @@ LINK = ElementRule(
     (_NAME,),
     (INERTIAL, VISUAL, COLLISION),
     many=True,
-    make=dict,  # urdfdom leaves out the parts after an unreadable one
+    make=dict,  # urdfdom drops the parts after an unreadable one
     keeps=True,
     located=True,
     get=lambda robot: robot.links.values(),

@@ -1,6 +1,6 @@
-"""The tree that joints make of links: checking it while reading, walking it afterwards.
+"""The tree that joints form of links: check it while reading, and traverse it afterwards.
 
-Children come in the order of their joints' names, as urdfdom's maps give them.
+Children are in the order of their joints' names, as in urdfdom's maps.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _MOST_VISITS = 64
 
 
 def children_of(robot: Robot) -> Mapping[str, tuple[Joint, ...]]:
-    """Return the child joints of every link, in the order of their names; empty for a leaf."""
+    """Return the child joints of every link, ordered by name; empty for a leaf."""
     children: dict[str, list[Joint]] = {name: [] for name in robot.links}
     for _, joint in sorted(robot.joints.items()):
         children[joint.parent].append(joint)
@@ -27,15 +27,18 @@ def children_of(robot: Robot) -> Mapping[str, tuple[Joint, ...]]:
 
 
 def parent_joints(robot: Robot) -> Mapping[str, Joint]:
-    """Return the parent joint of every link except the root; of several the last by name, as in urdfdom."""
+    """Return the parent joint of every link except the root.
+
+    Of several parent joints the last by name counts, as in urdfdom.
+    """
     return {joint.child: joint for _, joint in sorted(robot.joints.items())}
 
 
 def walk(robot: Robot) -> Iterator[tuple[Joint, int]]:
-    """The joints below the root, depth first, each with its depth from 1.
+    """Yield the joints below the root, depth first, each with its depth, starting at 1.
 
-    Below a link with several parents they come once for each of them, as in urdfdom; but not for more than
-    `_MOST_VISITS` ways down to a link, whose number may double with every link.
+    Joints below a link with several parents are repeated for each parent, as in urdfdom, but only for up to
+    `_MOST_VISITS` paths to a link, because the number of paths may double with every link.
     """
     children = children_of(robot)
     visits: Counter[str] = Counter()
@@ -49,10 +52,11 @@ def walk(robot: Robot) -> Iterator[tuple[Joint, int]]:
 
 
 def find_root(links: Mapping[str, Link], joints: Sequence[Joint], findings: Findings) -> str:
-    """Check that the joints make a tree of the links; the root's name, empty when there is no one root.
+    """Check that the joints form a tree of the links, and return the root's name.
 
-    urdfdom refuses unknown links and any number of roots but one. It overlooks loops away from the root, links with
-    two parents and, at the price of a crash later, loops below the root; those we refuse.
+    The name is empty if there is not exactly one root. urdfdom refuses unknown links and any number of roots except
+    one. It overlooks loops away from the root, links with two parents and, at the price of a crash later, loops below
+    the root; Linkwright refuses those.
     """
     if not _ends_exist(links, joints, findings):
         return ""
@@ -79,7 +83,7 @@ def _ends_exist(links: Mapping[str, Link], joints: Sequence[Joint], findings: Fi
                 continue
             good = False
             if not name:
-                continue  # missing, and that was said
+                continue  # missing, which has been reported
             assert joint.element is not None
             end = joint.element.first(tag)
             assert end is not None
@@ -117,7 +121,7 @@ def _report_roots(roots: Sequence[str], links: Mapping[str, Link], findings: Fin
 
 
 def _is_tree(root: str, links: Mapping[str, Link], joints: Sequence[Joint], moved: set[str]) -> bool:
-    """Return whether no link has two parents and all hang from the root."""
+    """Return whether no link has two parents and all links are connected to the root."""
     if len(moved) != len(joints):
         return False
     parents = {joint.child: joint.parent for joint in joints}
@@ -138,7 +142,7 @@ def _check_parents(joints: Sequence[Joint], findings: Findings) -> None:
     for joint in joints:
         first = above.setdefault(joint.child, joint)
         if first is joint or first.name == joint.name:
-            continue  # of two joints with one name that is said
+            continue  # one of two joints with the same name, which has been reported
         assert joint.element is not None
         end = joint.element.first("child")
         assert end is not None
@@ -161,7 +165,7 @@ def _check_reachable(root: str, links: Mapping[str, Link], joints: Sequence[Join
     below: dict[str, list[str]] = {}
     for joint in joints:
         below.setdefault(joint.parent, []).append(joint.child)
-    # Depth first with an explicit stack; a link on the present path that comes up again closes a loop.
+    # Depth first with an explicit stack; a link that occurs twice on the current path closes a loop.
     seen, path = {root}, {root}
     stack = [(root, iter(below.get(root, ())))]
     while stack:
@@ -187,7 +191,7 @@ def _check_reachable(root: str, links: Mapping[str, Link], joints: Sequence[Join
 
 
 def _loop_from(link: str, joints: Sequence[Joint]) -> list[str]:
-    """Return the loop that the parent joints of a link lead to, from parent to child."""
+    """Return the loop to which the parent joints of a link lead, from parent to child."""
     parents = {joint.child: joint.parent for joint in joints}
     path = [link]
     while path[-1] in parents and parents[path[-1]] not in path:

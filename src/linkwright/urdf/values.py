@@ -1,8 +1,8 @@
 """Attribute values as urdfdom reads them: types, numbers and vectors, and hints for malformed ones.
 
-urdfdom hands an attribute to a C++ stream in the classic locale and wants all of it used up. So a blank may lead a
-number but not follow it; ``1e3``, ``.5``, ``5.`` and ``+1`` are numbers; ``inf``, ``nan``, ``0x10``, ``0,5`` and the
-empty text are not. A vector is split at the space character alone.
+urdfdom passes an attribute to a C++ stream in the classic locale and requires that all of it is consumed. Therefore
+blanks may precede a number but not follow it; ``1e3``, ``.5``, ``5.`` and ``+1`` are numbers; ``inf``, ``nan``,
+``0x10``, ``0,5`` and the empty text are not. A vector is split only at the space character.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ _DIGITS = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _NUMBER = re.compile(rf"[ \t\n\v\f\r]*{_DIGITS}").fullmatch
 _PIECE = rf"[\t\n\v\f\r]*({_DIGITS})"
 _VECTOR3 = re.compile(rf" *{_PIECE} +{_PIECE} +{_PIECE} *").fullmatch
-# What consists of these signs alone is a number to Python exactly when it is one to urdfdom, and is soon told apart:
-# a single one, which is short, soonest by stripping them.
+# If a text consists only of these characters, it is a number in Python exactly if it is one in urdfdom. The fastest
+# test for a single, short value is to strip these characters.
 _PLAIN_SIGNS = "-+.0123456789eE "
 _PLAIN = re.compile(r"[-+.0-9eE ]*").fullmatch
 
@@ -41,15 +41,15 @@ _UNITS = {
 }
 _WITH_UNIT = lazy_pattern(rf"\s*({_DIGITS})\s*(\D+?)\s*")
 
-# Values repeat ("0 0 0", "1"): remembering them is worth a third of the reader's time.
+# Values repeat ("0 0 0", "1"), so caching them saves a third of the reader's time.
 _REMEMBERED = 4096
 
 
 def number(text: str) -> float:
-    """The number an attribute says.
+    """Parse a number.
 
     Raises:
-        ValueError: it says none, or one too large for a double.
+        ValueError: the text is not a number, or a number too large for a double.
     """
     if (text.strip(_PLAIN_SIGNS) or text[-1:] == " ") and not _NUMBER(text):
         raise ValueError(text)
@@ -73,7 +73,7 @@ def vector3(text: str) -> Vector3:
         if not match:
             raise ValueError(text)
         x, y, z = map(float, match.groups())
-    if not isfinite(x + y + z) and (isinf(x) or isinf(y) or isinf(z)):  # one call where all is well
+    if not isfinite(x + y + z) and (isinf(x) or isinf(y) or isinf(z)):  # one call if all values are finite
         raise ValueError(text)
     return x, y, z
 
@@ -82,13 +82,13 @@ def numbers(text: str) -> tuple[float, ...]:
     """Parse any count of numbers separated by spaces.
 
     Raises:
-        ValueError: one of them is not a number; its only argument is that piece.
+        ValueError: one of them is not a number; its only argument is the invalid text.
     """
     return tuple(number(piece) for piece in text.split(" ") if piece)
 
 
 def number_hint(text: str) -> Phrase | None:
-    """Return how to fix a value that is not a number, or None if it cannot be guessed."""
+    """Return a hint on how to fix a value that is not a number, or None if this cannot be guessed."""
     stripped = text.strip()
     if not stripped:
         return phrase("give a number")
@@ -116,7 +116,7 @@ def number_hint(text: str) -> Phrase | None:
 
 
 def vector_hint(text: str, count: int) -> Phrase | None:
-    """Return how to fix a value that is not `count` numbers separated by spaces, or None."""
+    """Return a hint on how to fix a value that is not `count` numbers separated by spaces, or None."""
     if "${" in text or "$(" in text:
         return number_hint(text)
     if not text.strip():
@@ -140,17 +140,20 @@ def vector_hint(text: str, count: int) -> Phrase | None:
 
 
 def looks_like_degrees(*angles: float) -> bool:
-    """Return whether angles that should be radians can hardly be: one is a whole multiple of 5, several turns far."""
+    """Return whether angles that should be in radians are probably in degrees.
+
+    This is the case if one of them is a multiple of 5 whose magnitude is between 10 and 720.
+    """
     if max(map(abs, angles)) < 10:
         return False
     return any(not -10 < angle < 10 and angle % 5 == 0 and -720 <= angle <= 720 for angle in angles)
 
 
 def looks_like_degree_limits(lower: float, upper: float) -> bool:
-    """Return whether the bounds of a joint can hardly be radians.
+    """Return whether the bounds of a joint are probably in degrees.
 
-    As `looks_like_degrees`, and one of them is an angle that joints have in degrees: limits of 10, 50 or 100 rad are
-    written where none are meant, or for a joint with a gear.
+    In addition to `looks_like_degrees`, one bound must be a typical joint angle in degrees: limits of 10, 50 or 100 rad
+    are written for joints without real limits, or for a joint with a gear.
     """
     return looks_like_degrees(lower, upper) and any(30 <= abs(end) <= 360 and end % 15 == 0 for end in (lower, upper))
 
@@ -161,7 +164,7 @@ def degrees_hint(*angles: float) -> Phrase:
 
 
 def plain(value: float) -> str:
-    """Return a number as short as possible without loss, in a form that the reader accepts."""
+    """Return a number in the shortest form without loss that the reader accepts."""
     return repr(value).removesuffix(".0")
 
 
