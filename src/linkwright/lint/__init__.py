@@ -1,4 +1,4 @@
-"""Rules over descriptions and the packages around them."""
+"""Lint rules for robot descriptions and the packages that contain them."""
 
 from linkwright.lint.engine import Checked, check, examine
 from linkwright.lint.finding import Finding

@@ -1,4 +1,4 @@
-"""Apply fixes to files: as many as fit together, then again, until nothing is left to fix."""
+"""Apply fixes to files, pass by pass, until no fix is left."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Check = Callable[[str | None], Iterable[Diagnostic]]
 
 @dataclass(slots=True)
 class FixResult:
-    """The outcome of fixing a file.
+    """The result of fixing a file.
 
     Attributes:
         texts: path -> new text of every file that changes.
@@ -36,25 +36,25 @@ class FixResult:
     counts: dict[str, int] = field(default_factory=dict)
 
     def diff(self) -> str:
-        """The changes as a unified diff, as ``patch -p0`` takes it."""
+        """Return the changes as a unified diff that ``patch -p0`` accepts."""
         return "".join(_diff(file, text) for file, text in self.texts.items())
 
 
 def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = True) -> FixResult:
-    """Fix what can be fixed in a description.
+    """Apply all available fixes to a description.
 
-    Only files of its package are changed or, without a package, those in and below its folder. A pass applies all fixes
-    that do not overlap; the next pass checks the result.
+    Only files of the description's package are changed or, if it is not in a package, files in and below its folder. A
+    pass applies all fixes that do not overlap; the next pass checks the result.
 
     Args:
-        path: the description.
-        check: checks it; called with the new text of `path` if nothing is written, else with None.
-        unsafe: whether to apply fixes too that may change the meaning.
-        write: whether to change the files; otherwise only the result has the changes, and an included file is fixed in
-            one pass.
+        path: the path of the description.
+        check: the function that checks it; called with the new text of `path` if nothing is written, else with None.
+        unsafe: whether to apply fixes that may change the meaning, too.
+        write: whether to change the files; otherwise only the result contains the changes, and an included file is
+            fixed in one pass.
 
     Raises:
-        LinkwrightError: LINT201, a file cannot be written.
+        LinkwrightError: LINT201 if a file cannot be written.
     """
     home = _home(path)
     result = FixResult()
@@ -75,15 +75,15 @@ def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = Tr
 
 
 def write_text(path: Path, text: str, encoding: str = "utf-8") -> None:
-    """Write a file whole or not at all, with its permissions and its byte order mark; a link stays a link.
+    """Write a file atomically, keeping its permissions and byte order mark; a link stays a link.
 
     Args:
-        path: the file.
-        text: its new text, without a byte order mark.
-        encoding: the encoding that it has.
+        path: the path of the file.
+        text: the new text, without a byte order mark.
+        encoding: the encoding of the file.
 
     Raises:
-        LinkwrightError: LINT201, it cannot be written.
+        LinkwrightError: LINT201 if the file cannot be written.
     """
     try:
         before = path.read_bytes()
@@ -120,7 +120,7 @@ def _may_change(fix: Fix, home: Path, done: set[str]) -> bool:
 
 
 def _apply(fixes: Iterable[tuple[str, Fix]], result: FixResult, texts: Mapping[str, str]) -> dict[str, str]:
-    """The new texts of the files that fixes change; of fixes that overlap, the first is applied."""
+    """Return the new texts of the files that fixes change; of overlapping fixes, the first is applied."""
     taken: dict[str, list[Edit]] = {}
     counts: dict[str, int] = {}
     before: dict[str, str | None] = {}
@@ -154,7 +154,7 @@ def _edited(text: str, edits: Iterable[Edit]) -> str:
 
 
 def _text(file: str) -> str | None:
-    """Return the text of a file on the disk, without a byte order mark; None if it is not UTF-8."""
+    """Return the text of a file on disk, without a byte order mark; None if it is not UTF-8."""
     try:
         return read_bytes(file).removeprefix(_MARK).decode("utf-8")
     except (LinkwrightError, UnicodeDecodeError):

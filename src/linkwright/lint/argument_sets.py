@@ -1,4 +1,4 @@
-"""Checking a description with every set of values that its arguments are given, and telling each finding once."""
+"""Check a description with every set of values that its arguments receive, and report each finding once."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ Key = tuple[str, Span | None, object]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Run:
-    """One check.
+    """The check of a description with one set of arguments.
 
     Attributes:
-        given: the values.
+        given: the values of the arguments.
         checked: the result.
         errors: the errors of the expansion and of the reader.
-        hanging: those of them that may be due to arguments whose values only the caller knows.
+        hanging: the errors among them that may be due to arguments whose values only the caller knows.
     """
 
     given: ArgumentSet
@@ -67,18 +67,19 @@ class _Run:
         return frozenset(place for place in places if place[0] in self.errors)
 
     def is_fine(self, common: frozenset[Key]) -> bool:
-        """Return whether it only has errors that all runs have, and none that may be due to unknown values."""
+        """Return whether all runs have this run's errors, and none depends on unknown values."""
         return self.errors <= common and not self.hanging
 
 
 @dataclass(eq=False)
 class SetCheck:
-    """The check of one description.
+    """The check of one description with several sets of arguments.
 
     Args:
         path: the file.
-        finder: finds packages.
-        examine: checks the file with some values; expands it if the flag is True, or as the file asks if it is None.
+        finder: the finder of packages.
+        examine: the function that checks the file with some values. It expands the file if its flag is True; if the
+            flag is None, the file decides.
         settings: the settings for the file.
         is_named: whether the user named the file, so that a failure to expand it without arguments is reported.
     """
@@ -92,11 +93,11 @@ class SetCheck:
     _is_expanded: bool = field(default=False, init=False)
 
     def with_configured(self, sets: Sequence[Mapping[str, str]]) -> Checked:
-        """Return the check with the sets of a configuration, which replace all those of callers."""
+        """Return the result for the argument sets of a configuration, which replace the sets of all callers."""
         return self._together([self._run(ArgumentSet(values)) for values in sets], ())
 
     def with_callers(self, find_sets: Callable[[], Sequence[ArgumentSet]]) -> Checked:
-        """The check with the defaults and the sets that callers give; `find_sets` is asked only where it matters."""
+        """Return the result for the defaults and the callers' sets; `find_sets` is called only if needed."""
         default = self._run(_NO_VALUES)
         if _has_expressions(default.checked):
             default = self._expanded(find_sets()) or default
@@ -132,7 +133,7 @@ class SetCheck:
         return self._together(kept, self._needs(kept[0], default, common, sets))
 
     def _expanded(self, sets: Sequence[ArgumentSet]) -> _Run | None:
-        """Return the check of a file that launch files give to xacro, whatever its name; None if xacro would fail."""
+        """Return the run of a file that launch files pass to xacro; None if xacro would fail."""
         if not sets:
             return None
         self._xacro = True
@@ -143,10 +144,11 @@ class SetCheck:
         return default
 
     def _run(self, given: ArgumentSet) -> _Run:
-        # A file that was expanded once is expanded with arguments, too, without another test whether it is xacro.
+        # A file that was expanded once is expanded with other arguments, too, without testing again whether it is
+        # xacro.
         checked = self.examine(given.values, True if given.values and self._is_expanded else self._xacro)
         self._is_expanded = checked.subject is not None and checked.subject.expansion is not None
-        if given.values:  # a caller may give what other descriptions take
+        if given.values:  # a caller may set arguments that only other descriptions declare
             found = tuple(diagnostic for diagnostic in checked.diagnostics if diagnostic.code != UNUSED)
             checked = replace(checked, diagnostics=found)
         errors = frozenset(
@@ -164,7 +166,7 @@ class SetCheck:
     # --- findings ---------------------------------------------------------------------------------------------
 
     def _together(self, runs: Sequence[_Run], more: Iterable[Diagnostic]) -> Checked:
-        """The findings of several runs, each once, and the robot of the first that has one."""
+        """Merge the findings of several runs, each once, with the robot of the first run that has one."""
         collected: dict[Key, tuple[Diagnostic, list[_Run]]] = {}
         for run in runs:
             for key, each in _numbered(run.checked.diagnostics):
@@ -173,7 +175,7 @@ class SetCheck:
         copied = {name for run in runs if run.checked.subject for name in run.checked.subject.once(placeholders)}
         for diagnostic, having in collected.values():
             if diagnostic.code in LEFT_TO_PLACEHOLDERS and as_phrase(diagnostic.message).arguments["name"] in copied:
-                continue  # the rule about these speaks with other values
+                continue  # the placeholder rule reports these, in a run with other values
             if len(having) == len(runs):
                 found.append(diagnostic)
             elif not _holds_for_all_sets(diagnostic):
@@ -184,7 +186,7 @@ class SetCheck:
     def _needs(
         self, working: _Run, default: _Run, common: frozenset[Key], sets: Sequence[ArgumentSet]
     ) -> Iterator[Diagnostic]:
-        """The remark that the defaults alone do not make a robot."""
+        """Yield the finding that the defaults alone do not produce a robot."""
         names = self._needed(working.given.values, common)
         shown = " ".join(f"{name}:={working.given.values[name]}" for name in names[:_FEW])
         message = (
@@ -198,7 +200,7 @@ class SetCheck:
         yield _needs_arguments(default.checked, names, tuple(notes))
 
     def _needed(self, values: Mapping[str, str], common: frozenset[Key]) -> list[str]:
-        """The arguments without which these values make no robot: the others are left out one by one."""
+        """Return the arguments that are needed for a robot, found by leaving each argument out in turn."""
         kept = dict(values)
         for name in values:
             fewer = {each: value for each, value in kept.items() if each != name}
@@ -218,7 +220,7 @@ class SetCheck:
     def _remarked(
         self, default: _Run, runs: Sequence[_Run], common: frozenset[Key], sets: Sequence[ArgumentSet]
     ) -> Checked:
-        """Return the check with the defaults for callers that give unknown values."""
+        """Return the result with the defaults for callers that give unknown values."""
         names = _opened(sets)
         if not names:
             return self._without_values(default, sets)
@@ -226,7 +228,10 @@ class SetCheck:
         return self._only(default, lambda error: _place(error) in certain, names, _when(sets))
 
     def _without_values(self, default: _Run, sets: Sequence[ArgumentSet]) -> Checked:
-        """Return the check for callers without known values: they give the arguments without a declaration or value."""
+        """Return the result for callers without known values.
+
+        Such callers set the arguments that lack a declaration or value.
+        """
         asked = [name for diagnostic in default.checked.diagnostics if (name := asked_argument(diagnostic))]
         if asked:
             hanging = self._changed(default, dict.fromkeys(asked, _ANY_VALUE))
@@ -246,7 +251,7 @@ class SetCheck:
         return self._only(default, lambda error: _place(error) not in hanging, list(changed), _when(sets))
 
     def _changed(self, run: _Run, values: Mapping[str, str]) -> frozenset[Key]:
-        """The errors of a run that other values of some arguments change or remove."""
+        """Return the errors of a run that other values of some arguments change or remove."""
         other = self._run(ArgumentSet({**run.given.values, **values})).messages_of_errors
         return frozenset(place for place, message in run.messages_of_errors if (place, message) not in other)
 
@@ -280,7 +285,7 @@ def _has_expressions(checked: Checked) -> bool:
 
 
 def _takes_arguments(checked: Checked) -> bool:
-    """Whether arguments can change anything: a description that is not expanded, or asks for none, takes none."""
+    """Return whether arguments can change a description: it must be expanded and declare arguments."""
     if checked.subject is None:
         return checked.path.suffix == ".xacro"
     sources = checked.subject.sources.values()
@@ -292,7 +297,10 @@ def _place(diagnostic: Diagnostic) -> Key:
 
 
 def _numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key, Diagnostic]]:
-    """Diagnostics by code, place and their number there: numbers and names in messages differ between sets."""
+    """Yield diagnostics, each with a key of code, place and index among the findings there.
+
+    The key leaves the message out, since numbers and names in messages differ between sets.
+    """
     count: dict[Key, int] = {}
     for diagnostic in diagnostics:
         place = _place(diagnostic)
@@ -301,7 +309,10 @@ def _numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key, Diagnost
 
 
 def _is_excused(run: _Run, tried: Sequence[_Run], common: frozenset[Key]) -> bool:
-    """Return whether a set only fails because its values do not fit together: each works in another set."""
+    """Return whether a set fails only because its values do not fit together.
+
+    Each of the values works in another set.
+    """
     if run.is_fine(common) or not run.given.varied:
         return False
     if run.given.is_mixed:
@@ -316,9 +327,10 @@ def _holds_for_all_sets(diagnostic: Diagnostic) -> bool:
 
 
 def _under_condition(diagnostic: Diagnostic, having: Sequence[_Run], runs: Sequence[_Run]) -> Diagnostic:
-    """Return a finding of some runs; an error is a warning if it needs choices that launch arguments offer.
+    """Return a finding with the values under which it occurs.
 
-    Another argument may have to go with the offered value, such as the number of joints with the kind of arm.
+    An error becomes a warning if it needs choices that launch arguments offer: another argument may have to match the
+    offered value, such as the number of joints and the kind of arm.
     """
     notes = (*diagnostic.notes, _condition(having[0], runs))
     is_offered = diagnostic.severity is Severity.ERROR and all(run.given.is_offered for run in having)
@@ -326,7 +338,7 @@ def _under_condition(diagnostic: Diagnostic, having: Sequence[_Run], runs: Seque
 
 
 def _condition(run: _Run, runs: Sequence[_Run]) -> Note:
-    """The values for which a finding is true that other sets do not show."""
+    """Return a note with the values of a run under which a finding occurs that other sets do not show."""
     values = run.given.values
     own = [name for name in values if any(other.given.values.get(name) != values[name] for other in runs)]
     if not own:
@@ -344,18 +356,21 @@ def asked_argument(diagnostic: Diagnostic) -> str | None:
 
 
 def _opened(sets: Sequence[ArgumentSet]) -> list[str]:
-    """The arguments that callers give values which are only known when they run."""
+    """Return the arguments whose values are known only when their callers run."""
     return list(dict.fromkeys(name for argument_set in sets for name in argument_set.open if name))
 
 
 def _when(sets: Sequence[ArgumentSet]) -> tuple[Note, ...]:
-    """Where a caller gives values that are only known when it runs."""
+    """Return a note on a caller whose values are known only when it runs, or nothing."""
     calls = [argument_set.span for argument_set in sets if argument_set.open]
     return (Note(phrase("their values are only known when this runs"), calls[0]),) if calls else ()
 
 
 def _may_hang_on(code: str) -> bool:
-    """Whether an error may be due to the value of an argument: a name, a file, or how the robot hangs together."""
+    """Return whether an error may depend on the value of an argument.
+
+    Such errors concern a name, a file, or how the robot is connected.
+    """
     if code.startswith("URDF"):
         return code not in TRUE_OF_PARTS
     return code in (UNDECLARED, *_MISSING_FILES)

@@ -1,6 +1,7 @@
-"""Settings from files: ``linkwright.toml``, or ``[tool.linkwright]`` in ``pyproject.toml``, found upwards of a file.
+"""Settings from ``linkwright.toml`` or ``pyproject.toml``, searched upwards from a file.
 
-Mistakes in a configuration are reported with their place, and the rest of it applies all the same.
+In ``pyproject.toml``, the settings are in ``[tool.linkwright]``. Mistakes in a configuration are reported with
+their place; the rest of the configuration still applies.
 """
 
 from __future__ import annotations
@@ -53,13 +54,13 @@ _KINDS = {
 
 
 def settings_for(path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
-    """Return the settings for a file or folder, with the mistakes in their text."""
+    """Return the settings for a file or folder, with the mistakes in its configuration."""
     found = find_configuration(path)
     return (Settings(), ()) if found is None else read_settings(found)
 
 
 def find_configuration(path: Path) -> Path | None:
-    """Return the configuration of a file or folder: the nearest upwards, ``linkwright.toml`` first."""
+    """Return the nearest configuration upwards of a file or folder; ``linkwright.toml`` takes precedence."""
     start = path.absolute()
     for folder in (start, *start.parents):
         own = folder / CONFIGURATION
@@ -86,7 +87,7 @@ def _read_settings(file: Path, _stamp: int) -> tuple[Settings, tuple[Diagnostic,
         source = SourceText(str(file), decode(read_bytes(file), str(file)))
     except LinkwrightError as error:
         return Settings(), error.diagnostics
-    # Not above: most robots are checked without a configuration.
+    # Imported here: most robots are checked without a configuration.
     tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
     try:
         whole = tomllib.loads(source.text)
@@ -123,7 +124,7 @@ def _syntax_error(source: SourceText, error: Exception) -> Diagnostic:
 
 
 class _Reader:
-    """Turns a table into settings; `found` collects the mistakes."""
+    """The reader that turns a table into settings; `found` collects the mistakes."""
 
     def __init__(self, source: SourceText, prefix: tuple[str, ...]) -> None:
         self._source = source
@@ -275,12 +276,12 @@ def _fits(option: Option, value: object) -> bool:
 
 
 def _is_plain(value: object) -> bool:
-    """Return whether a value can be that of an argument."""
+    """Return whether a value is allowed as the value of an argument."""
     return isinstance(value, (str, int, float))
 
 
 def _as_argument(value: str | float) -> str:
-    """A value as a command line has it."""
+    """Return a value as it is written on a command line."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
@@ -289,7 +290,7 @@ def _written(key: str) -> str:
 
 
 def _locate(source: SourceText, path: tuple[str, ...], mark: str | None) -> Span:
-    """The place of a key, or of a text in its value; tomllib keeps no places, so the text is searched."""
+    """Return the place of a key or of a text in its value, by searching, as tomllib keeps no positions."""
     tables: list[tuple[tuple[str, ...], int, int]] = []
     headers = list(_HEADER.finditer(source.text))
     ends = [header.start() for header in headers] + [len(source.text)]
@@ -314,7 +315,7 @@ def _locate(source: SourceText, path: tuple[str, ...], mark: str | None) -> Span
 
 
 def _find_key(text: str, start: int, end: int, keys: tuple[str, ...]) -> tuple[int, int] | None:
-    """A key of a table, written alone, dotted, or in inline tables."""
+    """Return the range of a table's key (plain, dotted, or in inline tables), or None."""
     at, span = start, None
     for index, key in enumerate(keys):
         before = r"[.{,=][ \t]*\{?" if index else "^"

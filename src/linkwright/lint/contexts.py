@@ -1,8 +1,9 @@
-"""Data that checks share at one moment: packages, and results for descriptions with the same expansion.
+"""Data that checks share during one run: packages, and results for identical expansions.
 
-A description is checked with every set of values that callers give its arguments. Most sets read the same files, and
-many give the same robot: an address or a rate only matters to the driver. So rules about files as they are written run
-once for them (`Rule.of_sources`), and all rules once for sets with the same expansion.
+A description is checked with every set of values that callers pass to its arguments. Most sets read the same files,
+and many result in the same robot: an address or a rate only matters to the driver. Therefore, rules that look at
+files as they are written run once for them (`Rule.of_sources`), and all rules run once for sets with the same
+expansion.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ class _Done(NamedTuple):
 
 
 class Contexts:
-    """Data that checks of several files, and of one file with several sets of arguments, share at one moment.
+    """Data that checks of several files, or of one file with several argument sets, share.
 
     Attributes:
         packages: the packages found so far, by folder.
@@ -41,7 +42,7 @@ class Contexts:
         self._last: OfFile | None = None
 
     def of_file(self, path: Path) -> OfFile:
-        """Return the data that checks of a file with the same settings share; only that of the last file is stored."""
+        """Return the data shared by checks of a file with the same settings; only the last file's is stored."""
         if self._last is None or self._last.path != path:
             self._last = OfFile(path)
         return self._last
@@ -61,9 +62,9 @@ class OfFile:
         self._places: dict[Hashable, int] = {}
 
     def facts(self, facts: XacroFacts) -> XacroFacts:
-        """Return the facts that are known of the same files and arguments, else the given ones.
+        """Return the stored facts of the same files and arguments, or else the given ones.
 
-        The values of arguments matter only where names are pasted of them.
+        The values of arguments matter only where names are composed from them.
         """
         documents = tuple(id(file.document) for file in facts.files.values())
         key = (facts.is_library, frozenset(facts.given), documents)
@@ -84,7 +85,7 @@ class OfFile:
         known = self._done.setdefault((facts, is_whole, parts), {})
         done = _Done(root, {})
         if not known:
-            known[_UNREAD] = done  # most are unlike all others in their parts, and are not compared further
+            known[_UNREAD] = done  # most expansions have other parts than all others, and need no further comparison
             return done.results
         if _UNREAD in known:
             first = known.pop(_UNREAD)
@@ -103,12 +104,12 @@ class OfFile:
             node, number = pending.pop()
             own = self._number(node.origin, numbers) if number is None else number
             while isinstance(node, LazyCopy) and node.original is not None:
-                node, number = node.original, own  # what a copy would be made of, all of it in the place of the copy
+                node, number = node.original, own  # an unexpanded copy: content of the original, origin of the copy
             attributes, children = node.attributes, node.children
             found += (own, node.tag, node.offset, id(node.source), len(attributes), *attributes.items(), len(children))
             for child in children:
                 if isinstance(child, Element):
-                    found.append(None)  # an element is here, and what it is follows in its turn
+                    found.append(None)  # a marker for a child element, whose content follows later
                     pending.append((child, number))
                 else:
                     is_cdata = child.cdata if isinstance(child, Text) else None
@@ -116,7 +117,10 @@ class OfFile:
         return tuple(found)
 
     def _number(self, origin: object, numbers: dict[int, int]) -> int:
-        """The number of a chain of macro calls and includes; `numbers` has those of the document so far."""
+        """Return the number of a chain of macro calls and includes.
+
+        New frames of the chain are added to `numbers`, which has those of the document so far.
+        """
         chain: list[Frame] = []
         frame = origin if isinstance(origin, Frame) else None
         while frame is not None and id(frame) not in numbers:

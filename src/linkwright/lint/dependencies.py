@@ -1,4 +1,7 @@
-"""Packages that are there without being declared: those of every ROS installation, and those that others bring."""
+"""Packages that are available without being declared.
+
+These are the packages of every ROS installation, and the dependencies of declared packages.
+"""
 
 from __future__ import annotations
 
@@ -49,17 +52,19 @@ _MOST = 200
 
 
 def is_always_installed(package: str) -> bool:
-    """Return whether each installation of ROS 2 has a package."""
+    """Return whether every installation of ROS 2 contains a package."""
     return package in _OF_EVERY_INSTALLATION
 
 
 def brings(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
-    """Return whether what a manifest declares depends on a package, as far as those packages are here to be read.
+    """Return whether a declared dependency of a manifest depends on a package.
+
+    Only packages that are installed here can be read.
 
     Args:
-        manifest: of the package that is checked.
+        manifest: the manifest of the package that is checked.
         package: the name of the other package.
-        finder: where packages are.
+        finder: the finder of packages.
     """
     return any(
         name == package or any(name == one and package.startswith(family) for one, family in _FAMILIES)
@@ -68,19 +73,21 @@ def brings(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
 
 
 def would_make_a_circle(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
-    """Return whether a package depends on the one of a manifest, so that colcon would refuse the way back.
+    """Return whether a package depends on that of a manifest, so that the reverse would form a cycle.
+
+    colcon refuses such a cycle.
 
     Args:
-        manifest: of the package that uses the other.
+        manifest: the manifest of the package that uses the other.
         package: the name of the other package.
-        finder: where packages are.
+        finder: the finder of packages.
     """
     other = _manifest_of(package, finder)
     return other is not None and any(name == manifest.name for name in _everything_below(other, finder))
 
 
 def _everything_below(manifest: Manifest, finder: PackageFinder) -> Iterator[str]:
-    """The names of all packages that a manifest depends on, directly or through those that are here to be read."""
+    """Yield the names of the direct and indirect dependencies of a manifest, as far as found."""
     waiting, met = [manifest], {manifest.name}
     while waiting and len(met) < _MOST:
         for dependency in waiting.pop().dependencies:

@@ -1,4 +1,4 @@
-"""Checking one description: read it, run the rules, put everything in order."""
+"""Check one description: read it, run the rules, and sort the findings."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ class Checked:
 
     Attributes:
         path: the file.
-        robot: the robot, or None if there is none.
-        diagnostics: all findings in the order of the text; those of rules are `Finding`.
+        robot: the robot, or None if the file does not describe one.
+        diagnostics: all findings in the order of the text; those of rules are instances of `Finding`.
         subject: the subject of the rules; None if the file could not be read or expanded.
         sdf: the world or model of an SDF file with its includes; None for other files, and if it is not SDF.
     """
@@ -69,9 +69,9 @@ def check(
     Args:
         path_or_text: the file, or a text, which is recognized by its ``<``.
         arguments: values for the file's ``<xacro:arg>``.
-        packages: where packages are: package name -> share folder, or a finder.
-        settings: which rules run; by default those of the ``linkwright.toml`` or ``pyproject.toml`` found upwards from
-            the file, or from the current folder for a text.
+        packages: the packages, as a mapping of names to share folders, or a finder.
+        settings: the settings, which select the rules; by default those of the ``linkwright.toml`` or
+            ``pyproject.toml`` found upwards from the file, or from the current folder for a text.
     """
     return list(examine(path_or_text, arguments=arguments, packages=packages, settings=settings).diagnostics)
 
@@ -97,7 +97,7 @@ def examine(
         overlay: texts that replace those of files, such as unsaved ones.
         scopes: the scopes of the rules to run.
         xacro: whether to expand a robot; None to decide by the file.
-        contexts: data that checks share at one moment.
+        contexts: data that checks share during one run.
     """
     text = str(path_or_text) if is_text(path_or_text) else None
     path = Path(path_or_text) if text is None else Path(TEXT_NAME)
@@ -147,7 +147,7 @@ def _examine_world(
 
 
 def _run(subject: Subject, scopes: Collection[Scope], earlier: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
-    """The findings of the rules and the earlier ones, filtered by settings and comments, in order."""
+    """Return the findings of the rules and the earlier ones, filtered by settings and comments, in order."""
     suppressions = Suppressions(subject, subject.settings)
     found = _without_replaced([*earlier, *_find(subject, scopes, suppressions)], scopes, subject.settings)
     kept = _without_consequences(as_set(suppressions.apply(found), subject.settings))
@@ -155,7 +155,10 @@ def _run(subject: Subject, scopes: Collection[Scope], earlier: Iterable[Diagnost
 
 
 def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
-    """The findings of the rules, each place once; some are only wanted to see whether a comment is of use."""
+    """Return the findings of the rules, one for each place.
+
+    Some are needed only to see whether a suppression comment is used.
+    """
     known = {} if has_rules_of_others() else subject.once(_findings_of_scopes)
     key = frozenset(scopes)
     if key not in known:
@@ -164,7 +167,7 @@ def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppression
 
 
 def _findings_of_scopes(_: Subject) -> dict[frozenset[Scope], list[Diagnostic]]:
-    """Where the findings of rules are kept, for them and for subjects that are alike."""
+    """Return the stored findings of rules by scopes, which subjects with the same expansion share."""
     return {}
 
 
@@ -200,7 +203,10 @@ def _may_run(rule: Rule, subject: Subject) -> bool:
 
 
 def _of_library(described: Description) -> Iterator[Diagnostic]:
-    """Yield the findings on a file for others to include: those that hold for each part, and that it is not a robot."""
+    """Yield the findings on a file that others include.
+
+    These are findings that hold for each part, and that the file is not a robot.
+    """
     yield from (*described.problems, *described.remarks)
     root = described.document.root
     whole = root.span()
@@ -211,7 +217,7 @@ def _of_library(described: Description) -> Iterator[Diagnostic]:
 
 
 def in_order(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnostic]:
-    """Diagnostics by place: the checked file first, others in the order in which they were met."""
+    """Sort diagnostics by place: the checked file first, others in the order in which they occur."""
     files = {first_file: 0}
 
     def place(diagnostic: Diagnostic) -> tuple[int, int, int]:
@@ -230,14 +236,16 @@ def examine_package(
     overlay: Overlay | None = None,
     contexts: Contexts | None = None,
 ) -> Checked:
-    """Check a package by itself; its rules get the manifest as the file, and an empty description.
+    """Check a package without its descriptions.
+
+    The rules receive the manifest as the file, and an empty description.
 
     Args:
         folder: the folder of the package.
         settings: the settings for it.
-        finder: finds packages.
+        finder: the finder of packages.
         overlay: texts that replace those of files.
-        contexts: data that checks share at one moment.
+        contexts: data that checks share during one run.
     """
     path = folder / MANIFEST
     empty = Document(Element("robot", {"name": folder.name}))
@@ -253,7 +261,7 @@ def _finder(path: Path, packages: Packages) -> PackageFinder:
 
 
 def as_set(diagnostics: Iterable[Diagnostic], settings: Settings) -> Iterator[Diagnostic]:
-    """The diagnostics that the settings let through, as severe as they say."""
+    """Yield the diagnostics that the settings allow, with the severities that they set."""
     for diagnostic in judged_files(judged(diagnostics)):
         if _is_wanted(diagnostic, settings):
             severity = settings.severity_of(diagnostic.code, diagnostic.severity)
@@ -261,9 +269,9 @@ def as_set(diagnostics: Iterable[Diagnostic], settings: Settings) -> Iterator[Di
 
 
 def _is_wanted(diagnostic: Diagnostic, settings: Settings) -> bool:
-    """Return whether the settings let a diagnostic through.
+    """Return whether the settings allow a diagnostic.
 
-    An error of the reader or of xacro need not be selected: without it nothing would tell why there is no robot.
+    An error of the reader or of xacro need not be selected: without it, nothing would explain why there is no robot.
     """
     rule = find_rule(diagnostic.code)
     if rule is not None:
@@ -276,7 +284,7 @@ def _is_wanted(diagnostic: Diagnostic, settings: Settings) -> bool:
 
 
 def _without_replaced(diagnostics: list[Diagnostic], scopes: Collection[Scope], settings: Settings) -> list[Diagnostic]:
-    """The diagnostics but those for which a rule found something better at the same place."""
+    """Return the diagnostics except those that a rule replaces with a better one at the same place."""
     better: dict[str, set[str]] = {}
     for rule in rules_of(scopes):
         if rule.replaces and settings.runs(rule):
@@ -287,10 +295,10 @@ def _without_replaced(diagnostics: list[Diagnostic], scopes: Collection[Scope], 
 
 
 def _without_consequences(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """The diagnostics but those that follow from another.
+    """Return the diagnostics except those that follow from another.
 
-    There are no links where the tags that were to make them lack the prefix of xacro, and no meshes of a package that
-    an include did not find either.
+    Links are missing where the tags that should create them lack the xacro prefix, and meshes are missing if an include
+    did not find their package either.
     """
     found = list(diagnostics)
     is_explained = any(each.code == _PREFIX_MISSING for each in found)
@@ -305,7 +313,7 @@ def _without_consequences(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]
 
 
 def _with_trail(diagnostic: Diagnostic) -> Diagnostic:
-    """A finding with the macro calls and includes that produced its element."""
+    """Return a finding with notes on the macro calls and includes that produced its element."""
     if not isinstance(diagnostic, Finding) or diagnostic.element is None or diagnostic.element.origin is None:
         return diagnostic
     from linkwright.xacro.faults import origin_of
@@ -315,12 +323,12 @@ def _with_trail(diagnostic: Diagnostic) -> Diagnostic:
 
 
 def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return one finding for each rule and place: a macro that is called four times is written once."""
+    """Return one finding for each rule and place, because a macro called four times is written once."""
     first: dict[tuple[str, object, str], int] = {}
     kept: list[Diagnostic] = []
     more: dict[int, int] = {}
     for diagnostic in diagnostics:
-        # Without an element there are no calls that lead to it: another message is another finding.
+        # Without an element, there is no trail of calls: a different message is a different finding.
         is_expanded = isinstance(diagnostic, Finding) and diagnostic.element is not None
         key = (diagnostic.code, diagnostic.span, "" if is_expanded else diagnostic.message)
         if diagnostic.span is None or key not in first:

@@ -1,6 +1,6 @@
-"""The page of every diagnostic code: of a rule its docstring, of others a section of ``pages/``.
+"""The documentation page of every diagnostic code: a rule's docstring, or a section of ``pages/``.
 
-A file of ``pages/`` holds the codes of one room, ``## CODE: title`` and the text below.
+A file of ``pages/`` contains the codes of one room, each as ``## CODE: title`` with the text below it.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ _HEADINGS: dict[str, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """The page on a code; texts that can be translated are phrases.
+    """The documentation page of a code; texts that can be translated are phrases.
 
     Attributes:
-        code: of the diagnostic.
-        title: what it reports, one line without a full stop.
+        code: the code of the diagnostic.
+        title: what the diagnostic reports, in one line without a full stop.
         text: the rest, in Markdown.
-        name: of the rule; empty for a diagnostic that is not a rule's.
+        name: the name of the rule; empty for a diagnostic that does not belong to a rule.
     """
 
     code: str
@@ -51,14 +51,14 @@ class Page:
 
 
 def find_page(code_or_name: str) -> Page | None:
-    """The page of a code or the name of a rule, in any case; None if there is none."""
+    """Return the page of a code or rule name, ignoring case; None if there is none."""
     rule = find_rule(code_or_name)
     return rule_page(rule) if rule else room_pages().get(code_or_name.strip().upper())
 
 
 def rule_page(rule: Rule) -> Page:
-    """The page of a rule: its docstring, how it is switched, and its options."""
-    from inspect import cleandoc  # not above: a check prints no page
+    """Return the page of a rule: its docstring, how to switch it on or off, and its options."""
+    from inspect import cleandoc  # imported here: a check does not print pages
 
     title, _, text = cleandoc(rule.__doc__ or "").partition("\n")
     severity = phrase("Severity: {severity}. {state}", severity=term(rule.severity.value), state=_state(rule))
@@ -77,7 +77,7 @@ def rule_page(rule: Rule) -> Page:
 
 @cache
 def room_pages() -> dict[str, Page]:
-    """The pages of the diagnostics that are not rules': code -> page."""
+    """Return the pages of the diagnostics that do not belong to rules, by code."""
     pages = {}
     for file in sorted(PAGES.glob("*.md")):
         for code, title, text in _SECTION.findall(file.read_text(encoding="utf-8")):
@@ -86,7 +86,7 @@ def room_pages() -> dict[str, Page]:
 
 
 def known_codes() -> tuple[str, ...]:
-    """All codes that have a page."""
+    """Return all codes that have a page."""
     return (*(rule.code for rule in all_rules()), *room_pages())
 
 
@@ -100,7 +100,7 @@ def nearest_codes(word: str) -> list[str]:
 
 
 def toml(value: OptionValue) -> str:
-    """An option's value as TOML has it."""
+    """Return an option's value in TOML syntax."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):

@@ -1,4 +1,4 @@
-"""Comments with which authors explain a value: on its line, or on the lines above it."""
+"""Comments that explain a value, on its line or on the lines above it."""
 
 from __future__ import annotations
 
@@ -34,9 +34,10 @@ _HEADINGS = frozenset(
 
 
 def is_explained(element: Element | None, tag: str) -> bool:
-    """Return whether a comment beside or above a child of an element, or above the element, explains its value.
+    """Return whether a comment explains the value of a child of an element.
 
-    Commented-out elements, suppressions, and headings that only name the child explain nothing.
+    The comment may be next to or above the child, or above the element. Commented-out elements, suppressions, and
+    headings that only name the child explain nothing.
     """
     if element is None:
         return False
@@ -44,7 +45,7 @@ def is_explained(element: Element | None, tag: str) -> bool:
 
 
 def _comments(element: Element | None, *, beside: bool) -> list[str]:
-    """The comments right above an element, and those on its lines."""
+    """Return the comments directly above an element or, if `beside` is set, those on its lines."""
     found = element_range(element) if element is not None else None
     if element is None or element.source is None or found is None:
         return []

@@ -1,7 +1,7 @@
 """Names inside the elements that URDF readers pass on: ``<gazebo>``, ``<transmission>``, ``<ros2_control>``.
 
-Source: the schemas of ros2_control, the ROS 1 transmission format, and what sdformat and
-Gazebo Classic take from ``<gazebo>``.
+Source: the schemas of ros2_control, the ROS 1 transmission format, and the elements of ``<gazebo>`` that sdformat
+and Gazebo Classic read.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The space that shapes take, and the mass properties of bodies."""
+"""The bounding boxes of shapes, and the mass properties of bodies."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _ORIGIN = Placement(IDENTITY, (0.0, 0.0, 0.0))
 
 
 class Extents:
-    """How large the shapes of a description are, each measured once."""
+    """The sizes of the shapes of a description, each measured once."""
 
     def __init__(self, links: Sequence[Link], bodies: Bodies, meshes: MeshFacts) -> None:
         self._links = links
@@ -43,7 +43,7 @@ class Extents:
 
     @cached_property
     def heavy(self) -> list[tuple[Link, Inertial]]:
-        """The links with shapes whose mass counts in their body."""
+        """The links with shapes whose mass is relevant for their body."""
         if not any(link.inertial for link in self._links):
             return []
         return [
@@ -65,7 +65,7 @@ class Extents:
         return [(link, inertial, box) for link, inertial, box in boxes if box is not None and box.diagonal > MARKER]
 
     def mass_properties(self, body: Body) -> MassProperties:
-        """The sum of the ``<inertial>`` of a body's links, in the frame of its first link."""
+        """Return the sum of the ``<inertial>`` of a body's links, in the frame of its first link."""
         import numpy as np
 
         from linkwright.geometry.mass import MassProperties, combine
@@ -82,7 +82,7 @@ class Extents:
         return combine(parts)
 
     def shape_bounds(self, shape: Visual | Collision) -> Bounds | None:
-        """The box around a shape in its link's frame; None if its mesh cannot be read."""
+        """Return the box around a shape in its link's frame; None if its mesh cannot be read."""
         key = id(shape)
         if key not in self._measured:
             self._measured[key] = self._measure(shape)
@@ -93,9 +93,9 @@ class Extents:
         return self._bounds([*link.visuals, *link.collisions])
 
     def kinds_of_bounds(self, link: Link) -> list[Bounds]:
-        """Return the box around a link's collision shapes and the one around its visuals, as far as there are any.
+        """Return the box around a link's collision shapes and the one around its visuals, where they exist.
 
-        A node that strays from a visual's mesh makes only one of them too large.
+        A stray vertex in a visual's mesh makes only one of them too large.
         """
         kinds: tuple[Sequence[Visual | Collision], ...] = (link.collisions, link.visuals)
         boxes = [self._bounds(shapes) for shapes in kinds if shapes]
@@ -107,9 +107,10 @@ class Extents:
         return union(known) if len(known) == len(found) else None
 
     def body_bounds(self, link: Link) -> Bounds | None:
-        """The box around the whole body of a link in that link's frame; None if a shape cannot be measured.
+        """Return the box around a link's whole body in the link's frame; None if a shape cannot be measured.
 
-        Of a body of very many links the box is put around all of them once, and the one in a link's frame around that.
+        For a body of very many links, the box is computed once around all of them, and the box in the link's frame
+        around that.
         """
         body = self._bodies.of(link.name)
         if body is None or len(body.frames) == 1:
@@ -123,7 +124,7 @@ class Extents:
         return around.moved(_ORIGIN.seen_from(_near(body.frames[link.name])))
 
     def _around(self, body: Body, frame: Placement) -> Bounds | None:
-        """The box around a body in a frame that is given in that of its first link."""
+        """Return the box around a body in a frame given relative to the body's first link."""
         boxes = []
         for member, own in zip(self._bodies.members(body), body.frames.values(), strict=True):
             if not (member.visuals or member.collisions):
@@ -135,9 +136,9 @@ class Extents:
         return union(boxes)
 
     def volume(self, link: Link) -> float | None:
-        """Volume of the box around each shape of a link, in m3, summed for the larger of its shape kinds.
+        """Return the volume of the boxes around a link's shapes, in m3, of the larger shape kind.
 
-        Simple shapes count with their own volume. None when a mesh cannot be measured.
+        Simple shapes count with their own volume. The result is None if a mesh cannot be measured.
         """
         totals = []
         for shapes in (link.visuals, link.collisions):
@@ -170,6 +171,6 @@ class Extents:
 
 
 def _near(frame: Placement) -> Placement:
-    """A frame; a place beyond all bounds is moved to their edge, so that nothing overflows."""
+    """Return a frame whose position is clamped to the bounds, so that nothing overflows."""
     x, y, z = (min(max(part, -FARTHEST), FARTHEST) for part in frame.position)
     return Placement(frame.rotation, (x, y, z))

@@ -13,11 +13,11 @@ _MOST_NOTES = 10
 
 
 class Finding(Diagnostic):
-    """A diagnostic of a rule.
+    """A diagnostic that a rule reports.
 
     Attributes:
-        fix: a change of the source that fixes it, or None if only the author can know.
-        element: the element it is about; the engine adds the macro calls and includes that produced it.
+        fix: a change of the source that fixes the problem, or None if only the author knows the fix.
+        element: the element that the finding is about; the engine adds the macro calls and includes that produced it.
     """
 
     __slots__ = ("element", "fix")
@@ -43,7 +43,7 @@ class Finding(Diagnostic):
 
 
 def with_related(first: Diagnostic, others: Sequence[Diagnostic]) -> Diagnostic:
-    """Return a finding that represents others with the same cause, with these in its notes."""
+    """Return a finding that represents others with the same cause, which become its notes."""
     if not others:
         return first
     notes = tuple(Note(other.message, other.span) for other in others[:_MOST_NOTES])

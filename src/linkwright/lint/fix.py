@@ -1,6 +1,7 @@
-"""Changes to source files that fix a finding, and the edits that rules need most.
+"""Changes to source files that fix a finding, and the edits that most rules need.
 
-An edit replaces a range of characters of one file. Everything else, formatting and comments included, stays as it is.
+An edit replaces a range of characters of one file. Everything else, including formatting and comments, is
+unchanged.
 """
 
 from __future__ import annotations
@@ -15,13 +16,13 @@ from linkwright.xmltree.positions import attribute_name_range, attribute_value_r
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """One replacement.
+    """One replacement in a source file.
 
     Attributes:
-        source_file: path of the file, as its `SourceText` is named.
-        start: character offset of the first character replaced.
-        end: character offset after the last one.
-        replacement: what is put there, as it is written in the file.
+        source_file: the path of the file, as its `SourceText` names it.
+        start: the offset of the first character that is replaced.
+        end: the offset after the last character that is replaced.
+        replacement: the new text, as it is written in the file.
     """
 
     source_file: str
@@ -32,11 +33,11 @@ class Edit:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """Edits that belong together.
+    """Edits that are applied together.
 
     Attributes:
-        edits: they must not overlap.
-        safe: whether the fix cannot change what the author meant; an unsafe one is applied only when asked for.
+        edits: the edits, which must not overlap.
+        safe: whether the fix cannot change the author's meaning; an unsafe fix is applied only on request.
     """
 
     edits: tuple[Edit, ...]
@@ -44,13 +45,13 @@ class Fix:
 
 
 def replace_value(element: Element, attribute: str, value: str, *, safe: bool = True) -> Fix | None:
-    """Give an attribute another value; None if the value is not written in the file literally (an expression)."""
+    """Change an attribute's value; None if the file does not contain it literally (an expression)."""
     edit = value_edit(element, attribute, value)
     return None if edit is None else Fix((edit,), safe)
 
 
 def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True) -> Fix | None:
-    """Give an attribute another name; None if it is not written in the file."""
+    """Rename an attribute; None if it is not written in the file."""
     source = element.source
     if source is None or new in element.attributes:
         return None
@@ -59,7 +60,7 @@ def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True)
 
 
 def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = True) -> Fix | None:
-    """Write an attribute behind those there are; None if the element is not written in a file."""
+    """Add an attribute after the existing ones; None if the element is not written in a file."""
     source = element.source
     opened = start_tag_of(element)
     if source is None or opened is None or attribute in element.attributes:
@@ -69,7 +70,7 @@ def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = 
 
 
 def rename_element(element: Element, tag: str, *, safe: bool = True) -> Fix | None:
-    """Give an element another name, in its start tag and its end tag."""
+    """Rename an element in its start and end tags."""
     source = element.source
     found = element_range(element)
     if source is None or found is None:
@@ -82,7 +83,7 @@ def rename_element(element: Element, tag: str, *, safe: bool = True) -> Fix | No
 
 
 def remove_element(element: Element, *, safe: bool = True) -> Fix | None:
-    """Remove an element with its content, and its line if nothing else is on it."""
+    """Remove an element and its content, and its line if nothing else is on it."""
     source = element.source
     found = element_range(element)
     if source is None or found is None:
@@ -92,7 +93,7 @@ def remove_element(element: Element, *, safe: bool = True) -> Fix | None:
 
 
 def value_edit(element: Element, attribute: str, value: str) -> Edit | None:
-    """The edit that gives an attribute another value; None if the value is not written literally."""
+    """Return the edit that changes an attribute's value; None if the value is not written literally."""
     source = element.source
     if source is None or not is_literal(element, attribute):
         return None
@@ -101,7 +102,7 @@ def value_edit(element: Element, attribute: str, value: str) -> Edit | None:
 
 
 def is_literal(element: Element, attribute: str) -> bool:
-    """Return whether an attribute's value is written in the file as it is, not as an expression of xacro."""
+    """Return whether an attribute's value is written literally in the file, not as a xacro expression."""
     source = element.source
     if source is None or attribute not in element.attributes:
         return False

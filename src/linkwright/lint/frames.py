@@ -1,4 +1,4 @@
-"""Where links are at rest."""
+"""The poses of links with all joints at zero."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.urdf.tree import walk
 
 
 def placements(robot: Robot) -> Mapping[str, Placement]:
-    """Every link in the root link's frame, with all joints at zero."""
+    """Return the placement of every link in the root link's frame, with all joints at zero."""
     found = {robot.root: Placement(IDENTITY, (0.0, 0.0, 0.0))}
     for joint, _depth in walk(robot):
         if joint.child not in found:

@@ -1,4 +1,4 @@
-"""The mesh files that a description names, found and read once for all rules."""
+"""The mesh files that a description references, located and read once for all rules."""
 
 from __future__ import annotations
 
@@ -36,20 +36,20 @@ class MeshUse:
 
     @property
     def kind(self) -> str:
-        """``visual`` or ``collision``."""
+        """The kind of the shape, ``visual`` or ``collision``."""
         return "visual" if isinstance(self.shape, Visual) else "collision"
 
 
 class MeshFacts:
     """The facts about the meshes of one description.
 
-    Nothing is looked up before a rule asks for it. A URI without a file has no path, and an unreadable file no
-    triangles; the rules about files report them, all others skip such a mesh.
+    Nothing is read until a rule needs it. A URI without a file has no path, and an unreadable file has no triangles.
+    The rules about files report these meshes, and all other rules skip them.
 
     Args:
         links: the links whose visuals and collisions are checked.
-        finder: finds the packages of ``package://`` addresses.
-        folder: the base of relative addresses.
+        finder: the finder of the packages in ``package://`` URIs.
+        folder: the base of relative paths.
     """
 
     def __init__(self, links: Iterable[Link], finder: PackageFinder, folder: Path) -> None:
@@ -66,19 +66,19 @@ class MeshFacts:
 
     @cached_property
     def files(self) -> tuple[tuple[MeshUse, Path], ...]:
-        """The uses with a valid URI, with the path, whether or not the file exists."""
+        """The uses with a valid URI, each with the file's path, whether or not the file exists."""
         found = ((use, self.path(use)) for use in self.uses)
         return tuple((use, path) for use, path in found if path is not None)
 
     def path(self, use: MeshUse) -> Path | None:
-        """The file that a mesh's URI means, or None."""
+        """Return the path of the file that a mesh's URI names, or None."""
         try:
             return self._library.locate(use.mesh.filename, use.element).absolute()
         except LinkwrightError:
             return None
 
     def problem(self, use: MeshUse) -> LinkwrightError | None:
-        """Why the file of a use cannot be read, if it is there and cannot."""
+        """Return the error of a use's existing but unreadable file, or None."""
         try:
             self._load(use.mesh, use.element)
         except LinkwrightError as error:
@@ -104,7 +104,7 @@ class MeshFacts:
 
     @cached_property
     def _library(self) -> MeshLibrary:
-        from linkwright.inertia import MeshLibrary  # not above: a robot without meshes is checked without it
+        from linkwright.inertia import MeshLibrary  # imported here: a robot without meshes does not need it
 
         return MeshLibrary(self._finder, self._folder)
 
@@ -118,11 +118,11 @@ class MeshFacts:
 
 
 def shape_element(shape: Visual | Collision) -> Element | None:
-    """The ``<box>``, ``<mesh>`` and so on of a visual or collision."""
+    """Return the ``<box>``, ``<mesh>`` or other geometry element of a visual or collision."""
     geometry = shape.element.first("geometry") if shape.element is not None else None
     return next(geometry.elements(), None) if geometry is not None else None
 
 
 def material_element(shape: Visual) -> Element | None:
-    """The ``<material>`` of a visual."""
+    """Return the ``<material>`` of a visual."""
     return shape.element.first("material") if shape.element is not None else None

@@ -1,4 +1,4 @@
-"""Included files that are missing without a mistake: the build makes them, or another program finds them."""
+"""Included files that may be missing, because the build creates them or another program locates them."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _MISSING = "XML101"
 
 
 def judged_files(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """The diagnostics; a missing file that the build makes is an information.
+    """Yield the diagnostics; a missing file that the build creates becomes an information.
 
-    Those that are found from the folder of the package, where a program of its own may look, are one warning for each
-    file that includes them.
+    Files that exist relative to the package's folder, which another program may use as the base, become one warning for
+    each file that includes them.
     """
     elsewhere: dict[str, list[Diagnostic]] = {}
     for diagnostic in diagnostics:

@@ -1,4 +1,4 @@
-"""Missing packages: a declared dependency is only missing on this machine, and is not a mistake."""
+"""Missing packages: a declared dependency is only missing on this machine, which is not a mistake."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ _MISSING = "PKG101"
 
 
 def judged(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """Yield the diagnostics; a missing package that its user, or a package beside it, declares is a warning."""
+    """Yield the diagnostics; a missing package becomes a warning if it is a declared dependency.
+
+    The package that uses it may declare it, or a neighbouring package.
+    """
     packages: dict[Path, PackageContext | None] = {}
     for diagnostic in diagnostics:
         if diagnostic.code != _MISSING or diagnostic.span is None:
@@ -35,7 +38,7 @@ def judged(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
 
 
 def is_declared(package: PackageContext, name: str) -> bool:
-    """Return whether a package, or one beside it, which is built together with it, declares another."""
+    """Return whether a package, or a neighbour that is built in the same workspace, declares another."""
     beside = (PackageContext(manifest.parent) for manifest in sorted(package.folder.parent.glob(f"*/{MANIFEST}")))
     manifests = (package_context.manifest for package_context in (package, *beside))
     return any(manifest is not None and manifest.declares(name) for manifest in manifests)

@@ -1,4 +1,4 @@
-"""The settings that a rule declares."""
+"""The options that a rule declares."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ OptionValue = bool | int | float | str | list[str]
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """A setting of a rule, written in ``[options.RULE-NAME]`` of the configuration.
+    """An option of a rule, set in ``[options.RULE-NAME]`` of the configuration.
 
     Attributes:
         name: the name in kebab-case.

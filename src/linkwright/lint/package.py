@@ -1,4 +1,4 @@
-"""The ROS package around a description: its files, and their references to one another."""
+"""The ROS package that contains a description: its files, and their references to one another."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _DESCRIPTIONS = (".xacro", ".urdf")
 def find_package(
     path: Path, overlay: Overlay | None = None, known: dict[Path, PackageContext] | None = None
 ) -> PackageContext | None:
-    """Return the package of a file or folder: the nearest folder upwards with a ``package.xml``; or None.
+    """Return the nearest package upwards of a file or folder, or None if no ``package.xml`` is found.
 
     Args:
         path: the file or folder.
@@ -45,16 +45,16 @@ def find_package(
 
 
 class PackageContext:
-    """A ROS package. Files are read on first use, and never run.
+    """A ROS package, whose files are read on first use and never executed.
 
-    The readers are imported on first use, too: a check of one robot needs few of them.
+    The readers are imported on first use, too: the check of one robot needs few of them.
 
     Args:
         folder: the folder with the ``package.xml``.
         overlay: texts that replace those of files.
 
     Attributes:
-        folder: the same, absolute.
+        folder: the absolute path of the folder.
     """
 
     def __init__(self, folder: Path, overlay: Overlay | None = None) -> None:
@@ -73,27 +73,27 @@ class PackageContext:
 
     @property
     def manifest(self) -> Manifest | None:
-        """Its ``package.xml``; None if that is not XML."""
+        """The package's ``package.xml``; None if it is not XML."""
         return None if isinstance(self._manifest, LinkwrightError) else self._manifest
 
     @property
     def manifest_error(self) -> LinkwrightError | None:
-        """The error in the XML of its ``package.xml``, or None."""
+        """The error in the XML of the package's ``package.xml``, or None."""
         return self._manifest if isinstance(self._manifest, LinkwrightError) else None
 
     @property
     def name(self) -> str:
-        """The name of the package, or that of its folder if the manifest has none."""
+        """The name of the package, or the name of its folder if the manifest has none."""
         return (self.manifest and self.manifest.name) or self.folder.name
 
     @cached_property
     def files(self) -> tuple[str, ...]:
-        """All files, as paths below the folder with slashes, sorted; hidden ones and build products left out."""
+        """The sorted paths of all files, relative to the package, without hidden files and build products."""
         return tuple(sorted(self._walk()))
 
     @cached_property
     def folders(self) -> frozenset[str]:
-        """All folders with files, directly or deeper, as paths below the package."""
+        """The paths of all folders that contain files, directly or in subfolders, relative to the package."""
         found: set[str] = set()
         for file in self.files:
             parts = file.split("/")[:-1]
@@ -101,11 +101,11 @@ class PackageContext:
         return frozenset(found)
 
     def has(self, path: str) -> bool:
-        """Return whether a file or folder exists, by its path below the package."""
+        """Return whether a file or folder exists at a path relative to the package."""
         return (self.folder / path).exists()
 
     def text(self, path: str) -> SourceText | None:
-        """The text of a file of the package, or None if there is none or it cannot be read."""
+        """Return the text of a file of the package; None if it does not exist or cannot be read."""
         full = str(self.folder / path)
         unsaved = None if self._overlay is None else self._overlay.text(full)
         if unsaved is not None:
@@ -117,7 +117,7 @@ class PackageContext:
 
     @cached_property
     def setup(self) -> SetupFile | None:
-        """Its ``setup.py``, or None if CMake builds the package, which does not read one."""
+        """The package's ``setup.py``; None if CMake builds the package, because it does not read one."""
         if self.manifest is not None and self.manifest.build_type == "ament_cmake" and self.has("CMakeLists.txt"):
             return None
         from linkwright.packages.readers.setup_py import read_setup
@@ -127,7 +127,7 @@ class PackageContext:
 
     @cached_property
     def cmake(self) -> CMakeFile | None:
-        """Its ``CMakeLists.txt``, or None."""
+        """The package's ``CMakeLists.txt``, or None."""
         from linkwright.packages.readers.cmake import read_cmake
 
         source = self.text("CMakeLists.txt")
@@ -135,7 +135,7 @@ class PackageContext:
 
     @cached_property
     def launch_files(self) -> Mapping[str, LaunchFile]:
-        """Its Python launch files: path below the package -> content."""
+        """The package's Python launch files, by their paths relative to the package."""
         from linkwright.packages.readers.launch_files import is_launch_file, read_launch_file
 
         found = {}
@@ -148,14 +148,14 @@ class PackageContext:
 
     @cached_property
     def descriptions(self) -> Mapping[Path, Document]:
-        """Its URDF and xacro files as they are written: path -> document; without files that are not XML."""
+        """The package's unexpanded URDF and xacro files, by path, without files that are not XML."""
         from linkwright.xacro import sources
 
         found: dict[Path, Document] = {}
         for file in self.files:
             if file.endswith(_DESCRIPTIONS):
                 path = self.folder / file
-                if not path.is_file():  # a pipe would never end
+                if not path.is_file():  # reading a named pipe would never end
                     continue
                 try:
                     found[path] = sources.read(str(path))

@@ -1,7 +1,7 @@
-"""All rules there are, found through the entry points ``linkwright.lint_rules``.
+"""All lint rules, found through the entry points ``linkwright.lint_rules``.
 
-An entry point names a module, or a package whose modules are all looked at; their classes with a code are the rules.
-Those of other packages come the same way as ours; their codes have a prefix of their own.
+An entry point names a module, or a package whose modules are all searched; their classes with a code are the rules.
+Rules of other packages are found in the same way as ours, and their codes have a different prefix.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ _NAME = lazy_pattern("[a-z0-9]+(-[a-z0-9]+)*")
 
 
 def all_rules() -> tuple[Rule, ...]:
-    """One of each rule, in the order of their codes."""
+    """Return an instance of each rule, in the order of the codes."""
     return _found(whole=True)[0]
 
 
 def rules_of(scopes: Collection[Scope]) -> tuple[Rule, ...]:
-    """Return the rules of some scopes, in the order of their codes; those about packages are imported on demand."""
+    """Return the rules of some scopes in the order of their codes, importing package rules on demand."""
     return tuple(rule for rule in _found(whole=Scope.PACKAGE in scopes)[0] if rule.scope in scopes)
 
 
 def unusable_rules() -> tuple[Diagnostic, ...]:
-    """A warning (LINT301) for each entry point of another package whose rules cannot be used."""
+    """Return a warning (LINT301) for each entry point of another package whose rules cannot be used."""
     return _found(whole=False)[1]
 
 
@@ -51,7 +51,7 @@ def has_rules_of_others() -> bool:
 
 
 def find_rule(code_or_name: str) -> Rule | None:
-    """The rule of a code or name, in any case; None if there is none."""
+    """Return the rule with a code or name, ignoring case; None if there is none."""
     key = code_or_name.strip().casefold()
     rule = _index(whole=False).get(key)
     if rule is None and (key.startswith(_OURS.casefold()) or not _CODE.fullmatch(key.upper())):
@@ -66,9 +66,9 @@ def _index(*, whole: bool) -> Mapping[str, Rule]:
 
 @cache
 def _found(*, whole: bool) -> tuple[tuple[Rule, ...], tuple[Diagnostic, ...]]:
-    """Return the rules; unless `whole`, without Linkwright's rules about packages if no other package adds rules.
+    """Return the rules; unless `whole`, Linkwright's rules about packages are left out if possible.
 
-    The names of those of other packages are compared with ours of packages, too.
+    They are left out only if no other package adds rules, because the names of such rules are compared with these, too.
     """
     rules: dict[str, Rule] = {}
     problems: list[Diagnostic] = []
@@ -88,7 +88,7 @@ def _is_ours(entry: EntryPoint) -> bool:
 
 
 def _rules_of(entry: EntryPoint, taken: set[str], *, whole: bool) -> list[Rule] | Diagnostic:
-    """The rules that an entry point brings, or why those of another package cannot be used."""
+    """Return the rules of an entry point, or a diagnostic if those of another package cannot be used."""
     if _is_ours(entry):
         return _load(entry, taken, is_ours=True, whole=whole)
     try:
@@ -98,10 +98,10 @@ def _rules_of(entry: EntryPoint, taken: set[str], *, whole: bool) -> list[Rule] 
 
 
 def _load(entry: EntryPoint, taken: set[str], *, is_ours: bool, whole: bool) -> list[Rule]:
-    """The rules that an entry point brings.
+    """Return the rules that an entry point provides.
 
     Raises:
-        ValueError: a code or name is taken or malformed.
+        ValueError: If a code or name is taken or malformed.
     """
     found = [_one(rule) for module in _modules(entry.load(), is_ours, whole) for rule in _classes(module)]
     for rule in found:
@@ -130,10 +130,10 @@ def _modules(module: ModuleType, is_ours: bool, whole: bool) -> Iterator[ModuleT
 
 
 def _module_names(folder: str, *, is_ours: bool) -> Iterator[str]:
-    if is_ours:  # a folder of the file system, whose modules are all files
+    if is_ours:  # a folder in the file system that contains each module as a file
         yield from (file.stem for file in Path(folder).glob("*.py") if file.stem != "__init__")
         return
-    from pkgutil import iter_modules  # here: its import takes as long as that of all our rules about joints
+    from pkgutil import iter_modules  # imported here: its import takes as long as that of all our rules about joints
 
     yield from (entry.name for entry in iter_modules([folder]))
 
@@ -141,7 +141,7 @@ def _module_names(folder: str, *, is_ours: bool) -> Iterator[str]:
 def _classes(module: ModuleType) -> Iterator[type[Rule]]:
     for value in vars(module).values():
         is_own = isinstance(value, type) and issubclass(value, Rule) and value.__module__ == module.__name__
-        if is_own and not value.__name__.startswith("_") and "code" in vars(value):  # others are bases of rules
+        if is_own and not value.__name__.startswith("_") and "code" in vars(value):  # others are base classes of rules
             yield value
 
 

@@ -17,7 +17,7 @@ Value = TypeVar("Value", bool, int, float, str, list[str])
 
 
 class Scope(Enum):
-    """The scopes of rules: what they look at."""
+    """The scopes of rules: the kind of input that a rule checks."""
 
     DESCRIPTION = "description"
     """One robot description; the rule runs once for each."""
@@ -28,24 +28,26 @@ class Scope(Enum):
 
 
 class Rule:
-    """A lint rule: each is a small subclass whose docstring is its page in the documentation.
+    """The base class of lint rules, whose docstrings are their pages in the documentation.
 
-    The first line of the docstring names what the rule reports. ``## Why``, ``## Example`` and ``## Use instead``
-    follow.
+    Each rule is a small subclass. The first line of its docstring names the fault that it reports. The sections ``##
+    Why``, ``## Example`` and ``## Use instead`` follow.
 
     Attributes:
-        code: ``LW`` and three digits, never reused for another meaning; rules of other packages have another prefix.
-        name: the name in kebab-case, which may be used wherever a code may.
+        code: ``LW`` and three digits, never reused with another meaning; rules of other packages use a different
+            prefix.
+        name: the name in kebab-case, which is accepted wherever a code is.
         severity: the default severity of its findings.
         default: whether the rule is on by default; pedantic rules are not.
-        scope: what it checks.
+        scope: the kind of input that it checks.
         holds_for_parts: whether its findings hold for a description with missing parts, because it checks single
             elements or texts.
         holds_for_libraries: whether it checks files as they are written, so that it applies to a file that only defines
             macros. Rules that hold for parts apply too.
         of_sources: whether its findings depend only on the files as they are written, their package and the names of
-            the arguments: it then runs once for all sets of arguments that read the same files.
-        needs_all_sets: whether a finding is true only if every set of arguments has it: something is never used.
+            the arguments: the rule then runs once for all sets of arguments that read the same files.
+        needs_all_sets: whether a finding is valid only if it occurs with every set of arguments, such as that a macro
+            is never used.
         options: its settings.
         replaces: the codes of findings that a finding of this rule replaces at the same place.
     """
@@ -63,7 +65,7 @@ class Rule:
     replaces: ClassVar[tuple[str, ...]] = ()
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Yield the findings of the rule; no content of a description makes it raise."""
+        """Yield the findings of the rule; it must not raise, whatever the description contains."""
         raise NotImplementedError(f"{self.code} cannot check {subject.path}")
 
     def option(self, subject: Subject, name: str, kind: type[Value]) -> Value:
@@ -72,7 +74,7 @@ class Rule:
         Args:
             subject: the subject.
             name: the name of the option, one of `options`.
-            kind: its type; ``float`` accepts an integer too.
+            kind: its type; ``float`` also accepts an integer.
         """
         declared = next(option for option in self.options if option.name == name)
         value = subject.settings.options.get(self.name, {}).get(name, declared.default)
@@ -97,14 +99,15 @@ class Rule:
         """Return a finding of this rule.
 
         Args:
-            message: one sentence without a full stop at its end, with names as the user wrote them.
-            element: its subject, which gives the place, and the macro calls and includes that led there.
+            message: one sentence without a full stop, with names as the user wrote them.
+            element: the element that the finding is about; it provides the place and the macro calls and includes that
+                produced it.
             attribute: the attribute of the element whose value is the place.
             span: the place, if it is not that of an element or attribute.
             source: the text that `span` is in, for the excerpt.
-            notes: facts behind it, with their places.
-            hint: how to fix it.
-            fix: a change of the source that fixes it.
+            notes: facts that explain the finding, with their places.
+            hint: how to fix the problem.
+            fix: a change of the source that fixes the problem.
             severity: the severity, if it is not the rule's.
         """
         if element is not None:

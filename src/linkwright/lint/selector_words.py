@@ -1,4 +1,4 @@
-"""The words that a user selects rules by: whether one is a selector, and which."""
+"""The words by which a user selects rules: which words are selectors, and their canonical forms."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def is_selector(word: str) -> bool:
         return True
     if not _CODE.fullmatch(word):
         return False
-    from linkwright.lint.explain import room_pages  # not above: most checks have no selectors
+    from linkwright.lint.explain import room_pages  # imported here: most checks have no selectors
 
     return any(rule.code.startswith(word) for rule in all_rules()) or any(
         code.startswith(word) for code in room_pages()
@@ -24,13 +24,13 @@ def is_selector(word: str) -> bool:
 
 
 def canonical(word: str) -> str:
-    """A selector as the rest compares it: a rule's code for its name, otherwise as it is."""
+    """Return the canonical form of a selector: a rule's code for its name, otherwise the word itself."""
     rule = find_rule(word)
     return rule.code if rule else word
 
 
 def selector_hint(word: str) -> Phrase:
-    """A hint on a word that selects nothing."""
+    """Return A hint on a word that selects nothing."""
     candidates = [name for rule in all_rules() for name in (rule.name, rule.code)]
     near = nearest(word, candidates, limit=1)
     if near:

@@ -1,7 +1,7 @@
 """Selectors: the words by which settings, suppression comments and the command line name rules.
 
-A selector is the code of a rule or of another diagnostic (``LW201``), the beginning of one (``LW2``), the name of a
-rule (``limit-inverted``), or ``ALL``.
+A selector is the code of a rule or of another diagnostic (``LW201``), the beginning of a code (``LW2``), the name
+of a rule (``limit-inverted``), or ``ALL``.
 """
 
 from __future__ import annotations
@@ -12,12 +12,15 @@ ALL = "ALL"
 
 
 def matches(selectors: Iterable[str], code: str) -> bool:
-    """Return whether one of the (canonical) selectors means a code."""
+    """Return whether one of the (canonical) selectors matches a code."""
     return specificity(selectors, code) > 0
 
 
 def specificity(selectors: Iterable[str], code: str) -> int:
-    """How closely the closest of (canonical) selectors means a code: 0 not at all, 1 by ALL, more for more letters."""
+    """Return how specifically (canonical) selectors match a code.
+
+    The result is 0 for no match, 1 for ``ALL``, and more for a longer selector. The most specific selector counts.
+    """
     return max((_closeness(selector, code) for selector in selectors), default=0)
 
 

@@ -1,4 +1,4 @@
-"""Which rules run, how severe their findings are, and the rules' options."""
+"""Settings that determine which rules run, how severe their findings are, and the rules' options."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from linkwright.xmltree.style import Style
 
 
 class Switched(Protocol):
-    """A rule, as far as settings switch it on and off."""
+    """A rule as far as settings need to know it to switch it on or off."""
 
     @property
     def code(self) -> str:
-        """The code of its findings."""
+        """The code of the rule's findings."""
         ...
 
     @property
     def default(self) -> bool:
-        """Whether it is on by default."""
+        """Whether the rule is on by default."""
         ...
 
 
@@ -32,18 +32,20 @@ class Switched(Protocol):
 class Settings:
     """The settings of a check. Selectors are codes, beginnings of codes, or ``ALL``.
 
-    Where several selectors mean a code, the one that says most of it decides; of two alike, the one that ignores.
+    If several selectors match a code, the most specific one decides; between equally specific ones, the one that
+    ignores.
 
     Attributes:
-        select: what to report; None means every rule that is on by default and all warnings of the reader.
-        extend_select: what to report besides.
-        ignore: what not to report.
-        severity: selector -> severity of the findings it means.
-        per_file_ignores: pairs of a pattern of paths and the selectors not to report in files that match it.
+        select: the selectors of findings to report; None means all rules that are on by default and all warnings of the
+            reader.
+        extend_select: the selectors of additional findings to report.
+        ignore: the selectors of findings not to report.
+        severity: selector -> severity of the findings that it matches.
+        per_file_ignores: pairs of a path pattern and the selectors not to report in matching files.
         options: rule name -> option -> value.
-        arguments: pairs of a pattern of paths and the sets of values that descriptions which match it are checked with.
+        arguments: pairs of a path pattern and the sets of values with which matching descriptions are checked.
         style: the style in which `linkwright format` writes files.
-        folder: what the patterns of paths are relative to; None where there is no configuration file.
+        folder: the folder that path patterns are relative to; None without a configuration file.
     """
 
     select: tuple[str, ...] | None = None
@@ -57,7 +59,7 @@ class Settings:
     style: Style = Style()
 
     def runs(self, rule: Switched) -> bool:
-        """Return whether a rule is to run at all."""
+        """Return whether a rule must run at all."""
         return self.selects(rule.code, default=rule.default)
 
     def selects(self, code: str, *, default: bool = True) -> bool:
@@ -68,7 +70,7 @@ class Settings:
             default: whether they are reported by default.
         """
         if self.select is None and not self.extend_select and not self.ignore:
-            return default  # as in most projects; it is asked for each rule of each check
+            return default  # as in most projects; this is called for each rule of each check
         wanted = specificity(self.extend_select, code)
         if self.select is not None:
             wanted = max(wanted, specificity(self.select, code))
@@ -77,7 +79,7 @@ class Settings:
         return wanted > specificity(self.ignore, code)
 
     def is_ignored(self, code: str) -> bool:
-        """Return whether a code is ignored, by a selector that is more specific than one that selects it."""
+        """Return whether a code is ignored by a selector at least as specific as the one that selects it."""
         wanted = specificity((*(self.select or ()), *self.extend_select), code)
         return specificity(self.ignore, code) > 0 and specificity(self.ignore, code) >= wanted
 
@@ -102,7 +104,7 @@ class Settings:
         return fnmatchcase(path.as_posix(), pattern) or fnmatchcase(path.name, pattern)
 
     def severity_of(self, code: str, otherwise: Severity) -> Severity:
-        """How severe findings of a code are."""
+        """Return the severity of findings of a code, or else the given one."""
         best, severity = 0, otherwise
         for selector, wanted in self.severity.items():
             closeness = specificity([selector], code)
@@ -111,7 +113,10 @@ class Settings:
         return severity
 
     def with_words(self, select: tuple[str, ...] | None, ignore: tuple[str, ...]) -> Settings:
-        """Return the settings combined with the command line: its selection replaces, its ignored codes are added."""
+        """Return the settings combined with those of the command line.
+
+        Its selection replaces that of the settings, and its ignored codes are added.
+        """
         changed = replace(self, ignore=(*self.ignore, *ignore))
         if select is not None:
             changed = replace(changed, select=select, extend_select=(), ignore=ignore)

@@ -1,4 +1,4 @@
-"""The elements of a description by the schema of URDF: those with a place in it, and unread ones."""
+"""The elements of a description in the URDF schema: those with a place in it, and unread ones."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ EXTENSIONS = frozenset({"gazebo", "transmission", "ros2_control", "sensor", "muj
 
 
 class Place(NamedTuple):
-    """An element that URDF knows, with its rule.
+    """An element that URDF defines, with its schema rule.
 
     Attributes:
         element: the element.
-        rule: what it may carry and contain.
-        parent: the element around it; None for ``<robot>``.
-        owner: the link, joint or material that it is or is part of; None for ``<robot>``.
+        rule: the attributes and children that it may have.
+        parent: the place of the enclosing element; None for ``<robot>``.
+        owner: the link, joint or material that contains the element or is the element; None for ``<robot>``.
     """
 
     element: Element
@@ -31,16 +31,16 @@ class Place(NamedTuple):
 
     @property
     def of_owner(self) -> str:
-        """The text after the tag of a part in a message: `` of joint 'elbow'``."""
+        """The text after an element's tag in a message, such as `` of joint 'elbow'``."""
         return "" if self.owner is None or self.owner is self.element else f" of {_owner_name(self.owner)}"
 
     def __str__(self) -> str:
-        """The element as messages name it: ``joint 'elbow'``, ``<limit> of joint 'elbow'``."""
+        """Return the element as messages name it, such as ``joint 'elbow'`` or ``<limit> of joint 'elbow'``."""
         return _owner_name(self.element) if self.owner is self.element else f"<{self.rule.tag}>{self.of_owner}"
 
 
 class Structure:
-    """The elements of a description; each list is made when first asked for.
+    """The elements of a description; each list is computed on first use.
 
     Args:
         root: the root element.
@@ -51,17 +51,17 @@ class Structure:
 
     @cached_property
     def places(self) -> list[Place]:
-        """The elements that URDF has a place for, in document order; none if the root is not a ``<robot>``."""
+        """The elements that URDF defines, in document order; empty if the root is not a ``<robot>``."""
         return self._walked[0]
 
     @cached_property
     def unknown_elements(self) -> list[tuple[Place, Element]]:
-        """The elements in places that URDF does not have, except those of other tools and namespaces."""
+        """The elements that URDF does not define at their places, except those of other tools and namespaces."""
         return [(place, child) for place, child in self._walked[1] if not _is_expected(place, child)]
 
     @cached_property
     def unknown_attributes(self) -> list[tuple[Place, str]]:
-        """The attributes that their elements do not have, except those of other namespaces."""
+        """The attributes that URDF does not define for their elements, except those of other namespaces."""
         return [
             (place, name)
             for place in self.places
@@ -71,7 +71,7 @@ class Structure:
 
     @cached_property
     def _walked(self) -> tuple[list[Place], list[tuple[Place, Element]]]:
-        """The elements that have a place, and those inside them that have none, both in document order."""
+        """The elements that URDF defines, and the undefined elements inside them, both in document order."""
         known: list[Place] = []
         unknown: list[tuple[Place, Element]] = []
         waiting = [Place(self._root, schema.ROBOT, None, None)] if self._root.tag == schema.ROBOT.tag else []
@@ -98,7 +98,7 @@ def _is_expected(place: Place, child: Element) -> bool:
 
 
 def _owner_name(element: Element) -> str:
-    """A link, joint or material as messages name it."""
+    """Return the name of a link, joint or material for messages."""
     name = element.attributes.get("name")
     return (
         phrase("a {tag} without a name", tag=term(element.tag))

@@ -35,21 +35,22 @@ _DEFINITIONS = {"material", "xacro:macro", "xacro:property"}
 class Subject:
     """One description under check.
 
-    Expensive properties are computed when a rule first asks for them, and cached for the next one.
+    Expensive properties are computed on first use and cached.
 
     Args:
-        description: what is checked.
-        finder: where packages are.
-        settings: the settings in force for its file.
-        contexts: what checks at one moment share.
+        description: the description to check.
+        finder: the finder of packages.
+        settings: the settings for the file.
+        contexts: the data that checks share during one run.
 
     Attributes:
-        description: what is checked.
-        path: the file that is checked; relative addresses in the description start at its folder.
-        document: the expanded document; its elements know the file and place they were written at.
-        reading: what the URDF reader made of it.
+        description: the description to check.
+        path: the checked file; relative paths in the description start from its folder.
+        document: the expanded document; its elements know the file and place where they were written.
+        reading: the result of the URDF reader.
         expansion: the expansion, or None for plain URDF.
-        is_whole: whether all of the description is here; if not, it is what could be expanded, and there is no robot.
+        is_whole: whether the description is complete. If not, it contains the parts that could be expanded, and there
+            is no robot.
     """
 
     def __init__(
@@ -67,7 +68,7 @@ class Subject:
 
     @cached_property
     def is_library(self) -> bool:
-        """Whether it is a xacro file for others to include: what it defines describes no robot by itself."""
+        """Whether the file is a xacro library, whose definitions alone do not describe a robot."""
         main = next(iter(self.sources.values()), None)
         if self.expansion is None or self.robot is not None or not self.is_whole or main is None:
             return False
@@ -91,7 +92,7 @@ class Subject:
         return self.document.root
 
     def once(self, work: Callable[[Subject], Value]) -> Value:
-        """Return what a function makes of this subject, worked out once for all rules and for all subjects alike."""
+        """Return the result of a function for this subject, computed once for all rules and equal subjects."""
         if work not in self._done:
             self._done[work] = work(self)
         value: Value = self._done[work]
@@ -105,12 +106,12 @@ class Subject:
         return self._shared.done(self.xacro, self.root, is_whole=self.is_whole)
 
     def elements(self, tag: str | None = None) -> Iterator[Element]:
-        """The elements directly in ``<robot>``, all or those of one tag, in document order."""
+        """Return the elements directly in ``<robot>``, all or those with one tag, in document order."""
         return self.root.elements() if tag is None else iter(self._by_tag.get(tag, ()))
 
     @cached_property
     def _by_tag(self) -> Mapping[str, list[Element]]:
-        """The elements directly in ``<robot>`` by their tags, for most rules ask for those of one tag."""
+        """The elements directly in ``<robot>`` by tag, since most rules need those with one tag."""
         found: dict[str, list[Element]] = {}
         for element in self.root.elements():
             found.setdefault(element.tag, []).append(element)
@@ -118,7 +119,7 @@ class Subject:
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        """All joints in file order, those of a refused model as far as they can be read; names may repeat there."""
+        """All joints in file order; for a refused model, those that can be read, whose names may repeat."""
         if self.robot is not None:
             return tuple(self.robot.joints.values())
         from linkwright.urdf.reader import read_joint
@@ -128,7 +129,7 @@ class Subject:
 
     @cached_property
     def links(self) -> tuple[Link, ...]:
-        """All links in file order, those of a refused model as far as they can be read; names may repeat there."""
+        """All links in file order; for a refused model, those that can be read, whose names may repeat."""
         if self.robot is not None:
             return tuple(self.robot.links.values())
         from linkwright.urdf.reader import MaterialTable, read_link
@@ -140,7 +141,7 @@ class Subject:
 
     @property
     def sources(self) -> Mapping[Path, Document]:
-        """Every XML file that was read, as it is written (not expanded), the checked file first."""
+        """Every XML file that was read, unexpanded, the checked file first."""
         return self.description.sources
 
     @cached_property
@@ -157,7 +158,7 @@ class Subject:
 
     @cached_property
     def structure(self) -> Structure:
-        """The elements of the description, those that URDF knows and unread ones."""
+        """The elements of the description: those that URDF defines, and unread ones."""
         from linkwright.lint.structure import Structure
 
         return Structure(self.root)
@@ -171,7 +172,7 @@ class Subject:
 
     @cached_property
     def xacro(self) -> XacroFacts:
-        """The definitions and uses in its xacro files."""
+        """The definitions and uses in the xacro files of the description."""
         from linkwright.lint.xacro_facts import XacroFacts
 
         given = {} if self.expansion is None else self.expansion.arguments
@@ -180,28 +181,28 @@ class Subject:
 
     @property
     def _shared(self) -> OfFile | None:
-        """The data that the checks of an expanded file share with those of other sets of arguments."""
+        """The data that checks of an expanded file with different sets of arguments share."""
         if self._contexts is None or self.expansion is None or self.description.overlay is not None:
             return None
         return self._contexts.of_file(self.path)
 
     @cached_property
     def bodies(self) -> Bodies:
-        """The links that fixed joints make one body."""
+        """The bodies, each consisting of the links that fixed joints connect."""
         from linkwright.urdf.bodies import Bodies
 
         return Bodies(self.robot)
 
     @cached_property
     def extents(self) -> Extents:
-        """The space that shapes take, and the mass properties of bodies."""
+        """The bounding boxes of shapes, and the mass properties of bodies."""
         from linkwright.lint.extents import Extents
 
         return Extents(self.links, self.bodies, self.meshes)
 
     @cached_property
     def tensor_flaws(self) -> list[tuple[Link, Inertial, Flaw]]:
-        """The links with an impossible inertia tensor, with its first flaw."""
+        """The links with an impossible inertia tensor, each with its first flaw."""
         from linkwright.lint.tensors import flaw_of
 
         inertials = ((link, link.inertial) for link in self.links if link.inertial is not None)
@@ -209,7 +210,7 @@ class Subject:
 
     @cached_property
     def frames(self) -> Mapping[str, Placement]:
-        """Every link in the root link's frame, with all joints at zero; none if there is no robot."""
+        """The placement of every link in the root link's frame with all joints at zero; empty if no robot."""
         from linkwright.lint.frames import placements
 
         return {} if self.robot is None else placements(self.robot)

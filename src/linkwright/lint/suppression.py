@@ -1,8 +1,8 @@
-"""Suppression by comments in the files.
+"""Suppression of findings by comments in the files.
 
-``<!-- linkwright: ignore LW204 limit-inverted (reason) -->`` on a line of its own holds for the element that follows
-and all in it; behind or before something on its line, for that line. ``ignore-file`` holds for the file it is in. In
-files that are not XML the comment begins with ``#``. Without codes it means everything.
+``<!-- linkwright: ignore LW204 limit-inverted (reason) -->`` on its own line applies to the element that follows
+and everything in it; on a line with other content, it applies to that line. ``ignore-file`` applies to the whole
+file. In files that are not XML, the comment begins with ``#``. A comment without codes suppresses all findings.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ class Directive:
     """One suppression comment.
 
     Attributes:
-        source: the text that has it.
-        start: character offset of the comment.
-        end: character offset after it.
-        selectors: what it suppresses, each with its offset; none means everything.
-        ranges: the character offsets that it applies to; None means the whole file.
+        source: the text that contains the comment.
+        start: the character offset of the comment.
+        end: the character offset after the comment.
+        selectors: the selectors in the comment, each with its offset; empty means everything.
+        ranges: the ranges of character offsets that the comment applies to; None means the whole file.
         used: the selectors that suppressed something.
     """
 
@@ -57,7 +57,7 @@ class Directive:
     used: set[str] = field(default_factory=set)
 
     def suppresses(self, code: str, offset: int) -> bool:
-        """Return whether it suppresses a finding of a code at a place; it remembers that it did."""
+        """Return whether the comment suppresses a finding of a code at a place, and record that it was used."""
         if self.ranges is not None and not any(start <= offset < end for start, end in self.ranges):
             return False
         if not self.selectors:
@@ -69,11 +69,11 @@ class Directive:
 
 
 class Suppressions:
-    """The suppressing comments of all files that a check meets.
+    """The suppression comments of all files that a check reads.
 
     Args:
-        subject: what is checked; the comments of all its files are read.
-        settings: they say whether unused and unknown suppressions are reported.
+        subject: the subject of the check; the comments of all its files are read.
+        settings: the settings, which determine whether unused and unknown suppressions are reported.
     """
 
     def __init__(self, subject: Subject, settings: Settings) -> None:
@@ -86,12 +86,12 @@ class Suppressions:
                 self._directives[str(path)] = list(directives(document.source))
 
     def apply(self, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-        """Return the diagnostics that no comment suppresses, and those about the comments."""
+        """Return the diagnostics that no comment suppresses, and those about the comments themselves."""
         kept = [diagnostic for diagnostic in diagnostics if not self._suppresses(diagnostic)]
         return [*kept, *self._unknown(), *self._unused()]
 
     def audits(self, code: str) -> bool:
-        """Return whether a comment is to be shown of use or not by the findings of a code, selected or not."""
+        """Return whether comments need the findings of a code to show their use, even if not selected."""
         if not self._audits:
             return False
         return any(
@@ -157,7 +157,7 @@ class Suppressions:
 
 
 def directives(source: SourceText) -> Iterator[Directive]:
-    """The suppressing comments of a text, in order."""
+    """Yield the suppression comments of a text, in order."""
     text = source.text
     if "linkwright:" not in text:
         return
@@ -199,7 +199,7 @@ def _following_element(text: str, end: int) -> tuple[int, int] | None:
 
 
 def _places(diagnostic: Diagnostic) -> Iterator[tuple[str, int]]:
-    """Where a finding stands: its place, and those of the macro calls and includes that led there."""
+    """Yield the places of a finding: its own, and those of the macro calls and includes that produced it."""
     if diagnostic.span is not None:
         if diagnostic.source is not None and diagnostic.source.name == diagnostic.span.file:
             source = diagnostic.source

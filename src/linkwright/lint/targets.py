@@ -1,4 +1,4 @@
-"""From the files and folders that the user names to the descriptions and packages to check."""
+"""Search for the descriptions and packages to check in the files and folders that the user names."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Targets:
     Attributes:
         files: the descriptions, each once.
         packages: the folders of the packages to check, each once.
-        named: the files that the user named, which are not found in a folder.
+        named: the files that the user named individually.
     """
 
     files: tuple[Path, ...]
@@ -58,11 +58,11 @@ class Targets:
 def find_targets(paths: Iterable[Path], *, around: bool = False) -> Targets:
     """Return the descriptions and packages to check for files and folders.
 
-    A file is always checked; its package is checked only with `around`. For a folder and those below it, the packages
-    are checked, including the one around the folder. So are those files that no other file there includes: ``.urdf``,
-    ``.sdf`` and ``.world`` files, and those ``.xacro`` files that describe a robot by themselves: their root is a
-    ``<robot>`` with a name, and they have more than declarations. Build products and hidden folders are skipped, and
-    so are empty files, and web pages inside a package, which read URDF in their own way.
+    A file is always checked; its package is checked only with `around`. For a folder, the packages in it and below it
+    are checked, including the package that contains the folder. So are those files that no other file there includes:
+    ``.urdf``, ``.sdf`` and ``.world`` files, and those ``.xacro`` files that describe a complete robot: their root is a
+    ``<robot>`` with a name, and they contain more than declarations. Build products, hidden folders and empty files are
+    skipped. So are web pages inside a package, which read URDF in their own way.
     """
     files: dict[Path, None] = {}
     packages: dict[Path, None] = {}
@@ -97,7 +97,7 @@ def find_xml_files(paths: Iterable[Path]) -> list[Path]:
 
 
 def _walk(folder: Path, endings: tuple[str, ...]) -> tuple[list[Path], list[Path]]:
-    """Return the files at and below a folder with some endings and the packages there, in the order of their names."""
+    """Return the files with some extensions and the packages, in and below a folder, sorted by name."""
     found: list[Path] = []
     packages: list[Path] = []
     for place, folders, names in os.walk(folder):
@@ -126,10 +126,10 @@ def _entries(found: list[Path]) -> Iterator[Path]:
 
 
 def _is_part(path: Path) -> bool:
-    """Return whether a file is only a part of a robot, or empty, although its name is that of a whole one.
+    """Return whether a file is only a part of a robot, or empty, although its name is that of a robot.
 
-    Examples are materials, plugins and macros, the files of webots_ros2_driver, parts of a robot that were expanded one
-    by one, an element of URDF by itself, and files that their author has yet to write.
+    Examples are materials, plugins and macros, the files of webots_ros2_driver, parts of a robot that were expanded
+    separately, a single URDF element, and files that are still to be written.
     """
     try:
         root = sources.read(str(path)).root
@@ -145,14 +145,17 @@ def _is_part(path: Path) -> bool:
 
 
 def _is_empty(path: Path, error: LinkwrightError) -> bool:
-    """Return whether a file that is not XML has only comments: its author has yet to write it, or discarded it."""
+    """Return whether a file that is not XML has only comments, because it is unwritten or discarded."""
     if any(diagnostic.code == _EMPTY_FILE for diagnostic in error.diagnostics):
         return True
     return not _COMMENT.sub("", _text(path).lstrip("\ufeff")).strip()
 
 
 def _included_names(text: str) -> Iterator[str]:
-    """The names of the files that a description includes with the defaults of its arguments and of `$(optenv ...)`."""
+    """Yield the names of the files that a description includes.
+
+    Arguments and `$(optenv ...)` have their default values.
+    """
     arguments = [dict(_ATTRIBUTE.findall(tag)) for tag in _ARGUMENT.findall(text)]
     defaults = {argument["name"]: argument.get("default", "") for argument in arguments if "name" in argument}
     for written in _INCLUDED.findall(text):
@@ -164,7 +167,7 @@ def _text(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError:
-        return ""  # which the check will tell
+        return ""  # the check reports this error
 
 
 def _describes_robot(path: Path) -> bool:
@@ -173,12 +176,12 @@ def _describes_robot(path: Path) -> bool:
     try:
         root = sources.read(str(path)).root
     except LinkwrightError as error:
-        return not _is_empty(path, error)  # anything else the check will tell
+        return not _is_empty(path, error)  # the check reports any other error
     return root.tag == "robot" and "name" in root.attributes and _has_content(root)
 
 
 def _has_content(root: Element) -> bool:
-    """Return whether there is more than declarations: a wrapper that only includes others counts as well."""
+    """Return whether a file contains more than declarations; a wrapper that only includes others counts."""
     tags = {element.tag for element in root.elements()}
     return (
         bool(tags - _DECLARATIONS - _WITHOUT_LINKS)

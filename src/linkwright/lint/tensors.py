@@ -1,4 +1,4 @@
-"""Inertia tensors as descriptions write them, and their first flaw."""
+"""Inertia tensors as they are written in descriptions, and their first flaw."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ _NAMED = 4
 
 @dataclass(frozen=True, slots=True)
 class Flaw:
-    """The first flaw of a link's tensor, so that only one rule reports each tensor.
+    """The first flaw of a link's tensor; further flaws are not reported, so that one rule reports it.
 
     Attributes:
         kind: ``zero``, ``diagonal``, ``product``, ``indefinite`` or ``triangle``.
-        attribute: the attribute it shows in, or None when it is in all of them.
-        amount: a number that belongs to it: the largest product allowed, the part by which the inequality is broken.
+        attribute: the attribute with the flaw, or None if it concerns all attributes.
+        amount: a number that quantifies the flaw: the largest allowed product, or the fraction by which the inequality
+            is violated.
     """
 
     kind: str
@@ -32,18 +33,18 @@ class Flaw:
 
 
 def tensor(inertial: Inertial) -> Matrix:
-    """The tensor in kg m2 as it is written, in the inertial frame."""
+    """Return the tensor in kg m2 as it is written, in the inertial frame."""
     i = inertial
     return (i.ixx, i.ixy, i.ixz), (i.ixy, i.iyy, i.iyz), (i.ixz, i.iyz, i.izz)
 
 
 def _rounding(inertial: Inertial) -> float:
-    """Return by how much the digits that were left out can move a principal moment, in kg m2.
+    """Return by how much the omitted digits can change a principal moment, in kg m2.
 
-    Each component may be off by half of its last digit; a principal moment then moves by at most the largest sum of a
-    row of these (Weyl's inequality).
+    Each component may be off by half of its last digit; a principal moment then changes by at most the largest row sum
+    of these errors (Weyl's inequality).
     """
-    from decimal import Decimal, InvalidOperation  # not above: few tensors have products of inertia
+    from decimal import Decimal, InvalidOperation  # imported here: few tensors have products of inertia
 
     element = inertial.element and inertial.element.first("inertia")
     written = {} if element is None else element.attributes
@@ -60,7 +61,7 @@ def _rounding(inertial: Inertial) -> float:
 
 
 def flaw_of(inertial: Inertial) -> Flaw | None:
-    """Return the first flaw of a tensor, or None."""
+    """Return the first flaw of a tensor, or None if it is valid."""
     moments = [getattr(inertial, name) for name in DIAGONAL]
     products = [getattr(inertial, name) for name in PRODUCTS]
     if not any(moments) and not any(products):
@@ -81,6 +82,6 @@ def flaw_of(inertial: Inertial) -> Flaw | None:
 
 
 def name_others(names: Sequence[str]) -> Phrase:
-    """Name the other links that have the same tensor, a few of them."""
+    """Return a phrase that names a few of the other links with the same tensor."""
     others = phrase("the others are {names}", names=quoted_names(names[:_NAMED]))
     return phrase("{list}, ...", list=others) if len(names) > _NAMED else others

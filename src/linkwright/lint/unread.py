@@ -1,4 +1,4 @@
-"""Elements and attributes that no program reads, and what may be meant by them."""
+"""Elements and attributes that no program reads, and the names that were probably intended."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _OTHER_ATTRIBUTES = {
 
 
 def _homes() -> dict[str, tuple[str, ...]]:
-    """Tag -> the elements in which it is read."""
+    """Return the elements in which each tag is read, by tag."""
     homes: dict[str, dict[str, None]] = {}
     waiting: list[ElementRule] = [schema.ROBOT]
     while waiting:
@@ -62,7 +62,7 @@ HOMES = _homes()
 
 
 def _attributes() -> frozenset[str]:
-    """The attributes that some element of URDF has."""
+    """Return the attributes that some element of URDF has."""
     found: set[str] = set()
     waiting: list[ElementRule] = [schema.ROBOT]
     while waiting:
@@ -81,25 +81,26 @@ _EXPECTED_ATTRIBUTES = (
 
 
 def is_expected_element(tag: str) -> bool:
-    """Return whether an author expects something of an element here: URDF or a format around it has such words.
+    """Return whether an author expects an element to have an effect, because related formats use its name.
 
-    Any other name is a private extension, such as one that a vendor's software reads.
+    These are URDF and the formats around it. Any other name is a private extension, such as one that a vendor's
+    software reads.
     """
     return tag in _EXPECTED_ELEMENTS or not HOMES.keys().isdisjoint(words_of(tag))
 
 
 def is_expected_attribute(name: str) -> bool:
-    """Return whether an author expects something of an attribute here: some element of URDF is or has one like it."""
+    """Return whether an author expects an attribute to have an effect, as URDF uses such a name."""
     return name.casefold() in _EXPECTED_ATTRIBUTES
 
 
 def hints_of_reader(subject: Subject) -> dict[Span | None, str]:
-    """Return the hints of the reader by place, which name misspelt words."""
+    """Return the URDF reader's hints about misspelt words, by place."""
     return {found.span: found.hint or "" for found in subject.reading.diagnostics}
 
 
 def meant_element(rule: ElementRule, child: Element) -> str | None:
-    """Return the element that an unknown one means, or None."""
+    """Return the element that an unknown one probably means, or None."""
     if child.tag in HOMES:
         return None
     known = [child.tag for child in rule.children]
@@ -112,12 +113,12 @@ def meant_element(rule: ElementRule, child: Element) -> str | None:
 
 
 def is_misspelt(name: str, meant: str) -> bool:
-    """Whether an element or attribute is a slip of the pen for another, not the word of another format for it."""
+    """Return whether a name is a misspelling of another, and not its equivalent in another format."""
     return misspelling_of(name, [meant]) is not None
 
 
 def meant_attribute(place: Place, attribute: str) -> str | None:
-    """Return the missing attribute that an unknown one means, or None."""
+    """Return the missing attribute that an unknown one probably means, or None."""
     known = [rule.name for rule in place.rule.attributes if rule.name not in place.element.attributes]
     other = _OTHER_ATTRIBUTES.get(attribute.casefold())
     if other in known:
@@ -126,12 +127,12 @@ def meant_attribute(place: Place, attribute: str) -> str | None:
 
 
 def inside(place: Place) -> str:
-    """An element as the place of another in a message."""
+    """Return the text that names an element as the location of another element in a message."""
     return "<robot>" if place.rule is schema.ROBOT else str(place)
 
 
 def attribute_name_span(element: Element, attribute: str) -> Span | None:
-    """The place of an attribute's name in the source."""
+    """Return the place of an attribute's name in the source."""
     from linkwright.xmltree.positions import attribute_name_range
 
     source = element.source

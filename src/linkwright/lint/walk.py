@@ -1,4 +1,4 @@
-"""Walking over a description as rules do: every joint with its parts."""
+"""Iteration over descriptions for rules: every joint with its parts."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 def joints(subject: Subject) -> Iterator[tuple[Joint, Element]]:
-    """The joints with their elements, in file order."""
+    """Yield the joints with their elements, in file order."""
     for joint in subject.joints:
         if joint.element is not None:
             yield joint, joint.element
 
 
 def parts(subject: Subject, tag: str) -> Iterator[tuple[Joint, Element, Element]]:
-    """The joints that have a part of a tag: joint, its element, and the first such part, which is the one read."""
+    """Yield each joint with a part of a tag, its element, and the first such part, which is the one read."""
     for joint, element in joints(subject):
         part = element.first(tag)
         if part is not None:
@@ -36,7 +36,7 @@ _SIMULATORS = lazy_pattern(r"gz|gazebo|ign|mujoco|webots|isaac|unity|drake|bulle
 def is_for_simulation(subject: Subject) -> bool:
     """Return whether a description is for simulation: it has elements for Gazebo or a simulator's plugin.
 
-    Hardware that only pretends, such as ``mock_components/GenericSystem``, needs no physics.
+    Mock hardware, such as ``mock_components/GenericSystem``, needs no physics.
     """
     plugins = (
         plugin.text()
@@ -56,20 +56,23 @@ UNBOUNDED = 1000.0
 
 
 def limits(subject: Subject, *types: str) -> Iterator[tuple[Joint, Element]]:
-    """The joints of some types that have a ``<limit>``, with it."""
+    """Yield the joints of some types that have a ``<limit>``, each with its limit."""
     for joint, _, limit in parts(subject, "limit"):
         if joint.type in types:
             yield joint, limit
 
 
 def bounds(limit: Element) -> tuple[float, float] | None:
-    """Return lower and upper as urdfdom reads them, an absent one as 0; None if one is not a number."""
+    """Return the lower and upper bounds as urdfdom reads them; None if one is not a number.
+
+    A missing bound is 0.
+    """
     ends = [value(limit, name) if name in limit.attributes else 0.0 for name in ("lower", "upper")]
     return None if ends[0] is None or ends[1] is None else (ends[0], ends[1])
 
 
 def value(element: Element, attribute: str) -> float | None:
-    """Return the number of an attribute; None if it is absent or not a number."""
+    """Return the value of an attribute as a number; None if it is absent or not a number."""
     text = element.attributes.get(attribute)
     if text is None:
         return None
@@ -80,7 +83,7 @@ def value(element: Element, attribute: str) -> float | None:
 
 
 def values(element: Element, attribute: str) -> tuple[float, ...]:
-    """Return the numbers of an attribute; empty if it is absent or one of them is not a number."""
+    """Return the values of an attribute as numbers; empty if it is absent or one value is not a number."""
     text = element.attributes.get(attribute)
     if text is None:
         return ()
@@ -91,5 +94,5 @@ def values(element: Element, attribute: str) -> tuple[float, ...]:
 
 
 def shown(number: float) -> str:
-    """A number as messages and hints show it."""
+    """Format a number for messages and hints."""
     return f"{number:.6g}"

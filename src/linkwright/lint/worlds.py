@@ -1,6 +1,6 @@
 """Findings on worlds and models that can be read.
 
-Checks that also exist for robots have the same rule, code and message as there.
+Checks that also exist for robots use the same rule, code and message.
 """
 
 from __future__ import annotations
@@ -47,11 +47,11 @@ _ZERO_MASS, _NEGATIVE_MASS = ZeroMass(), NegativeMass()
 
 
 def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
-    """The findings on a file with its includes resolved, each once for each place in the files.
+    """Yield the findings on a file with its includes resolved, once for each place in the files.
 
     Args:
         sdf: the file.
-        finder: where meshes are.
+        finder: the finder of mesh files.
     """
     reported: set[tuple[object, str]] = set()
     models = [*sdf.models, *(model for world in sdf.worlds for model in world.models)]
@@ -65,9 +65,9 @@ def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
 
 
 def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Combine the findings on missing models of a world, and those on their meshes, with the others in the notes.
+    """Merge the findings on missing models of a world, and on their meshes, into one with notes.
 
-    Files that Gazebo fetches by itself need no fix, and have findings of their own.
+    Files that Gazebo downloads itself need no fix, and have separate findings.
     """
     kept: list[Diagnostic] = []
     groups: dict[tuple[str, Severity], list[Diagnostic]] = {}
@@ -85,7 +85,10 @@ def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def for_classic(found: Iterable[Diagnostic], path: Path) -> Iterator[Diagnostic]:
-    """The findings on a world; what gz alone refuses is an information in a package for Gazebo classic."""
+    """Yield the findings on a world, adapted to Gazebo classic if its package is for that.
+
+    A construct that only gz refuses becomes an information there.
+    """
     package = find_package(path.absolute().parent)
     manifest = None if package is None else package.manifest
     is_classic = manifest is not None and any(map(manifest.declares, _PACKAGES_OF_CLASSIC))
@@ -116,7 +119,10 @@ def _model(model: Model, *, static: bool) -> Iterator[Diagnostic]:
 
 
 def _axes(models: Iterable[Model]) -> Iterator[Diagnostic]:
-    """The axes without a direction, those of fixed joints as one: Gazebo classic saves them all so, and gz refuses."""
+    """Yield findings on axes without a direction; those of fixed joints are combined.
+
+    Gazebo classic saves all fixed joints in this way, and gz refuses them.
+    """
     fixed: dict[object, Diagnostic] = {}
     pending = [*models]
     while pending:
@@ -145,7 +151,7 @@ def _axes_of(model: Model) -> Iterator[tuple[Joint, Axis | None, str]]:
 
 
 def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator[Diagnostic]:
-    """Yield missing meshes and heightmaps, each address once."""
+    """Yield findings on missing meshes and heightmaps, each URI once."""
     known: set[str] = set()
     for shape in (shape for model in models for shape in shapes_of(model)):
         geometry, element = shape.geometry, shape.element
@@ -168,7 +174,7 @@ def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator
 
 
 def _inertial(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
-    """Yield the findings that a robot's inertial would have, and one on values that are not finite."""
+    """Yield the findings that a robot's inertial would have, and one on non-finite values."""
     tensor = inertial.inertia
     found = urdf.Inertial(
         inertial.mass,

@@ -1,7 +1,7 @@
-"""The definitions and uses in the xacro files of a description, read from the files as they are written.
+"""The definitions and uses in the unexpanded xacro files of a description.
 
-Nothing is evaluated, so branches that are not taken and macros that are not called count too. Names are matched by
-name alone, without scopes: xacro's scopes are dynamic, and a rule that calls something unused must be sure.
+Nothing is evaluated, so branches that are not taken and macros that are not called count, too. Names are matched
+without regard to scopes: xacro's scopes are dynamic, and a rule that calls something unused must be sure.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ class Definition:
     """A definition of a property, argument or macro, or an include.
 
     Attributes:
-        name: what is defined; for an include its file name as written.
-        element: the tag.
-        parents: the elements around it, outermost first.
-        order: its number among all elements of the file.
+        name: the defined name; for an include, its file name as written.
+        element: the defining element.
+        parents: the enclosing elements, outermost first.
+        order: the index of the element among all elements of the file.
     """
 
     name: str
@@ -56,18 +56,18 @@ class Definition:
 
     @property
     def macro(self) -> Element | None:
-        """The innermost macro definition around it, or None."""
+        """The innermost macro definition that contains the element, or None."""
         return next((parent for parent in reversed(self.parents) if parent.tag == "xacro:macro"), None)
 
     @property
     def is_conditional(self) -> bool:
-        """Whether it is inside ``xacro:if`` or ``xacro:unless``."""
+        """Whether the element is inside ``xacro:if`` or ``xacro:unless``."""
         return any(parent.tag in ("xacro:if", "xacro:unless") for parent in self.parents)
 
 
 @dataclass(frozen=True)
 class Use:
-    """A text that mentions something: an attribute of an element, or (None) its character data."""
+    """A text that mentions names: an attribute of an element, or (None) its character data."""
 
     element: Element
     attribute: str | None
@@ -93,9 +93,9 @@ class FileFacts:
     """The definitions and uses in one file.
 
     Attributes:
-        names: every name that its expressions mention, and the pasted values' too.
-        called: the macros that it calls, without prefix and namespace.
-        calls_open: whether it calls a macro whose name is a value.
+        names: every name that its expressions or pasted values mention.
+        called: the names of the macros that it calls, without prefix and namespace.
+        calls_open: whether it calls a macro whose name is computed.
     """
 
     document: Document
@@ -117,7 +117,7 @@ class FileFacts:
 
     @cached_property
     def has_bare_tags(self) -> bool:
-        """Whether there are tags without the prefix of xacro, which does not evaluate what they were to do (LW720)."""
+        """Whether there are xacro tags without the prefix, which xacro does not evaluate (LW720)."""
         return any(element.tag in _BARE for element in self.document.root.walk())
 
     @cached_property
@@ -141,7 +141,7 @@ class FileFacts:
 
     @cached_property
     def macros_by_name(self) -> Mapping[str, Sequence[Definition]]:
-        """The macros of each name."""
+        """The macros with each name."""
         found: dict[str, list[Definition]] = {}
         for macro in self.macros:
             found.setdefault(macro.name, []).append(macro)
@@ -149,7 +149,7 @@ class FileFacts:
 
     @classmethod
     def of(cls, document: Document) -> FileFacts:
-        """The facts of a parsed file, worked out once for each document: one is checked with many sets of arguments."""
+        """Return the facts of a parsed file, computed once even if it is checked with many sets of arguments."""
         facts = _CACHE.values.get(id(document))
         if facts is None:
             facts = cls(document)
@@ -158,7 +158,7 @@ class FileFacts:
         return facts
 
     def parameters(self, macro: Element) -> tuple[Parameter, ...]:
-        """The parameters that a macro of this file declares; none if they are malformed."""
+        """Return the parameters that a macro of this file declares; empty if they are malformed."""
         try:
             return parse_parameters(macro.attributes.get("params", ""))
         except Fault:
@@ -262,11 +262,11 @@ class XacroFacts:
 
     Attributes:
         path: the checked file.
-        given: name -> final value of every argument that was given or declared.
+        given: name -> final value of every argument that was passed or declared.
         package: the package of the file, or None.
-        is_library: whether it does not make a robot, but is meant for others to include.
+        is_library: whether the file does not describe a robot, but is meant to be included by others.
         files: path -> facts, the checked file first.
-        found: code -> findings of the rules that depend on nothing else (`Rule.of_sources`), as far as they ran.
+        found: code -> findings of the rules that depend on these facts only (`Rule.of_sources`) and have run already.
     """
 
     def __init__(
@@ -292,7 +292,7 @@ class XacroFacts:
 
     @cached_property
     def own(self) -> Mapping[Path, FileFacts]:
-        """The files that belong to the author of the checked one: those of its package, else those of its folder."""
+        """The files that belong to the author of the checked file: those of its package, or else of its folder."""
         package = self.package
         folder = (package.folder if package else self.path.parent).absolute()
         main = next(iter(self.files))
@@ -300,7 +300,7 @@ class XacroFacts:
 
     @cached_property
     def neighbours(self) -> Mapping[Path, FileFacts]:
-        """The other description files of the same package (or folder), which may use what this one defines."""
+        """The other description files of the same package (or folder), which may use these definitions."""
         package = self.package
         documents = _descriptions_beside(self.path) if package is None else package.descriptions
         known = {path.absolute() for path in self.files}
@@ -308,12 +308,12 @@ class XacroFacts:
 
     @cached_property
     def pastes(self) -> bool:
-        """Whether an expression pastes a value into another, so that the values of arguments may become names."""
+        """Whether an expression contains a substituted value, so that values of arguments may become names."""
         return any(facts.pasted for facts in self._all())
 
     @cached_property
     def names(self) -> frozenset[str]:
-        """All names that any file here or beside mentions in an expression or could paste into one."""
+        """All names that a file or a neighbour mentions in an expression or could substitute into one."""
         found: set[str] = set()
         for facts in self._all():
             found |= facts.names | facts.blocks
@@ -324,12 +324,12 @@ class XacroFacts:
 
     @cached_property
     def used_arguments(self) -> frozenset[str]:
-        """All arguments that any file here or beside uses."""
+        """All arguments that a file or a neighbour uses."""
         return frozenset(name for facts in self._all() for name in facts.used_arguments)
 
     @cached_property
     def called(self) -> frozenset[str]:
-        """The names of all macros that any file here or beside calls, without namespaces."""
+        """The names of all macros that a file or a neighbour calls, without namespaces."""
         return frozenset(name for facts in self._all() for name in facts.called)
 
     @cached_property
@@ -349,7 +349,7 @@ class XacroFacts:
 
     @cached_property
     def _misses_files(self) -> bool:
-        """Whether a branch that is not taken includes a file that is not known."""
+        """Whether a branch that is not taken includes an unknown file."""
         known = {path.name for path in self.files} | {path.name for path in self.neighbours}
         for facts in self.files.values():
             for include in facts.includes:
@@ -367,7 +367,7 @@ class XacroFacts:
 
 
 def is_global(name: str) -> bool:
-    """Return whether xacro provides a name that properties may hide, such as ``pi``."""
+    """Return whether xacro provides a name that properties can hide, such as ``pi``."""
     return name in MATHEMATICS
 
 
@@ -411,7 +411,7 @@ def _descriptions_beside(path: Path) -> dict[Path, Document]:
     except OSError:
         return found
     for candidate in candidates:
-        if candidate.suffix in (".xacro", ".urdf") and candidate.is_file():  # a pipe would never end
+        if candidate.suffix in (".xacro", ".urdf") and candidate.is_file():  # reading a named pipe would never end
             try:
                 found[candidate] = sources.read(str(candidate))
             except LinkwrightError:

@@ -1,7 +1,7 @@
-"""Find the properties, arguments and packages that a text with ``${...}`` and ``$(...)`` uses, without evaluating it.
+"""Find the properties, arguments and packages that a text uses, without evaluating it.
 
-The lexer is that of the xacro room, and Python parses the expressions. A text that makes a name out of other values is
-*open*: what it uses is not known before it is evaluated.
+They are used in ``${...}`` and ``$(...)``. The lexer is that of the xacro room, and Python parses the expressions.
+A text that composes a name from values is *open*: the names that it uses are unknown before it is evaluated.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ DEPRECATED = {
 
 @dataclass(frozen=True, slots=True)
 class BareCall:
-    """A call of a function by its deprecated bare name; the offset is that of the name in the text."""
+    """A call of a function by its deprecated bare name, with the offset of the name in the text."""
 
     name: str
     offset: int
@@ -42,11 +42,11 @@ class Mentions:
 
     Attributes:
         names: the names in its expressions.
-        arguments: the names of the arguments.
-        pasted: of those, the ones whose value becomes part of an expression's source.
+        arguments: the names of the arguments that the text uses.
+        pasted: those arguments whose value becomes part of an expression's source.
         packages: package -> offset in the text of ``$(find package)``.
-        is_open: whether names are made of values.
-        arguments_open: whether names of arguments are made of values.
+        is_open: whether names are composed from values.
+        arguments_open: whether names of arguments are composed from values.
         bare_calls: the calls of functions by a deprecated name.
     """
 
@@ -63,12 +63,12 @@ _NONE = Mentions()
 
 
 def mentions(text: str) -> Mentions:
-    """The names that a text mentions."""
+    """Return the names that a text mentions."""
     return _mentions(text) if "$" in text else _NONE
 
 
 def is_constant(text: str) -> bool:
-    """Return whether a text has the same value wherever it is evaluated: it mentions nothing."""
+    """Return whether a text has the same value everywhere, because it mentions no names."""
     found = mentions(text)
     return not (found.names or found.arguments or found.packages or found.is_open or found.arguments_open) and (
         "$(env" not in text and "$(optenv" not in text and "$(cwd" not in text and "$(dirname" not in text
@@ -76,7 +76,7 @@ def is_constant(text: str) -> bool:
 
 
 def identifiers(text: str) -> frozenset[str]:
-    """Everything in a text that could be a name."""
+    """Return all words in a text that could be names."""
     return frozenset(_IDENTIFIER.findall(text))
 
 
@@ -204,7 +204,7 @@ def _parsed(source: str) -> ast.expr | None:
 
 
 def _bound(tree: ast.expr) -> Iterator[str]:
-    """The names that an expression binds itself, in lambdas and comprehensions."""
+    """Yield the names that an expression itself binds, in lambdas and comprehensions."""
     for node in ast.walk(tree):
         if isinstance(node, ast.arg):
             yield node.arg

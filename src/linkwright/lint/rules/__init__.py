@@ -1,1 +1,1 @@
-"""The rules, a module for each group or topic; the entry point ``linkwright.lint_rules`` names this package."""
+"""The lint rules, one module for each topic; the entry point ``linkwright.lint_rules`` names this package."""

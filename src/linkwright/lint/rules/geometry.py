@@ -1,4 +1,4 @@
-"""Rules about simple shapes and their places."""
+"""Rules about the sizes and origins of simple shapes."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from linkwright.urdf.schema import GEOMETRY
 
 
 def shapes_of(subject: Subject) -> Iterator[tuple[Link, Visual | Collision]]:
-    """Every visual and collision with its link."""
+    """Yield every visual and collision with its link."""
     for link in subject.links:
         yield from ((link, visual) for visual in link.visuals)
         yield from ((link, collision) for collision in link.collisions)
 
 
 def is_scenery(subject: Subject) -> bool:
-    """Return whether the description is one fixed thing, such as a ground or a building.
+    """Return whether the description is a single fixed object, such as a ground or a building.
 
-    Bullet takes a link of mass zero for one that never moves, and its planes, tables and terrains are written so.
+    Bullet treats a link of mass zero as immovable, and its planes, tables and terrains are written in this way.
     """
     links = list(subject.links)
     return len(links) == 1 and links[0].inertial is not None and links[0].inertial.mass == 0
 
 
 def kind_of(shape: Visual | Collision) -> str:
-    """``visual`` or ``collision``."""
+    """Return the kind of a shape, ``visual`` or ``collision``."""
     return "visual" if isinstance(shape, Visual) else "collision"
 
 
 def sizes_of(geometry: Geometry) -> tuple[tuple[str, float], ...]:
-    """The lengths of a simple shape in m, each with its attribute; none for a mesh."""
+    """Return the lengths of a simple shape in m, each with its attribute; empty for a mesh."""
     if isinstance(geometry, Mesh):
         return ()
     if isinstance(geometry, Box):
@@ -50,9 +50,9 @@ class NonPositiveSize(Rule):
 
     ## Why
 
-    urdfdom before URDF 1.2 reads any number. RViz then shows nothing or a shape turned inside out, and physics engines
-    stop with an assertion. For a visual whose sizes are all zero, which some authors use as a marker, the finding is an
-    information.
+    Below URDF 1.2, urdfdom accepts any number. RViz then shows nothing or a shape turned inside out, and physics
+    engines stop with an assertion. For a visual whose sizes are all zero, which some authors use as a marker, the
+    finding is an information.
 
     ## Example
 
@@ -100,8 +100,8 @@ class HugeSize(Rule):
 
     ## Why
 
-    URDF is in metres. A box of 400 is a box of 400 mm in a file that came from CAD. A single link of mass zero is
-    scenery, such as a ground, and may be of any size.
+    URDF uses metres. In a file exported from CAD, a box of 400 is usually a box of 400 mm. A single link of mass zero
+    is scenery, such as a ground, and may be of any size.
 
     ## Example
 
@@ -146,8 +146,8 @@ class TinySize(Rule):
 
     ## Why
 
-    It is invisible, and contacts with it are noise. It is a placeholder, which is better removed, or a length divided
-    by a thousand twice.
+    It is invisible, and contacts with it are noise. It is a placeholder, which should be removed, or a length that was
+    divided by a thousand twice.
 
     ## Example
 
@@ -192,7 +192,7 @@ class SeveralShapes(Rule):
 
     ## Why
 
-    Only the first one is read; the others are ignored without a word.
+    Only the first one is read; the others are silently ignored.
 
     ## Example
 
@@ -236,7 +236,7 @@ class ShapeFar(Rule):
 
     ## Why
 
-    URDF is in metres; an origin in the hundreds is one in millimetres.
+    URDF uses metres. An origin of several hundred is one in millimetres.
 
     ## Example
 

@@ -1,4 +1,4 @@
-"""Rules about collision shapes beside the visuals of the same link."""
+"""Rules that compare the collision shapes of a link with its visuals."""
 
 from __future__ import annotations
 
@@ -32,8 +32,9 @@ class MissingCollision(Rule):
     ## Why
 
     Planners and simulators let everything pass through it. Parts that fixed joints connect count as one, so a camera on
-    an arm needs none of its own. The rule only applies if at least half of the moving parts have one. It skips parts
-    between two that have one: the hip of a leg often has none, because its neighbours are always near.
+    an arm does not need its own. The rule only applies if at least half of the moving parts have a collision shape. It
+    skips parts between two that have one: the hip of a leg often has none, because it is always close to its
+    neighbours.
 
     ## Example
 
@@ -79,7 +80,7 @@ class MissingCollision(Rule):
 
 
 def _is_between(body: Body, bodies: Bodies, lacking: list[Body]) -> bool:
-    """Return whether what holds a body and something that it holds have collision shapes."""
+    """Return whether a body's parent and one of its children have collision shapes."""
     above = bodies.of(body.joint.parent) if body.joint is not None else None
     below = [other for other in bodies.all if other.joint is not None and other.joint.parent in body.links]
     return above not in (None, *lacking) and any(body not in lacking for body in below)
@@ -90,8 +91,8 @@ class MissingVisual(Rule):
 
     ## Why
 
-    A robot that hits objects with parts that RViz does not show is hard to understand. This is right for safety zones;
-    otherwise the visual was forgotten.
+    A robot that hits objects with parts that RViz does not show is hard to understand. A missing visual is intended for
+    safety zones; otherwise it was forgotten.
 
     ## Example
 
@@ -126,8 +127,8 @@ class CollisionApart(Rule):
 
     ## Why
 
-    The robot then collides somewhere else than where it is shown. Usually only one of the two has the `<origin>`. A
-    shape that was moved into the visuals of a link below is skipped: it represents a motor that is drawn there, as in
+    The robot then collides in a different place than it is shown. Usually only one of the two has the `<origin>`. A
+    shape that was moved into the visuals of a child link is skipped: it represents a motor that is drawn there, as in
     the hips of many quadrupeds.
 
     ## Example
@@ -168,7 +169,10 @@ class CollisionApart(Rule):
 
 
 def _origin_hint(link: Link, seen: Bounds) -> Phrase:
-    """Return how to fix a collision away from its visual; if both have one <origin>, a mesh is off its own origin."""
+    """Return how to fix a collision shape that is away from its visual.
+
+    If both have the same <origin>, the mesh is away from its own origin.
+    """
     if link.visuals[0].origin.xyz != link.collisions[0].origin.xyz:
         return phrase("give both the same <origin>")
     center = " ".join(f"{part:.3g}" for part in seen.center)
@@ -180,7 +184,7 @@ class CollisionSize(Rule):
 
     ## Why
 
-    One of the two lacks the `scale`, or a digit. The robot stops metres before a wall, or runs half into it.
+    One of the two lacks the `scale`, or a digit is missing. The robot stops metres before a wall, or runs half into it.
 
     ## Example
 
@@ -226,7 +230,7 @@ class CollisionSize(Rule):
 
 
 def _is_moved_to_a_child(subject: Subject, link: Link, felt: Bounds) -> bool:
-    """Return whether the collision shapes of a link were moved to where visuals of a link below it are."""
+    """Return whether a link's collision shapes were moved to the visuals of a link below it."""
     if not all(any(shape.origin.xyz) for shape in link.collisions) or link.name not in subject.frames:
         return False
     below = {joint.child for joint in subject.joints if joint.parent == link.name}
@@ -240,7 +244,7 @@ def _is_moved_to_a_child(subject: Subject, link: Link, felt: Bounds) -> bool:
 
 
 def _doubly_shaped(subject: Subject) -> Iterator[Link]:
-    """The links that have visuals and collisions."""
+    """Return the links that have visuals and collisions."""
     return (link for link in subject.links if link.visuals and link.collisions)
 
 

@@ -1,4 +1,4 @@
-"""Rules about masses: which links have one, and whether it can be."""
+"""Rules about masses: which links have one, and whether it is plausible."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def part(inertial: Inertial, tag: str) -> Element | None:
 
 
 def links_with_inertial(subject: Subject) -> Iterable[tuple[Link, Inertial]]:
-    """The links that have an ``<inertial>``, with it."""
+    """Yield the links that have an ``<inertial>``, each with its inertial."""
     for link in subject.links:
         if link.inertial is not None:
             yield link, link.inertial
@@ -33,10 +33,10 @@ class MissingInertial(Rule):
 
     ## Why
 
-    Gazebo drops a link without mass, together with the joint that moves it, and dynamics libraries give it none. A link
-    fixed to another one needs no inertia of its own, because simulators merge the two; so the rule checks links that
-    move as one. If the robot is not for simulation, the finding on a link without shapes, such as one that a driver
-    commands, is an information.
+    Gazebo drops a link without mass, together with the joint that moves it, and dynamics libraries treat it as
+    massless. A link fixed to another one needs no inertia, because simulators merge the two. Therefore, the rule checks
+    links that move as one together. If the robot is not for simulation, the finding on a link without shapes, such as
+    one that a driver commands, is an information.
 
     ## Example
 
@@ -62,7 +62,7 @@ class MissingInertial(Rule):
     </link>
     ```
 
-    `linkwright inertia FILE` works the numbers out from the link's shapes; with `--write` it puts them in.
+    `linkwright inertia FILE` computes the numbers from the link's shapes; with `--write` it adds them to the file.
     """
 
     code = "LW301"
@@ -81,7 +81,7 @@ class MissingInertial(Rule):
             if body.joint is None or any(link.inertial for link in links):
                 continue
             if any(_is_broken(link) for link in links):
-                continue  # it is there and cannot be read, and that was said
+                continue  # it exists but cannot be read, which is reported already
             element = links[0].element
             rest = [link.name for link in links[1:4]]
             notes = [Note(phrase("nor have the links fixed to it: {rest}", rest=quoted_names(rest)))] if rest else []
@@ -103,8 +103,8 @@ class ZeroMass(Rule):
 
     ## Why
 
-    Nothing moves a body without mass the way physics would: simulators refuse it or drop the link. A link that is only
-    a frame and is fixed to one with a mass may have none, and is not reported.
+    A body without mass cannot be simulated: simulators refuse it or drop the link. A link that is only a frame and is
+    fixed to one with a mass needs no mass, and is not reported.
 
     ## Example
 
@@ -126,7 +126,7 @@ class ZeroMass(Rule):
                 yield self.finding(link.name, inertial)
 
     def finding(self, name: str, inertial: Inertial) -> Finding:
-        """The finding on a mass of zero, in a robot or a world."""
+        """Return the finding on a mass of zero, in a robot or a world."""
         return self.report(
             phrase("the mass of link '{name}' is zero", name=name),
             part(inertial, "mass"),
@@ -140,7 +140,7 @@ class NegativeMass(Rule):
 
     ## Why
 
-    There is no such mass. urdfdom reads it without a word, and the simulation flies apart.
+    A mass cannot be negative. urdfdom reads it without a warning, and the simulation becomes unstable.
 
     ## Example
 
@@ -165,7 +165,7 @@ class NegativeMass(Rule):
                 yield self.finding(link.name, inertial)
 
     def finding(self, name: str, inertial: Inertial) -> Finding:
-        """The finding on a negative mass, in a robot or a world."""
+        """Return the finding on a negative mass, in a robot or a world."""
         return self.report(
             phrase("the mass of link '{name}' is negative: {mass:g} kg", name=name, mass=inertial.mass),
             part(inertial, "mass"),
@@ -180,7 +180,7 @@ class TinyMass(Rule):
     ## Why
 
     Solvers divide by masses. A joint that carries a milligram under one that carries kilograms makes a simulation
-    jitter or explode. Such masses are placeholders, or numbers in tonnes.
+    jitter or explode. Such masses are placeholders, or values in tonnes.
 
     ## Example
 
@@ -190,7 +190,7 @@ class TinyMass(Rule):
 
     ## Use instead
 
-    The mass of the part; for an auxiliary link of a joint with several axes at least a thousandth of its load.
+    The mass of the part; for an auxiliary link of a joint with several axes, at least a thousandth of its load.
     """
 
     code = "LW304"
@@ -221,7 +221,7 @@ class HugeMass(Rule):
 
     ## Why
 
-    A hundred tonnes in one link are a mass in grams, or a slipped decimal point.
+    A hundred tonnes in one link result from a mass in grams, or from a misplaced decimal point.
 
     ## Example
 
@@ -258,9 +258,9 @@ class RootInertia(Rule):
 
     ## Why
 
-    robot_state_publisher, MoveIt and everything else that uses kdl_parser warns of it at every start: KDL's root
-    segment has no inertia, so the one in the file is left out. An empty root link, such as `base_footprint`, above it
-    makes all well.
+    robot_state_publisher, MoveIt and all other programs that use kdl_parser warn about it at every start: KDL's root
+    segment has no inertia, so the one in the file is ignored. An empty root link above it, such as `base_footprint`,
+    solves the problem.
 
     ## Example
 
@@ -300,7 +300,7 @@ class RootInertia(Rule):
 
 
 def _is_frame(subject: Subject, link: Link) -> bool:
-    """Return whether a link without mass is part of a body that has one, or a root that has nothing else either."""
+    """Return whether a massless link is part of a body with mass, or an otherwise empty root."""
     body = subject.bodies.of(link.name)
     if body is None:
         return False
@@ -311,7 +311,7 @@ def _is_frame(subject: Subject, link: Link) -> bool:
 
 
 def _is_scenery(subject: Subject, inertial: Inertial) -> bool:
-    """Return whether a single link says by nothing but zeros that it never moves, as Bullet takes it."""
+    """Return whether a single link is marked as immovable by zeros alone, as in Bullet."""
     return len(subject.links) == 1 and not any(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
 
 

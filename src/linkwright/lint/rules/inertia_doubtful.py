@@ -1,4 +1,4 @@
-"""Rules about inertia tensors that a body can have and hardly has."""
+"""Rules about inertia tensors that are possible but implausible."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class PlaceholderInertia(Rule):
     ## Why
 
     A tensor of ones on everything is a placeholder from a tutorial. For a link of a few hundred grams it is thousands
-    of times too large, and the robot moves as if in honey. The inertia depends on size and mass, so it cannot be the
-    same for all links. The rule only applies if at least half of the links share such a tensor; other rules then do not
-    report its size or the centre of mass. If a comment on the line or above it explains the value, the finding is an
-    information.
+    of times too large, and the robot moves far too sluggishly. The inertia depends on size and mass, so it cannot be
+    the same for all links. The rule only applies if at least half of the links share such a tensor; other rules then do
+    not report its size or the centre of mass. If a comment on the line or above it explains the value, the finding is
+    an information.
 
     ## Example
 
@@ -32,7 +32,7 @@ class PlaceholderInertia(Rule):
     <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>
     ```
 
-    on the body, each wheel and the caster alike.
+    on the body, each wheel and the caster.
 
     ## Use instead
 
@@ -65,13 +65,16 @@ LEFT_TO_PLACEHOLDERS = frozenset({"LW322", "LW323", "LW324", "LW325"})
 
 
 def placeholders(subject: Subject) -> set[str]:
-    """The names of the links whose inertia `PlaceholderInertia` reports."""
+    """Return the names of the links whose inertia `PlaceholderInertia` reports."""
     least = PlaceholderInertia().option(subject, "links", int)
     return {link.name for sharing in _copies(subject, least) for link, _ in sharing}
 
 
 def _copies(subject: Subject, least: int) -> Iterator[list[tuple[Link, Inertial]]]:
-    """The links that share a tensor of three equal moments, where they are many and of different shapes."""
+    """Yield groups of links that share a tensor of three equal moments, but differ in shape.
+
+    A group has at least `least` links and shapes, and at least half of all links with an inertia.
+    """
     groups: dict[tuple[float, ...], list[tuple[Link, Inertial]]] = {}
     for link, inertial in links_with_inertial(subject):
         values = tuple(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
@@ -90,7 +93,7 @@ class TurnedSphere(Rule):
     ## Why
 
     The rotation of `<inertial>` turns the tensor only, not the shapes, and a tensor with three equal moments and no
-    products looks the same from everywhere. The rotation was probably meant for something else.
+    products is the same in every orientation. The rotation was probably meant for something else.
 
     ## Example
 
@@ -134,7 +137,7 @@ class TinyInertia(Rule):
 
     ## Why
 
-    Integrators with steps of a millisecond become unstable if a joint turns a body of almost no inertia.
+    Integrators with steps of a millisecond become unstable if a joint turns a body with almost no inertia.
 
     ## Example
 
@@ -144,7 +147,7 @@ class TinyInertia(Rule):
 
     ## Use instead
 
-    At least 1e-8 kg m2 or so, which is a steel ball of 8 mm; and armature or damping at the joint.
+    At least about 1e-8 kg m2, the inertia of a steel ball of 8 mm, and armature or damping at the joint.
     """
 
     code = "LW317"
@@ -172,5 +175,5 @@ class TinyInertia(Rule):
 
 
 def _shapes(link: Link) -> tuple[object, ...]:
-    """Return a key for the shapes of a link, to distinguish different links from copies."""
+    """Return a key for the shapes of a link, which distinguishes different links from copies."""
     return tuple(shape.geometry for shape in (link.collisions or link.visuals))

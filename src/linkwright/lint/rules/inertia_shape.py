@@ -1,6 +1,7 @@
-"""Rules about mass properties against the shapes of a link.
+"""Rules that compare mass properties with the shapes of a link.
 
-A link's body may be larger than the link: what is fixed to it counts. Where a mesh cannot be read, nothing is said.
+A link's body may be larger than the link, since it includes all links that are fixed to it. Links with unreadable
+meshes are not reported.
 """
 
 from __future__ import annotations
@@ -45,13 +46,13 @@ class DensityTooHigh(Rule):
 
     ## Why
 
-    Osmium, the densest material, has 22 600 kg/m3. A denser link has a mass in grams, or shapes in other units than
-    metres. Meshes count with the whole box around them, so no real part is reported. If links that are fixed to it have
-    shapes and no mass, its mass counts in the box around all links that fixed joints connect.
+    Osmium, the densest material, has 22 600 kg/m3. A denser link has a mass in grams, or shapes in a unit other than
+    metres. Meshes count with the whole box around them, so real parts are not reported. If links that are fixed to it
+    have shapes but no mass, its mass is compared with the box around all links that fixed joints connect.
 
     The finding is an information if a comment on the line or above it explains the value, as for ballast; up to ten
-    times the density of osmium for the base of the robot, which a large mass keeps in its place; and up to three times
-    for a mass of one digit, such as 1 or 20: it is an estimate, and the unit is right.
+    times the density of osmium for the base of the robot, which a large mass keeps in place; and up to three times for
+    a mass of one digit, such as 1 or 20: it is an estimate, and the unit is right.
 
     ## Example
 
@@ -81,7 +82,7 @@ class DensityTooHigh(Rule):
             if bounds is None or volume is None or bounds.diagonal <= MARKER or inertial.mass < _SLIP:
                 continue
             if min(bounds.size) < _ALMOST_NOTHING / 10:
-                continue  # a sheet: its thickness is not meant
+                continue  # a sheet, whose thickness is not meaningful
             if subject.bodies.stands_for_others(link):
                 around = subject.extents.body_bounds(link)
                 if around is None:
@@ -112,7 +113,7 @@ class DensityTooHigh(Rule):
                 )
 
     def _tolerated(self, subject: Subject, link: Link, inertial: Inertial) -> float:
-        """How many times osmium's a link's density may be without a mistake in its units."""
+        """Return how many times osmium's density a link may have without a mistake in its units."""
         body = subject.bodies.of(link.name)
         if body is not None and body.joint is None:
             return _BALLAST
@@ -124,8 +125,8 @@ class DensityTooLow(Rule):
 
     ## Why
 
-    Air has 1.2 kg/m3. A solid lighter than that has a mass in tonnes, or shapes in millimetres or centimetres. Links
-    that fixed joints connect are weighed together, by their collision shapes if they have any.
+    Air has 1.2 kg/m3. A lighter solid has a mass in tonnes, or shapes in millimetres or centimetres. Links that fixed
+    joints connect are evaluated as one body, by their collision shapes if they have any.
 
     ## Example
 
@@ -156,7 +157,7 @@ class DensityTooLow(Rule):
             heavy = [(link, link.inertial) for link in members if link.inertial is not None and link.inertial.mass > 0]
             shapes = [shape.geometry for link in members for shape in (link.collisions or link.visuals)]
             if not heavy or any(isinstance(geometry, Mesh) for geometry in shapes):
-                continue  # a frame of rods, as in a mesh, fills little of its box
+                continue  # a frame of rods, for example as a mesh, fills little of its box
             mass = bodies.mass(body)
             volume = sum(volume_of(geometry) for geometry in shapes if not isinstance(geometry, Mesh))
             if WEIGHTLESS <= mass < LIGHTEST_DENSITY * volume:
@@ -179,7 +180,7 @@ class CenterOutside(Rule):
 
     ## Why
 
-    The centre of mass is within the hull of a body. One outside makes the robot tip over or swing for no visible
+    The centre of mass is within the hull of a body. A centre outside makes the robot tip over or swing for no visible
     reason. Often the `<origin>` of `<inertial>` is in millimetres, or in the frame of another link.
 
     ## Example
@@ -233,8 +234,8 @@ class CenterForgotten(Rule):
 
     ## Why
 
-    Without `<origin>` the centre of mass is at the origin of the link frame, which is in the joint. For an arm that
-    starts there and reaches out, that is at one end. The shape was moved, the mass was forgotten.
+    Without `<origin>` the centre of mass is at the origin of the link frame, which is at the joint. For an arm that
+    extends from the joint, this is at one end. The shape was moved, but the mass was forgotten.
 
     ## Example
 
@@ -285,8 +286,8 @@ class InertiaTooLarge(Rule):
     ## Why
 
     A body with all of its mass in the farthest corner of its shapes would have the largest possible moment. A larger
-    one is in other units, such as kg mm2 or g mm2 of CAD programs, is about another point than the centre of mass, or
-    is made up. The robot then turns as if in honey. Other rules report a tensor that is impossible for any body.
+    one is in other units, such as kg mm2 or g mm2 of CAD programs, is about a point other than the centre of mass, or
+    is made up. The robot then turns far too sluggishly. Other rules report a tensor that is impossible for any body.
 
     ## Example
 
@@ -346,9 +347,9 @@ class InertiaTooSmall(Rule):
 
     ## Why
 
-    All of the mass would have to sit in a small part of the link. More often the tensor was computed for a smaller
-    mass, or with a size in other units. Of the box around the collision shapes and the one around the visuals the
-    smaller counts, since a mesh for looks may reach farther than the body.
+    All of the mass would have to be in a small part of the link. More often the tensor was computed for a smaller mass,
+    or with a size in other units. The smaller of the two boxes, around the collision shapes and around the visuals,
+    counts, since a visual mesh may extend beyond the body.
 
     ## Example
 
@@ -400,20 +401,20 @@ class InertiaTooSmall(Rule):
 
 
 def _without_placeholders(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
-    """The measured links but those of which `PlaceholderInertia` says that their inertia was never computed."""
+    """Yield the measured links except those that `PlaceholderInertia` reports."""
     copied = subject.once(placeholders) if subject.extents.measured else set()
     return (item for item in subject.extents.measured if item[0].name not in copied)
 
 
 def _is_at_the_joint(subject: Subject, link: Link, inertial: Inertial) -> bool:
-    """Return whether the centre of mass of a body of one link is where it is because no ``<origin>`` was given."""
+    """Return whether a link is alone in its body and its ``<inertial>`` has no ``<origin>``."""
     body = subject.bodies.of(link.name)
     is_alone = body is not None and len(body.frames) == 1
     return is_alone and inertial.element is not None and inertial.element.first("origin") is None
 
 
 def _lies_to_one_side(bounds: Bounds) -> bool:
-    """Return whether the origin is beyond 0.45 of an edge from the middle of a box: at its side, or outside."""
+    """Return whether the origin is more than 0.45 of an edge from a box's middle: near a side or outside."""
     ends = zip(bounds.center, bounds.size, strict=True)
     return any(abs(middle) - 0.45 * size > _ALMOST_NOTHING for middle, size in ends)
 
@@ -422,18 +423,18 @@ _COMPUTE = phrase("`linkwright inertia` computes it from the link's shapes")
 
 
 def _uniform(bounds: Bounds, mass: float) -> float:
-    """The largest moment of a solid box of this mass about its middle, in kg m2."""
+    """Return the largest moment of a solid box of this mass about its middle, in kg m2."""
     squares = sorted(edge**2 for edge in bounds.size)
     return mass * (squares[1] + squares[2]) / 12
 
 
 def _is_made_up(inertial: Inertial) -> bool:
-    """Return whether a tensor is one round number three times, such as 1 1 1: it was never in any unit."""
+    """Return whether a tensor is one round number three times, such as 1 1 1, so that no unit explains it."""
     return inertial.ixx == inertial.iyy == inertial.izz == float(f"{inertial.ixx:.0e}")
 
 
 def _unit_hint(ratio: float) -> Phrase | None:
-    """A hint when a value is as many times too large as another unit would make it, within a factor of 3."""
+    """Return a hint if the error of a value matches the ratio of two units within a factor of 3."""
     factor, unit = min(_UNITS, key=lambda item: max(item[0] / ratio, ratio / item[0]))
     if max(factor / ratio, ratio / factor) > 3:
         return None

@@ -1,4 +1,4 @@
-"""Rules about inertia tensors by themselves: whether a body can have them."""
+"""Rules about inertia tensors alone: whether any body can have them."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from linkwright.urdf import Inertial, Link
 
 
 class _FlawRule(Rule):
-    """A rule about one kind of flaw."""
+    """The base of rules about one kind of flaw of inertia tensors."""
 
     kind = ""
 
     def flawed(self, subject: Subject) -> Iterator[tuple[Link, Inertial, Flaw]]:
-        """The links whose tensor has the flaw first of all."""
+        """Yield the links whose inertia tensor has this kind of flaw as its first flaw."""
         return (tensor_flaw for tensor_flaw in subject.tensor_flaws if tensor_flaw[2].kind == self.kind)
 
 
 class _TensorRule(_FlawRule, ABC):
-    """The base of rules with a finding for each flaw of their kind."""
+    """The base of rules that report each flaw of their kind."""
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link, inertial, flaw in self.flawed(subject):
@@ -33,7 +33,7 @@ class _TensorRule(_FlawRule, ABC):
 
     @abstractmethod
     def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
-        """The finding on a flaw of this kind in the tensor of a link, in a robot or a world."""
+        """Return the finding on a flaw of this kind in the tensor of a link, in a robot or a world."""
 
 
 class ZeroInertia(_FlawRule):
@@ -41,7 +41,7 @@ class ZeroInertia(_FlawRule):
 
     ## Why
 
-    Nothing resists turning such a body: a torque accelerates it without bound, and simulators refuse it. A point mass
+    Such a body does not resist rotation: a torque accelerates it without bound, and simulators refuse it. A point mass
     that is fixed to a body with an inertia is fine, and is not reported.
 
     ## Example
@@ -83,8 +83,8 @@ class NonPositiveMoment(_TensorRule):
 
     ## Why
 
-    A moment sums masses times squared distances. It is positive for everything that has an extent, and a solver that
-    divides by it fails.
+    A moment is the sum of masses times squared distances. It is positive for every body that has an extent. Solvers
+    that divide by it fail.
 
     ## Example
 
@@ -119,8 +119,9 @@ class ExcessiveProduct(_TensorRule):
 
     ## Why
 
-    |ixy| can be no more than half of izz, nor than the root of ixx times iyy; and so on around. A larger one is a slip:
-    a moment written in the place of a product, or one component in other units.
+    |ixy| can exceed neither half of izz nor the square root of ixx times iyy, and likewise for the other products. A
+    larger
+    product is a mistake: a moment in the place of a product, or one component in other units.
 
     ## Example
 
@@ -163,8 +164,8 @@ class IndefiniteInertia(_TensorRule):
     ## Why
 
     About some axis the moment is negative, which is impossible. Gazebo and Drake refuse it, other simulators fail at
-    the first contact. Usually the products have a wrong sign, or are about another point than the moments. A thin body
-    whose smallest moment is negative only because the file has few digits is not reported.
+    the first contact. Usually the products have a wrong sign, or refer to a different point than the moments. A thin
+    body whose smallest moment is negative only because the file has few digits is not reported.
 
     ## Example
 
@@ -174,7 +175,7 @@ class IndefiniteInertia(_TensorRule):
 
     ## Use instead
 
-    The tensor about the centre of mass, all components from one source; `linkwright inertia FILE` computes one.
+    The tensor about the centre of mass, with all components from one source; `linkwright inertia FILE` computes one.
     """
 
     code = "LW313"
@@ -192,12 +193,12 @@ class IndefiniteInertia(_TensorRule):
 
 
 class TriangleInequality(_TensorRule):
-    """An inertia tensor whose largest principal moment is more than the other two together.
+    """An inertia tensor whose largest principal moment exceeds the sum of the other two.
 
     ## Why
 
     No distribution of mass has such moments: ixx + iyy - izz is twice the integral of z squared. Gazebo refuses the
-    link. The usual causes are made-up numbers and a rounding too coarse.
+    link. The usual causes are made-up numbers and overly coarse rounding.
 
     ## Example
 

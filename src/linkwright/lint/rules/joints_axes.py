@@ -25,8 +25,8 @@ class AxisZero(Rule):
 
     ## Why
 
-    It has no direction to move in. urdfdom reads it; robot_state_publisher then does not move the joint, simulators
-    refuse the model or produce NaN. `<axis/>` without `xyz` is 0 0 0 too, not the default 1 0 0.
+    It has no direction to move in. urdfdom reads it; robot_state_publisher then does not move the joint, and simulators
+    refuse the model or produce NaN. `<axis/>` without `xyz` is also 0 0 0, not the default 1 0 0.
 
     ## Example
 
@@ -47,7 +47,7 @@ class AxisZero(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every moving joint with an ``<axis>`` of no length."""
+        """Report every moving joint with an ``<axis>`` of zero length."""
         for joint, _, axis in parts(subject, "axis"):
             if joint.type not in _MOVING:
                 continue
@@ -76,8 +76,8 @@ class AxisNotUnit(Rule):
 
     ## Why
 
-    The axis is a direction. Some consumers normalise it, others take its length as a factor: urdfdom hands it on as it
-    is written, and code that turns by `angle * axis` then turns too far.
+    The axis is a direction. Some consumers normalise it, others take its length as a factor: urdfdom passes it on
+    unchanged, and code that rotates by `angle * axis` then rotates too far.
 
     ## Example
 
@@ -99,7 +99,7 @@ class AxisNotUnit(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every moving joint whose axis is longer or shorter than 1 by more than rounding explains."""
+        """Report every moving joint whose axis length differs from 1 by more than rounding explains."""
         for joint, _, axis in parts(subject, "axis"):
             direction = values(axis, "xyz")
             if joint.type not in _MOVING or len(direction) != 3 or not any(direction):
@@ -128,7 +128,7 @@ class AxisImplicit(Rule):
     ## Why
 
     It turns about x, which few joints do: a wheel without an axis turns about the direction of travel. Prismatic joints
-    often slide along x, and are not reported.
+    often move along x, and are not reported.
 
     ## Example
 
@@ -153,7 +153,7 @@ class AxisImplicit(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every joint that turns and does not name its axis."""
+        """Report every revolute or continuous joint without an axis."""
         for joint, element in joints(subject):
             if joint.type in ("revolute", "continuous") and element.first("axis") is None and not _is_locked(joint):
                 yield self.report(
@@ -166,7 +166,7 @@ class AxisImplicit(Rule):
 
 
 def _is_locked(joint: Joint) -> bool:
-    """Return whether the limits leave it no way to move, which LW202 tells."""
+    """Return whether the limits leave the joint no range of motion, which LW202 reports."""
     return joint.type == "revolute" and joint.limit is not None and joint.limit.lower == joint.limit.upper
 
 
@@ -175,7 +175,7 @@ class AxisOnFixed(Rule):
 
     ## Why
 
-    It is not even read. It is harmless and often written by macros, so the rule is off by default.
+    The axis is not read. It is harmless and often written by macros, so the rule is off by default.
 
     ## Example
 
@@ -234,7 +234,7 @@ class AxisTilted(Rule):
     options = (Option("largest-tilt", 0.1, "the largest tilt, in degrees, that is taken for an accident"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every axis within a small angle of a coordinate axis, without being one."""
+        """Report every axis that is close to a coordinate axis without being exactly aligned."""
         largest = radians(self.option(subject, "largest-tilt", float))
         for joint, _, axis in parts(subject, "axis"):
             direction = values(axis, "xyz")
@@ -265,8 +265,8 @@ class JointNotPublished(Rule):
 
     ## Why
 
-    robot_state_publisher leaves a floating joint out, so nothing connects its two frames unless another node does. A
-    planar joint it treats as fixed.
+    robot_state_publisher ignores a floating joint, so its two frames are not connected unless another node does this.
+    It treats a planar joint as fixed.
 
     ## Example
 

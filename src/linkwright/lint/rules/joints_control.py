@@ -23,9 +23,9 @@ class SoftLimitsOutside(Rule):
 
     ## Why
 
-    A safety controller begins to act at the soft limits, to stop the joint before the limits. Outside of them it never
-    acts. A soft limit a little beyond only one end is not reported: grippers that press on an object, such as PR2's,
-    leave that end to the mechanical stop.
+    A safety controller begins to act at the soft limits, to stop the joint before the limits. If they are outside the
+    limits, it never acts. A soft limit that is slightly beyond only one end is not reported: grippers that press on an
+    object, such as PR2's, leave that end to the mechanical stop.
 
     ## Example
 
@@ -109,7 +109,10 @@ class SoftLimitsInverted(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every pair of soft limits without a range between them; none given is 0 and 0, which means no soft limits."""
+        """Report every pair of soft limits without a range between them.
+
+        Soft limits that are not given are both 0, which means that there are none.
+        """
         for joint, _, safety in parts(subject, "safety_controller"):
             soft = joint.safety
             if soft is None or soft.soft_lower_limit == soft.soft_upper_limit == 0:
@@ -141,7 +144,7 @@ class SafetyGainNegative(Rule):
 
     ## Why
 
-    A negative gain drives the joint towards the limit that it should keep away from.
+    A negative gain drives the joint towards the limit that it should avoid.
 
     ## Example
 
@@ -185,7 +188,7 @@ class DynamicsNegative(Rule):
 
     ## Why
 
-    It feeds energy into the joint: a simulation runs away, or the simulator refuses the model.
+    A negative value feeds energy into the joint: the simulation becomes unstable, or the simulator refuses the model.
 
     ## Example
 
@@ -231,7 +234,8 @@ class DynamicsOnFixed(Rule):
 
     ## Why
 
-    It does not move, so nothing damps it. Macros write it for every joint; the rule is off by default.
+    A fixed joint does not move, so the element has no effect. Macros write it for every joint, so the rule is off by
+    default.
 
     ## Example
 
@@ -268,7 +272,7 @@ class CalibrationOutside(Rule):
     ## Why
 
     The joint can never reach the position where its reference signal changes, so a calibration never ends. Nothing in
-    ROS 2 reads it, so the rule is off by default.
+    ROS 2 reads the position, so the rule is off by default.
 
     ## Example
 
@@ -288,7 +292,7 @@ class CalibrationOutside(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every reference position of a bounded joint that it cannot reach."""
+        """Report every reference position that a bounded joint cannot reach."""
         for joint, _, calibration in parts(subject, "calibration"):
             lower, upper = (joint.limit.lower, joint.limit.upper) if joint.limit else (-inf, inf)
             if joint.type not in ("revolute", "prismatic") or not lower < upper:

@@ -1,4 +1,4 @@
-"""Rules about the drives of joints: limits of effort and velocity."""
+"""Rules about the drives of joints: their effort and velocity limits."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.lint.walk import BOUNDED, bounds, is_for_simulation, limits, par
 
 
 class _Zero(Rule):
-    """A joint whose `effort` or `velocity` is zero; the base of the rules about one of them."""
+    """The base of the rules about a joint whose `effort` or `velocity` is zero."""
 
     attribute: str
     consequence: str
@@ -30,7 +30,7 @@ class _Zero(Rule):
         for joint, limit in limits(subject, *BOUNDED, "continuous"):
             ends = bounds(limit)
             if ends is not None and ends[0] == ends[1] and joint.type in BOUNDED:
-                continue  # it cannot move anyway, which LW202 tells
+                continue  # it cannot move in any case, which LW202 reports
             if joint.mimic is None and joint.name not in springs and value(limit, self.attribute) == 0:
                 yield self.report(
                     phrase(
@@ -50,9 +50,9 @@ class EffortZero(_Zero):
 
     ## Why
 
-    Simulators apply it: the joint has no torque, so it hangs or does not move. The rule skips a joint that mimics
-    another or that Gazebo moves by a spring, and descriptions without elements for a simulator: manufacturers write 0
-    for an effort that they do not publish.
+    Simulators apply the limit: the joint has no torque, so it hangs limp or does not move. The rule skips a joint that
+    mimics another or that a spring moves in Gazebo, and descriptions without elements for a simulator: manufacturers
+    write 0 for an effort that they do not publish.
 
     ## Example
 
@@ -62,7 +62,7 @@ class EffortZero(_Zero):
 
     ## Use instead
 
-    Write the greatest torque (N m) or force (N) of the drive.
+    Write the maximum torque (N m) or force (N) of the drive.
     """
 
     code = "LW205"
@@ -77,8 +77,8 @@ class VelocityZero(_Zero):
 
     ## Why
 
-    It may not move at all. MoveIt cannot time a trajectory through it and controllers hold it still. A joint that
-    mimics another, or that Gazebo moves by a spring, is not reported.
+    The joint is not allowed to move at all. MoveIt cannot time a trajectory through it, and controllers hold it still.
+    A joint that mimics another, or that a spring moves in Gazebo, is not reported.
 
     ## Example
 
@@ -88,7 +88,7 @@ class VelocityZero(_Zero):
 
     ## Use instead
 
-    Write the greatest speed of the joint in rad/s or m/s.
+    Write the maximum speed of the joint in rad/s or m/s.
     """
 
     code = "LW206"
@@ -98,7 +98,7 @@ class VelocityZero(_Zero):
 
 
 class _Negative(Rule):
-    """A joint whose `effort` or `velocity` is negative; the base of the rules about one of them."""
+    """The base of the rules about a joint whose `effort` or `velocity` is negative."""
 
     attribute: str
 
@@ -129,7 +129,7 @@ class EffortNegative(_Negative):
     ## Why
 
     `effort` is a magnitude for both directions. A negative one allows no effort at all, and simulators treat it
-    differently. urdfdom reads it; SDF writes -1 for "no limit", URDF has no such value.
+    differently. urdfdom accepts it. In SDF, -1 means "no limit", but URDF has no such value.
 
     ## Example
 
@@ -183,8 +183,8 @@ class VelocityInDegrees(Rule):
 
     ## Why
 
-    Speeds are in rad/s. 180 rad/s are 1700 revolutions a minute; the joint of an arm that is planned with it tears
-    along as fast as the controller lets it.
+    Speeds are in rad/s. 180 rad/s are 1700 revolutions per minute. An arm joint that is planned with this limit moves
+    as fast as the controller allows.
 
     ## Example
 
@@ -204,7 +204,10 @@ class VelocityInDegrees(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every revolute joint whose velocity is a round number from 45 to 720; such motors drive no such joints."""
+        """Report every revolute joint whose velocity is a round number from 45 to 720.
+
+        No motor drives such a joint at this speed.
+        """
         for joint, limit in limits(subject, "revolute"):
             speed = value(limit, "velocity")
             if speed is None or not 45 <= speed <= 720 or speed % 15 != 0:

@@ -20,7 +20,7 @@ _SLACK = 1e-3
 
 
 def _followers(subject: Subject) -> Iterator[tuple[Joint, Element]]:
-    """The joints that follow another, with their ``<mimic>``."""
+    """Yield the joints that follow another, each with its ``<mimic>``."""
     for joint, element in joints(subject):
         mimic = element.first("mimic")
         if joint.mimic is not None and mimic is not None:
@@ -28,7 +28,7 @@ def _followers(subject: Subject) -> Iterator[tuple[Joint, Element]]:
 
 
 def _pairs(subject: Subject) -> Iterator[tuple[Joint, Joint, Element]]:
-    """Follower, leader and ``<mimic>`` of those whose leader exists and is another joint."""
+    """Yield follower, leader and ``<mimic>`` where the leader exists and is a different joint."""
     by_name = {joint.name: joint for joint in subject.joints}
     for joint, mimic in _followers(subject):
         leader = by_name.get(mimic.attributes["joint"])
@@ -41,8 +41,8 @@ class MimicOnFixed(Rule):
 
     ## Why
 
-    It does not move, whatever it follows. Usually the type was changed and the rest forgotten. A type from a xacro
-    expression may differ in another expansion, and is not reported.
+    A fixed joint does not move, whatever it follows. Usually, the type was changed and the rest was forgotten. A type
+    from a xacro expression may differ in another expansion, and is not reported.
 
     ## Example
 
@@ -53,7 +53,7 @@ class MimicOnFixed(Rule):
 
     ## Use instead
 
-    Remove `<mimic>`, or give the joint the type of the one it follows.
+    Remove `<mimic>`, or give the joint the type of the joint that it follows.
     """
 
     code = "LW230"
@@ -61,7 +61,7 @@ class MimicOnFixed(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every fixed joint that is to follow another."""
+        """Report every fixed joint that mimics another."""
         for joint, mimic in _followers(subject):
             if joint.type == "fixed" and joint.element is not None and is_literal(joint.element, "type"):
                 yield self.report(
@@ -79,7 +79,7 @@ class MimicOfFixed(Rule):
 
     ## Why
 
-    The joint it follows has no position, so it never moves; simulators refuse such a constraint.
+    The followed joint has no position, so the joint never moves; simulators refuse such a constraint.
 
     ## Example
 
@@ -89,7 +89,7 @@ class MimicOfFixed(Rule):
 
     ## Use instead
 
-    Name the joint that moves, or make this one fixed too.
+    Name a joint that moves, or make this one fixed, too.
     """
 
     code = "LW231"
@@ -117,7 +117,7 @@ class MimicStandsStill(Rule):
 
     ## Why
 
-    It stays at its offset, whatever the other joint does. A fixed joint does the same and costs nothing.
+    The joint stays at its offset, whatever the other joint does. A fixed joint does the same at no cost.
 
     ## Example
 
@@ -127,7 +127,7 @@ class MimicStandsStill(Rule):
 
     ## Use instead
 
-    Give the factor, or make the joint fixed.
+    Write the intended factor, or make the joint fixed.
     """
 
     code = "LW232"
@@ -135,7 +135,7 @@ class MimicStandsStill(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every follower with a factor of 0."""
+        """Report every follower whose multiplier is 0."""
         for joint, mimic in _followers(subject):
             if value(mimic, "multiplier") == 0:
                 yield self.report(
@@ -155,28 +155,28 @@ class MimicBeyondLimits(Rule):
 
     ## Why
 
-    Nothing stops the follower at its limits when the other joint moves further: RViz shows it beyond them, a simulator
-    jams both joints.
+    Nothing stops the follower at its limits when the other joint moves further: RViz shows it beyond them, and in a
+    simulator both joints jam.
 
     ## Example
 
     ```xml
     <joint name="finger_tip" type="revolute">
       <limit lower="0" upper="0.5" effort="1" velocity="1"/>
-      <mimic joint="finger" multiplier="2"/>   <!-- which goes from 0 to 1 -->
+      <mimic joint="finger" multiplier="2"/>   <!-- which moves from 0 to 1 -->
     ```
 
     ## Use instead
 
-    Make the limits those of the other joint, times the multiplier, plus the offset; for a negative multiplier they
-    change places.
+    Set the limits to those of the other joint, times the multiplier, plus the offset; for a negative multiplier, swap
+    them.
     """
 
     code = "LW233"
     name = "mimic-beyond-limits"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every bounded follower whose leader takes it out of its range."""
+        """Report every bounded follower whose leader moves it out of its range."""
         for joint, leader, mimic in _pairs(subject):
             own, followed = _range(joint), _range(leader)
             if own is None or followed is None or joint.mimic is None:
@@ -213,7 +213,7 @@ class MimicChain(Rule):
     ## Why
 
     joint_state_publisher follows the chain; robot_state_publisher, given only the first joint's position, moves the
-    second and not the third, and simulators and ros2_control refuse it.
+    second but not the third. Simulators and ros2_control refuse it.
 
     ## Example
 
@@ -224,7 +224,7 @@ class MimicChain(Rule):
 
     ## Use instead
 
-    Let every follower name the joint that moves by itself, with the multipliers multiplied.
+    Let every follower name the first joint of the chain, with the product of the multipliers.
     """
 
     code = "LW234"
@@ -238,7 +238,7 @@ class MimicChain(Rule):
                 continue
             first = by_name.get(leader.mimic.joint)
             if first is None or first.mimic is not None:
-                continue  # unknown, or further up a chain: said there, or a circle
+                continue  # unknown, part of a cycle, or higher in a chain, where it is reported
             factor = joint.mimic.multiplier * leader.mimic.multiplier
             offset = joint.mimic.multiplier * leader.mimic.offset + joint.mimic.offset
             yield self.report(
@@ -285,7 +285,7 @@ class MimicOtherKind(Rule):
     name = "mimic-other-kind"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every follower of another kind with multiplier 1."""
+        """Report every follower of a joint of the other kind with multiplier 1."""
         for joint, leader, mimic in _pairs(subject):
             turns = joint.type in _TURNING and leader.type in _SLIDING
             slides = joint.type in _SLIDING and leader.type in _TURNING
@@ -308,7 +308,7 @@ class MimicOtherKind(Rule):
 
 
 class MimicDrivenByControl(Rule):
-    """A joint that mimics another and has a command interface of its own in `<ros2_control>`.
+    """A joint that mimics another and also has a command interface in `<ros2_control>`.
 
     ## Why
 
@@ -326,7 +326,7 @@ class MimicDrivenByControl(Rule):
 
     ## Use instead
 
-    Leave `<command_interface>` out for the joint that follows.
+    Omit `<command_interface>` for the joint that follows.
     """
 
     code = "LW236"
@@ -357,7 +357,7 @@ class MimicDrivenByControl(Rule):
 
 
 def _range(joint: Joint) -> tuple[float, float] | None:
-    """The positions a joint may take, in rad or m; None for one without bounds or without a sensible range."""
+    """Return the range of positions of a joint, in rad or m; None if it has no bounds or an invalid range."""
     if joint.type not in ("revolute", "prismatic") or joint.limit is None:
         return None
     lower, upper = joint.limit.lower, joint.limit.upper

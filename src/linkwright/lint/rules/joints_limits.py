@@ -24,8 +24,8 @@ class LimitInverted(Rule):
 
     ## Why
 
-    There is no position between them. urdfdom reads it without a word below URDF 1.2. Then planners refuse every
-    configuration, simulators take one of the bounds or none, and sliders have no range.
+    There is no position between them. Below URDF 1.2, urdfdom accepts this without a warning. Planners then refuse
+    every configuration, simulators apply one of the bounds or none, and sliders have no range.
 
     ## Example
 
@@ -46,7 +46,7 @@ class LimitInverted(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every bounded joint whose lower limit is above the upper one; the reader checks URDF 1.2 files."""
+        """Report every bounded joint with inverted limits; the reader checks URDF 1.2 files."""
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return
         for joint, limit in limits(subject, *BOUNDED):
@@ -79,9 +79,9 @@ class LimitEmpty(Rule):
 
     ## Why
 
-    It cannot move. joint_state_publisher_gui gives it no slider and planners treat it as fixed, with the cost of a
-    joint that moves. If the names show that it keeps a sensor at 0, the finding is an information: Gazebo merges a link
-    on a fixed joint with its parent, and such a joint preserves the link of the sensor.
+    It cannot move. joint_state_publisher_gui gives it no slider and planners treat it as fixed, at the cost of a joint
+    that moves. If the names show that it holds a sensor at 0, the finding is an information: Gazebo merges a link on a
+    fixed joint with its parent, and such a joint preserves the link of the sensor.
 
     ## Example
 
@@ -92,7 +92,7 @@ class LimitEmpty(Rule):
 
     ## Use instead
 
-    Give the range the joint has, or make it `type="fixed"` and remove `<limit>` and `<axis>`.
+    Write the range of the joint, or make it `type="fixed"` and remove `<limit>` and `<axis>`.
     """
 
     code = "LW202"
@@ -100,7 +100,7 @@ class LimitEmpty(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every bounded joint with the same bound twice."""
+        """Report every bounded joint whose two bounds are equal."""
         for joint, limit in limits(subject, *BOUNDED):
             ends = bounds(limit)
             has_bounds = "lower" in limit.attributes or "upper" in limit.attributes
@@ -124,7 +124,7 @@ class LimitBoundsMissing(Rule):
 
     ## Why
 
-    An absent bound is 0, so the joint cannot leave 0. In RViz its slider has no range.
+    A missing bound is 0, so the joint cannot leave 0. In RViz its slider has no range.
 
     ## Example
 
@@ -147,7 +147,7 @@ class LimitBoundsMissing(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every bounded joint without bounds; in URDF 1.2 files the reader reports them."""
+        """Report every bounded joint without bounds; for URDF 1.2 files, the reader reports them."""
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return
         for joint, limit in limits(subject, *BOUNDED):
@@ -174,7 +174,8 @@ class LimitOneBound(Rule):
 
     ## Why
 
-    The other one is 0, which a reader of the file does not see. It is off by default: grippers are often written so.
+    The other one is 0, which is not visible in the file. The rule is off by default, because grippers are often written
+    in this way.
 
     ## Example
 
@@ -195,7 +196,7 @@ class LimitOneBound(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every bounded joint that gives one bound."""
+        """Report every bounded joint with only one bound."""
         from linkwright.lint.fix import add_attribute
 
         for joint, limit in limits(subject, *BOUNDED):
@@ -219,8 +220,8 @@ class LimitOnContinuous(Rule):
 
     ## Why
 
-    A continuous joint turns without bounds: urdfdom reads the limits and every consumer ignores them. Their author
-    believes that the joint stops there.
+    A continuous joint turns without bounds: urdfdom reads the limits and every consumer ignores them. The author
+    expects the joint to stop there.
 
     ## Example
 
@@ -231,8 +232,8 @@ class LimitOnContinuous(Rule):
 
     ## Use instead
 
-    Make the joint `type="revolute"`, or remove `lower` and `upper`. Bounds far out, such as `-1e16`,
-    and those of a whole turn are left alone.
+    Make the joint `type="revolute"`, or remove `lower` and `upper`. Very large bounds, such as `-1e16`, and bounds of a
+    full turn are not reported.
     """
 
     code = "LW209"
@@ -246,7 +247,7 @@ class LimitOnContinuous(Rule):
             if ends is None or ends[0] == ends[1] or max(abs(ends[0]), abs(ends[1])) > UNBOUNDED:
                 continue
             if ends[1] - ends[0] >= 2 * pi - 0.02:
-                continue  # a whole turn, which is every position there is
+                continue  # a full turn, which covers all positions
             yield self.report(
                 phrase(
                     "continuous joint '{name}' has limits from {ends} to {other_ends}, which nothing enforces",
@@ -265,8 +266,8 @@ class LimitOnFixed(Rule):
 
     ## Why
 
-    It does not move, so nothing observes the limit; often the type is a leftover from trying something out. A limit
-    that a xacro macro writes for every joint type is harmless, so the rule is off by default.
+    A fixed joint does not move, so the limit has no effect. Often, the type is a leftover from a test. A limit that a
+    xacro macro writes for every joint type is harmless, so the rule is off by default.
 
     ## Example
 
@@ -301,8 +302,8 @@ class ZeroOutsideLimits(Rule):
 
     ## Why
 
-    RViz and joint_state_publisher show such a joint at the middle of its range, simulators start it at 0 and push it
-    into its range with a jolt. It is not a mistake, so the rule is off by default.
+    RViz and joint_state_publisher show such a joint in the middle of its range. Simulators start it at 0 and push it
+    into its range with a jolt. This is not a mistake, so the rule is off by default.
 
     ## Example
 
@@ -312,7 +313,7 @@ class ZeroOutsideLimits(Rule):
 
     ## Use instead
 
-    Turn the joint's `<origin>` so that 0 is a position of rest, or give simulators an initial position.
+    Rotate the joint's `<origin>` so that 0 is a rest position, or give simulators an initial position.
     """
 
     code = "LW215"

@@ -1,4 +1,4 @@
-"""Rules about the places of joints: distances and angles of ``<origin>``."""
+"""Rules about the origins of joints: distances and angles of ``<origin>``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class OriginFar(Rule):
     ## Why
 
     Lengths are in metres. An arm whose elbow is 400 m from its shoulder was exported in millimetres; RViz shows nothing
-    in the robot's place. A robot may be anywhere in its `world`.
+    where the robot should be. The position of a robot in its `world` is not checked.
 
     ## Example
 
@@ -43,7 +43,7 @@ class OriginFar(Rule):
     options = (Option("farthest", 20.0, "the farthest distance in m that is still believed"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every joint whose frame is implausibly far away in metres."""
+        """Report every joint whose origin is implausibly far away in metres."""
         farthest = self.option(subject, "farthest", float)
         for joint, _, origin in parts(subject, "origin"):
             xyz = values(origin, "xyz")
@@ -92,7 +92,7 @@ class AngleInDegrees(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every origin of joints, visuals, collisions and inertias that turns implausibly far."""
+        """Report every origin of a joint, visual, collision or inertia with an implausibly large rotation."""
         for owner, origin in _origins(subject):
             rpy = values(origin, "rpy")
             if len(rpy) == 3 and not looks_like_degrees(*rpy) and 4 * pi < max(map(abs, rpy)) <= 360:
@@ -111,7 +111,7 @@ class AngleInDegrees(Rule):
 
 
 class AngleRounded(Rule):
-    """An `rpy` angle that is pi or a simple part of it, rounded to few digits.
+    """An `rpy` angle that is pi or a simple fraction of it, rounded to few digits.
 
     ## Why
 
@@ -140,7 +140,7 @@ class AngleRounded(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every angle within a few thousandths of a simple part of pi, but not closer than six digits."""
+        """Report every angle within a few thousandths of a simple fraction of pi, but not given to six digits."""
         for owner, origin in _origins(subject):
             written = origin.attributes.get("rpy", "").split()
             if len(values(origin, "rpy")) != 3 or len(written) != 3:
@@ -167,7 +167,7 @@ class OriginMissing(Rule):
 
     ## Why
 
-    The two frames coincide, so the shapes of both links overlap. Sometimes that is intended, so the rule is off by
+    The two frames coincide, so the shapes of both links overlap. Sometimes this is intended, so the rule is off by
     default.
 
     ## Example
@@ -215,7 +215,7 @@ _DECIMAL = lazy_pattern(r"[+-]?[0-9]+\.[0-9]{2,5}")
 
 
 def _exact(word: str) -> str | None:
-    """Return the part of pi that a rounded number approximates, with its sign, or None."""
+    """Return the fraction of pi that a rounded number approximates, with its sign, or None."""
     if not _DECIMAL.fullmatch(word):
         return None
     angle = float(word)

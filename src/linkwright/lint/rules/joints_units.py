@@ -1,4 +1,4 @@
-"""Rules about bounds of joints in the wrong unit, or so far out that they are none."""
+"""Rules about bounds of joints that are in the wrong unit, or too large to have an effect."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class LimitInDegrees(Rule):
     ## Why
 
     Angles are in radians. 170.5 rad are 27 turns: sliders become useless, and planners search a space that does not
-    exist. Whole multiples of 5 the URDF reader reports (URDF190).
+    exist. The URDF reader reports multiples of 5 (URDF190).
 
     ## Example
 
@@ -65,11 +65,11 @@ class LimitInDegrees(Rule):
 
 
 class LimitEndless(Rule):
-    """A revolute joint with limits so far out that it may as well be continuous.
+    """A revolute joint with limits so large that it might as well be continuous.
 
     ## Why
 
-    With a range of thousands of turns sliders and planners sample meaningless positions, and numbers lose precision.
+    With a range of thousands of turns, sliders and planners sample meaningless positions, and numbers lose precision.
     `continuous` expresses the intent.
 
     ## Example
@@ -115,8 +115,8 @@ class LimitInMillimetres(Rule):
 
     ## Why
 
-    Lengths are in metres. A travel of 120 m is a travel of 120 mm that was copied from a data sheet. Limits such as
-    -100 and 100 are not reported: they mean no limits.
+    Lengths are in metres. A travel of 120 m is usually one of 120 mm, copied from a data sheet. Limits such as -100 and
+    100 are not reported: they mean no limits.
 
     ## Example
 
@@ -143,7 +143,7 @@ class LimitInMillimetres(Rule):
         for joint, limit in limits(subject, "prismatic"):
             ends = bounds(limit)
             if ends is not None and -ends[0] == ends[1] > 0 and log10(ends[1]).is_integer():
-                continue  # such as -100 to 100: no end is meant
+                continue  # such as -100 to 100, which means no limits
             for name in ("lower", "upper"):
                 way = value(limit, name)
                 if way is not None and longest < abs(way) <= 10 * UNBOUNDED:

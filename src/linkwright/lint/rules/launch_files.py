@@ -1,4 +1,4 @@
-"""Python launch files: the files that they name, and whether these exist. They are read, never run."""
+"""Rules about Python launch files and the files that they name. Launch files are read, never run."""
 
 from __future__ import annotations
 
@@ -83,9 +83,9 @@ class LaunchFunctionMissing(LaunchRule):
 
     ## Why
 
-    `ros2 launch` only calls this function. Not reported are tests of launch_testing, launch_pytest and pytest, which
-    have other functions, and modules of a Python package, beside an `__init__.py`. For a file without a statement,
-    which is unfinished or disabled, the finding is an information.
+    `ros2 launch` only calls this function. Tests of launch_testing, launch_pytest and pytest are not reported, because
+    they have other functions. Neither are modules of a Python package, next to an `__init__.py`. For a file without
+    statements, which is unfinished or disabled, the finding is an information.
 
     ## Example
 
@@ -126,7 +126,7 @@ class LaunchFunctionMissing(LaunchRule):
             at = file.source.text.index(like)
             span = file.source.span(at, at + len(like))
         message = phrase("the launch file '{path}' does not define {function}()", path=file.path, function=FUNCTION)
-        # A file without such a function at all may be one that others import.
+        # A file without any similar function may be one that others import.
         severity = Severity.ERROR if like else Severity.WARNING
         if not _COMMENT.sub("", file.source.text).strip():
             severity = Severity.INFO
@@ -134,12 +134,12 @@ class LaunchFunctionMissing(LaunchRule):
 
 
 class LaunchedFileMissing(Rule):
-    """A launch file names a file of a package that does not exist there.
+    """A launch file names a file that does not exist in its package.
 
     ## Why
 
-    The launch fails, or the node starts without its file. Files that are made later are not reported: those that git
-    ignores, maps, files that a launch file itself writes, and those that a script or a README of the package mentions.
+    The launch fails, or the node starts without its file. Files that are created later are not reported: files that git
+    ignores, maps, files that a launch file itself writes, and files that a script or a README of the package mentions.
 
     ## Example
 
@@ -181,10 +181,10 @@ class LaunchedFileMissing(Rule):
             return
         name = shared.path.rpartition("/")[2]
         if not own and (share.parent.name != "share" or is_substitute(share)):
-            return  # the sources of another package, which may install its files elsewhere, or only a part of it
+            return  # the sources of another package, which may install its files elsewhere, or only some of them
         sources = None if own else subject.finder.find_in_sources(shared.package)
         if sources is not None and (sources / shared.path).exists():
-            return  # an earlier build lacks it
+            return  # a build from before the file was added lacks it
         if own and any(other.rpartition("/")[2] == name for other in package.files) and _may_move(package):
             return
         if own and is_made_later(package, shared.path):
@@ -194,7 +194,7 @@ class LaunchedFileMissing(Rule):
 
 
 def _is_installed_as(package: PackageContext, shared: SharedFile) -> bool:
-    """Return whether ``setup.py`` installs some file of the package at that path."""
+    """Return whether ``setup.py`` installs a file of the package at this path."""
     folder, _, name = shared.path.rpartition("/")
     setup = package.setup
     if setup is None:
@@ -209,7 +209,7 @@ def _is_installed_as(package: PackageContext, shared: SharedFile) -> bool:
 
 
 def _may_move(package: PackageContext) -> bool:
-    """Return whether files may be installed in other folders than in the source."""
+    """Return whether files may be installed in folders other than their source folders."""
     setup = package.setup
     if setup is not None:
         return not setup.is_complete or any(item.destination is None for item in setup.installed)

@@ -95,7 +95,7 @@ class LaunchedPackageUnknown(Rule):
 
 
 class LaunchedExecutableUnknown(PackageRule):
-    """A launch file starts an executable that its package does not have.
+    """A launch file starts an executable that does not exist in the named package.
 
     ## Why
 
@@ -144,9 +144,9 @@ class UndeclaredLaunchDependency(Rule):
 
     ## Why
 
-    rosdep installs the packages that `package.xml` names. On a machine without the others, the launch fails. Not
-    reported are the packages of every ROS installation, such as `launch_ros`, dependencies of declared packages, and
-    packages that depend on this package themselves, which cannot be declared.
+    rosdep installs the packages that `package.xml` names. On a machine without the other packages, the launch fails.
+    The packages of every ROS installation, such as `launch_ros`, dependencies of declared packages, and packages that
+    depend on this package, which cannot be declared, are not reported.
 
     ## Example
 
@@ -154,7 +154,7 @@ class UndeclaredLaunchDependency(Rule):
     Node(package='joint_state_publisher_gui', executable='joint_state_publisher_gui')
     ```
 
-    and no mention of it in `package.xml`.
+    while `package.xml` does not mention the package.
 
     ## Use instead
 
@@ -199,7 +199,7 @@ class UndeclaredLaunchDependency(Rule):
 
 
 def _used_packages(package: PackageContext) -> dict[str, Note]:
-    """Name -> note with the first place, of the packages that launch files use."""
+    """Return the packages that launch files use, each with a note on its first use."""
     found: dict[str, Note] = {}
     for file in package.launch_files.values():
         for name, span in file.imports:
@@ -221,7 +221,10 @@ def _used_packages(package: PackageContext) -> dict[str, Note]:
 
 
 def _declare(manifest: Manifest, names: list[str]) -> Fix | None:
-    """Return the edit that adds lines after the last dependency that is not only for tests, with its indentation."""
+    """Return the fix that adds dependencies after the last one that is not only for tests.
+
+    The new lines have its indentation. The result is None if the fix is not possible.
+    """
     source = manifest.document.source
     if source is None or not manifest.dependencies:
         return None
@@ -251,7 +254,7 @@ def _own_executables(package: PackageContext) -> frozenset[str] | None:
     """Return the executables of a package, or None if not all are known."""
     setup, cmake = package.setup, package.cmake
     if cmake is not None:
-        return None  # targets are made in many ways
+        return None  # targets are defined in many ways
     if (
         setup is None
         or not setup.entry_points_complete
@@ -270,7 +273,7 @@ def _is_known(name: str, package: PackageContext, subject: Subject) -> bool:
 
 
 def _meant(name: str, package: PackageContext, subject: Subject) -> str | None:
-    """Return the package that a misspelt name means, or None."""
+    """Return the package that a misspelt name probably means, or None."""
     if not name or name in WELL_KNOWN or _is_known(name, package, subject):
         return None
     like = next(iter(nearest(name, [*WELL_KNOWN, package.name], 1)), None)
@@ -278,7 +281,7 @@ def _meant(name: str, package: PackageContext, subject: Subject) -> str | None:
 
 
 def _is_slip(name: str, like: str) -> bool:
-    """Return whether one name is the other with a letter or two wrong."""
+    """Return whether two names differ by only one or two wrong letters."""
     if abs(len(name) - len(like)) > 2 or min(len(name), len(like)) < 5:
         return False
     from difflib import SequenceMatcher

@@ -1,4 +1,4 @@
-"""Launch files: how they make ``robot_description``, their arguments, and the configuration of RViz."""
+"""Rules about values in launch files: ``robot_description``, arguments, and the RViz configuration."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ class CommandWithoutBlank(LaunchRule):
 
     ## Why
 
-    `Command` writes its parts one behind another. Without a blank at the end of `'xacro'` the program and the path
-    become one word, and the launch fails with "file not found".
+    `Command` concatenates its parts. Without a blank at the end of `'xacro'`, the program and the path become one word,
+    and the launch fails with "file not found".
 
     ## Example
 
@@ -87,9 +87,9 @@ class DescriptionNotTyped(Rule):
 
     ## Why
 
-    launch reads the output of a command as YAML. Most descriptions are plain text to it. A colon with a blank behind
-    it, mostly in a comment, makes that fail: "Unable to parse the value of parameter robot_description as yaml". The
-    descriptions that the launch file names are expanded to find out.
+    launch parses the output of a command as YAML. Most descriptions are plain text in YAML. A colon followed by a
+    blank, usually in a comment, makes this fail: "Unable to parse the value of parameter robot_description as yaml". To
+    detect this, the rule expands the descriptions that the launch file names.
 
     ## Example
 
@@ -111,7 +111,7 @@ class DescriptionNotTyped(Rule):
     scope = Scope.PACKAGE
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """Every value of ``robot_description`` without a type, in launch files that name a description it breaks."""
+        """Yield a finding for every ``robot_description`` without a type where it breaks a named description."""
         package = subject.package
         if package is None:
             return
@@ -131,7 +131,7 @@ class DescriptionNotTyped(Rule):
 
 
 class LaunchArgumentUndeclared(LaunchRule):
-    """A ``LaunchConfiguration`` names what seems to be a misspelt declared argument.
+    """A ``LaunchConfiguration`` probably misspells the name of a declared argument.
 
     ## Why
 
@@ -164,7 +164,7 @@ class LaunchArgumentUndeclared(LaunchRule):
             first = call.args[0] if call.args else argument_of(call, "name")
             name = python.text(first)
             if name is None:
-                return  # a name that is not known
+                return  # one declared name is unknown, so nothing can be reported
             declared.add(name)
         for call in python.calls("LaunchConfiguration"):
             if len(call.args) != 1 or call.keywords:
@@ -186,7 +186,7 @@ class FixedFrameUnknown(PackageRule):
 
     ## Why
 
-    RViz shows nothing but "Frame does not exist" until the user chooses another one.
+    RViz shows nothing but "Frame does not exist" until the user chooses another frame.
 
     ## Example
 
@@ -234,14 +234,17 @@ class FixedFrameUnknown(PackageRule):
 
 
 def _link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
-    """The names of links as they are written in the package's descriptions: plain ones, and the parts of others."""
+    """Return the names of links as the package's descriptions write them.
+
+    Plain names are in the first item. The second contains the literal parts of names with expressions.
+    """
     names: set[str] = set()
     patterns: list[list[str]] = []
     for document in package.descriptions.values():
         for element in document.root.walk():
             included = element.attributes.get("filename", "") if element.tag == "xacro:include" else ""
             if "$(find" in included and f"$(find {package.name})" not in included:
-                return set(), []  # links from elsewhere
+                return set(), []  # links are also defined in other packages
             if element.tag != "link":
                 continue
             name = element.attributes.get("name", "")
@@ -253,7 +256,7 @@ def _link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
 
 
 def _fits(name: str, parts: list[str]) -> bool:
-    """Return whether a name has these parts, in their order, with anything between them."""
+    """Return whether a name contains these parts in this order, with anything between them."""
     first, last = parts[0], parts[-1]
     if len(parts) == 1:
         return name == first
@@ -269,7 +272,7 @@ def _fits(name: str, parts: list[str]) -> bool:
 
 
 class _Untyped(NamedTuple):
-    """A value of ``robot_description`` that launch reads as YAML, and how to give it a type."""
+    """A value of ``robot_description`` that launch reads as YAML, and the fix that gives it a type."""
 
     span: Span
     hint: Phrase
@@ -302,7 +305,7 @@ def _is_command(call: ast.Call) -> bool:
 
 
 def _refused_as_yaml(file: LaunchFile, package: PackageContext, subject: Subject) -> tuple[str, str] | None:
-    """The first description that a launch file names and YAML cannot read, with the reason; or None."""
+    """Return the first description named by a launch file that YAML cannot read, with the reason; or None."""
     for shared in file.paths:
         share = package.folder if shared.package == package.name else subject.finder.find(shared.package)
         if share is None or not shared.path.endswith((".urdf", ".xacro")) or not (share / shared.path).is_file():
@@ -310,7 +313,7 @@ def _refused_as_yaml(file: LaunchFile, package: PackageContext, subject: Subject
         try:
             text = examine(share / shared.path, packages=subject.finder).text
         except LinkwrightError:
-            continue  # the check of that file tells
+            continue  # the check of that file reports the error
         reason = _trouble_as_yaml(text)
         if reason is not None:
             return shared.path, reason
@@ -318,18 +321,18 @@ def _refused_as_yaml(file: LaunchFile, package: PackageContext, subject: Subject
 
 
 def _trouble_as_yaml(text: str) -> str | None:
-    """Return why a text is not a string when read as YAML, as launch does; None if it is one."""
+    """Return why a text is not a string when it is parsed as YAML, as launch does; None if it is one."""
     import yaml
 
     try:
-        loaded = yaml.safe_load(text)  # as launch does
+        loaded = yaml.safe_load(text)  # the same function that launch uses
     except yaml.YAMLError as error:
         return str(getattr(error, "problem", None) or error)
     return None if isinstance(loaded, str) else phrase("it is read as {type}", type=type(loaded).__name__)
 
 
 def _is_program(node: ast.expr, python: PythonFile) -> bool:
-    """Return whether a part of a command is a program's name without a blank behind it."""
+    """Return whether a part of a command is the name of a program without a blank after it."""
     text = python.text(node)
     if text is not None:
         return bool(re.search(r"(^|/)(xacro|cat)$", text))
@@ -340,7 +343,7 @@ def _begins_with_blank(node: ast.expr, python: PythonFile) -> bool:
     text = python.text(node)
     if text is not None:
         return text[:1].isspace()
-    # What is neither a path nor a configuration may begin with one.
+    # Anything other than a path or a configuration may begin with a blank.
     node = python.resolved(node)
     if isinstance(node, ast.Call):
         name = called_name(node).rpartition(".")[2]
@@ -351,7 +354,10 @@ def _begins_with_blank(node: ast.expr, python: PythonFile) -> bool:
 
 
 def _blank(program: ast.expr, python: PythonFile) -> Fix | None:
-    """Put the blank before the closing quote of the program's name, or behind it as a part of its own."""
+    """Return the fix that adds a blank to the name of the program.
+
+    The blank is added before the closing quote of the name, or as a separate part after it.
+    """
     start, end = python.range(program)
     source: SourceText = python.source
     written = source.text[start:end]
@@ -361,7 +367,7 @@ def _blank(program: ast.expr, python: PythonFile) -> Fix | None:
 
 
 def _is_slip(name: str, like: str) -> bool:
-    """Whether two names differ in one letter, added, left out or another one, or in the order of their letters."""
+    """Return whether two names differ in one added, omitted or changed letter, or only in letter order."""
     if min(len(name), len(like)) < 4 or abs(len(name) - len(like)) > 1:
         return False
     if sorted(name) == sorted(like):

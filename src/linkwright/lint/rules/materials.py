@@ -24,7 +24,7 @@ _ALIKE = 0.1001
 
 
 def definitions(subject: Subject) -> Iterator[Material]:
-    """Every material that has a colour or texture, as it is written: those of the robot, then those in visuals."""
+    """Yield every material that has a colour or texture: first those of the robot, then those in visuals."""
     elements = [*subject.elements("material")]
     for link in subject.elements("link"):
         for visual in link.elements("visual"):
@@ -37,20 +37,20 @@ def definitions(subject: Subject) -> Iterator[Material]:
 
 
 def visuals(subject: Subject) -> Iterator[tuple[Link, Visual]]:
-    """Every visual with its link."""
+    """Yield every visual with its link."""
     for link, shape in shapes_of(subject):
         if isinstance(shape, Visual):
             yield link, shape
 
 
 class RedefinedMaterial(Rule):
-    """A material that is defined again with another colour.
+    """A material that is defined again with a different colour.
 
     ## Why
 
-    The first definition of a name in the file applies to all uses, even over the colour written in the visual. So the
-    second colour is never shown: "RViz shows the wrong colour". The finding on a colour that looks like the first is
-    an information.
+    The first definition of a name in the file applies to all uses, even over the colour written in the visual.
+    Therefore, the second colour is never shown: "RViz shows the wrong colour". The finding on a colour that looks like
+    the first is an information.
 
     ## Example
 
@@ -64,7 +64,7 @@ class RedefinedMaterial(Rule):
 
     ## Use instead
 
-    A name of its own for each colour, such as `dark_grey`.
+    A different name for each colour, such as `dark_grey`.
     """
 
     code = "LW501"
@@ -83,7 +83,7 @@ class RedefinedMaterial(Rule):
             if same or element is None or known.element is None:
                 continue
             if material.name in global_names and element in set(subject.elements("material")):
-                continue  # two at robot level: the reader refuses them
+                continue  # two definitions at robot level, which the reader refuses
             key = (material.name, material.rgba, material.texture)
             if key in reported:
                 continue
@@ -108,8 +108,8 @@ class InvisibleMaterial(Rule):
     ## Why
 
     The fourth number is the opacity. With 0 the part exists but is invisible; exports from CAD often confuse it with a
-    transparency of 0. Of a material with two definitions the first one counts. A material whose name shows that it is
-    invisible is not reported.
+    transparency of 0. If a material is defined twice, the first definition counts. A material whose name shows that it
+    is invisible is not reported.
 
     ## Example
 
@@ -168,7 +168,7 @@ class EmptyReference(Rule):
 
     ## Use instead
 
-    The name of a material, or a colour in it.
+    The name of a material, or a `<color>` inside the element.
     """
 
     code = "LW506"
@@ -199,8 +199,8 @@ class UnusedMaterial(Rule):
 
     ## Why
 
-    Palettes are often only used in part, so this is harmless; but an unused material that was made for one part often
-    means that the part names another one.
+    Often, only some colours of a palette are used, so this is harmless. However, an unused material that was intended
+    for one part often means that the part names the wrong material.
 
     ## Example
 
@@ -212,7 +212,7 @@ class UnusedMaterial(Rule):
 
     ## Use instead
 
-    Use it, or take it out.
+    Use the material, or remove it.
     """
 
     code = "LW507"
@@ -244,7 +244,7 @@ class NoMaterial(Rule):
 
     ## Why
 
-    Such a shape has no colour of its own, and each tool chooses another one: RViz white or red, Gazebo grey.
+    Such a shape has no colour, and each tool chooses a different one: RViz white or red, Gazebo grey.
 
     ## Example
 
@@ -282,7 +282,7 @@ class NoMaterial(Rule):
 
 
 class AlikeNames(Rule):
-    """Two materials whose names differ in capitals only.
+    """Two materials whose names differ only in upper and lower case.
 
     ## Why
 
@@ -297,7 +297,7 @@ class AlikeNames(Rule):
 
     ## Use instead
 
-    One of them; names in small letters, by custom.
+    One of them; names are lower case by convention.
     """
 
     code = "LW509"
@@ -329,7 +329,7 @@ def _difference(first: Material, second: Material) -> Phrase:
 
 
 def _looks_alike(first: Material, second: Material) -> bool:
-    """Return whether two colours differ by too little to be seen unless they are side by side."""
+    """Return whether two colours differ so little that the difference is only visible side by side."""
     if first.rgba is None or second.rgba is None or first.texture != second.texture:
         return False
     return all(abs(one - other) <= _ALIKE for one, other in zip(first.rgba, second.rgba, strict=True))

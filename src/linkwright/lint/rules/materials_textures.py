@@ -80,7 +80,7 @@ class TextureFormat(Rule):
 
     ## Why
 
-    The part is shown without it.
+    The part is shown without the texture.
 
     ## Example
 
@@ -157,7 +157,7 @@ class TextureOnStl(Rule):
 
 
 def _textures(subject: Subject) -> Iterator[tuple[Element, str]]:
-    """The ``<texture>`` elements with the address of their image, each place once."""
+    """Yield the ``<texture>`` elements with the URIs of their images, each place once."""
     for material in definitions(subject):
         element = material.element.first("texture") if material.element is not None else None
         if element is not None and material.texture is not None:

@@ -1,4 +1,4 @@
-"""Rules about the content of mesh files, and its size."""
+"""Rules about the content of mesh files and the size of meshes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def loaded(subject: Subject, kind: str | None = None) -> Iterator[tuple[MeshUse, Outline]]:
-    """The uses of meshes that can be read, with the scaled outlines; of one kind of shape or of both."""
+    """Yield the uses of readable meshes with their scaled outlines, for one or both kinds of shape."""
     for use in subject.meshes.uses:
         if kind is None or use.kind == kind:
             mesh = subject.meshes.outline(use.shape)
@@ -28,7 +28,7 @@ def loaded(subject: Subject, kind: str | None = None) -> Iterator[tuple[MeshUse,
 
 
 def file_name(use: MeshUse) -> str:
-    """The last part of a mesh's address."""
+    """Return the last component of a mesh's URI."""
     return use.mesh.filename.rpartition("/")[2]
 
 
@@ -36,11 +36,11 @@ _POWERS = (10.0, 100.0, 1000.0, 10_000.0)
 
 
 class ZeroScale(Rule):
-    """A mesh scale with a zero in it.
+    """A mesh scale with a factor of zero.
 
     ## Why
 
-    It flattens the mesh to nothing. urdfdom accepts it silently.
+    The factor flattens the mesh to nothing. urdfdom accepts it silently.
 
     ## Example
 
@@ -82,8 +82,8 @@ class NegativeScale(Rule):
 
     ## Why
 
-    Mirroring turns the triangles inside out. Renderers cope with it; physics engines let things sink in or push them
-    out at the wrong side.
+    Mirroring turns the triangles inside out. Renderers handle this, but physics engines let objects sink in or push
+    them out on the wrong side.
 
     ## Example
 
@@ -95,7 +95,7 @@ class NegativeScale(Rule):
 
     ## Use instead
 
-    A mesh file that is mirrored itself, or simple shapes.
+    A mesh file with mirrored geometry, or simple shapes.
     """
 
     code = "LW431"
@@ -126,8 +126,8 @@ class UnevenScale(Rule):
 
     ## Why
 
-    A unit conversion has three equal factors. Where one is ten or a thousand times another, a digit slipped; a mesh
-    that is stretched by other amounts is taken as meant.
+    A unit conversion has three equal factors. If one is ten or a thousand times another, a digit is wrong. A mesh that
+    is stretched by other amounts is assumed to be intended.
 
     ## Example
 
@@ -170,8 +170,8 @@ class Millimetres(Rule):
 
     ## Why
 
-    STL and OBJ have no unit, and CAD programs write millimetres. URDF takes the numbers as metres, so the part is a
-    thousand times too large, and the camera of RViz is inside it and shows nothing. A single link of mass zero is
+    STL and OBJ have no unit, and CAD programs write millimetres. URDF interprets the numbers as metres, so the part is
+    a thousand times too large, and the camera of RViz is inside it and shows nothing. A single link of mass zero is
     scenery, such as a terrain, and may have any size.
 
     ## Example
@@ -217,7 +217,7 @@ class TooSmall(Rule):
 
     ## Why
 
-    A mesh in metres was scaled by a thousandth as if it were in millimetres; the result is a speck.
+    A mesh in metres was scaled by a thousandth as if it were in millimetres, so it is almost invisible.
 
     ## Example
 
@@ -231,7 +231,7 @@ class TooSmall(Rule):
     <mesh filename="package://arm/meshes/base.dae"/>
     ```
 
-    COLLADA files have their unit, which is applied.
+    COLLADA files declare their unit, which is applied.
     """
 
     code = "LW434"

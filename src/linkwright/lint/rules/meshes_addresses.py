@@ -1,4 +1,4 @@
-"""Rules about the addresses of mesh files as they are written; whether there is a file is asked elsewhere."""
+"""Rules about the URIs of mesh files as they are written; other rules check whether the files exist."""
 
 from __future__ import annotations
 
@@ -35,16 +35,16 @@ def written(element: Element, attribute: str) -> str:
 
 
 def is_portable(uri: str) -> bool:
-    """Return whether an address is of the form that ROS tools resolve: a scheme, or an absolute path."""
+    """Return whether a URI has a form that ROS tools resolve: a scheme, or an absolute path."""
     return bool(_SCHEME.match(uri)) or Path(uri).is_absolute()
 
 
 class MalformedUri(Rule):
-    """A mesh address that no tool understands.
+    """A mesh URI that no tool understands.
 
     ## Why
 
-    RViz and Gazebo accept `package://PACKAGE/PATH` and `file:///PATH`. With any other address the part is not shown.
+    RViz and Gazebo accept `package://PACKAGE/PATH` and `file:///PATH`. With any other URI, the part is not shown.
 
     ## Example
 
@@ -80,13 +80,14 @@ class MalformedUri(Rule):
 
 
 class RelativePath(Rule):
-    """A mesh address that is a relative path.
+    """A mesh URI that is a relative path.
 
     ## Why
 
-    Its base depends on the tool: the folder of the URDF for some, the current folder for others. RViz gets the
-    description as a text from a topic, knows no folder, and shows nothing. In a file outside a ROS package, or beside a
-    model for MuJoCo, as for simulators that do not know packages, the finding is an information.
+    Its base depends on the tool: the folder of the URDF for some, the current folder for others. RViz receives the
+    description as text on a topic, has no base folder, and shows nothing. In a file outside a ROS package, or next to a
+    model for MuJoCo, the finding is an information, because such files are meant for simulators that do not know
+    packages.
 
     ## Example
 
@@ -126,19 +127,19 @@ def _is_relative(uri: str) -> bool:
 
 
 def _is_beside_mujoco(folder: Path) -> bool:
-    """Return whether a folder holds models for MuJoCo, whose descriptions of robots have addresses relative to it."""
+    """Return whether a folder contains MuJoCo models, whose robot descriptions use paths relative to it."""
     with suppress(OSError):
         return any(_MUJOCO in file.read_bytes()[:_HEAD] for file in folder.glob("*.xml"))
     return False
 
 
 class HomePath(Rule):
-    """A mesh address with a folder of one computer or of one ROS distribution in it.
+    """A mesh URI that contains a folder of one computer or of one ROS distribution.
 
     ## Why
 
-    On every other computer, and in every container, this folder does not exist, or is another one. Only the text of the
-    file counts: `file://$(find PACKAGE)/...` is found wherever the package is.
+    On every other computer, and in every container, this folder does not exist, or is a different one. Only the text in
+    the file is checked: `file://$(find PACKAGE)/...` is found wherever the package is.
 
     ## Example
 
@@ -224,13 +225,13 @@ class UnknownEnding(Rule):
 
 
 class AwkwardName(Rule):
-    """A mesh address with blanks or letters beyond ASCII.
+    """A mesh URI with blanks or non-ASCII letters.
 
     ## Why
 
-    RViz fetches meshes through a library for web addresses, which does not allow blanks. Non-ASCII letters are compared
-    byte by byte, so the same name typed on a Mac is another one on Linux; as the file is found on its own computer, the
-    finding on these is an information.
+    RViz fetches meshes through a library for web URLs, which does not allow blanks. Non-ASCII letters are compared byte
+    by byte, so the same name typed on a Mac is a different one on Linux. As the file is found on the author's computer,
+    the finding on such letters is an information.
 
     ## Example
 
@@ -266,7 +267,7 @@ class AwkwardName(Rule):
 
 
 def malformed(uri: str) -> tuple[str | None, str | None]:
-    """The mistake in an address, as the end of a sentence, and a better address where there is one."""
+    """Return the mistake in a URI, as the end of a sentence, and a correct URI, or None for either."""
     if not uri.strip():
         return phrase("is empty"), None
     if "\\" in uri:
@@ -298,7 +299,7 @@ def malformed(uri: str) -> tuple[str | None, str | None]:
 
 
 def _as_package_uri(path: Path | None) -> str | None:
-    """The ``package://`` address of a file that exists."""
+    """Return the ``package://`` URI of an existing file, or None."""
     if path is None or not path.is_file():
         return None
     resolved = Path(normal(path))
@@ -307,7 +308,10 @@ def _as_package_uri(path: Path | None) -> str | None:
 
 
 def _in_known_package(subject: Subject, path: Path | None) -> str | None:
-    """The ``package://`` address of a file of another computer, whose path goes through a package that is here too."""
+    """Return the ``package://`` URI for a path on another computer, or None.
+
+    The path must contain a package that is available here, too.
+    """
     names = path.parts if path is not None else ()
     for index in range(len(names) - 2, 0, -1):
         share = subject.finder.find(names[index])
@@ -318,7 +322,7 @@ def _in_known_package(subject: Subject, path: Path | None) -> str | None:
 
 
 def file_hint(path: Path, endings: Sequence[str]) -> Phrase:
-    """A hint on a missing file: files with one of the endings, all in small letters."""
+    """Return a hint on a missing file that names files with one of the extensions, given in lower case."""
     try:
         names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix.lower() in endings)
     except OSError:
@@ -331,5 +335,5 @@ def file_hint(path: Path, endings: Sequence[str]) -> Phrase:
 
 
 def normal(path: Path) -> str:
-    """A path without ``..`` and ``.``; links in it are kept."""
+    """Return a path without ``..`` and ``.``, without resolving symbolic links."""
     return os.path.normpath(path)

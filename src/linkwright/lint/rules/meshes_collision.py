@@ -1,4 +1,4 @@
-"""Rules about the meshes of collisions: how heavy they are, and whether they are closed."""
+"""Rules about collision meshes: their number of triangles, and whether they are closed."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ class HeavyCollision(Rule):
 
     ## Why
 
-    Every step of a simulation and every pose that a planner tries goes through them. Collision shapes of a few hundred
-    triangles, or a few boxes and cylinders, find the same contacts in a hundredth of the time. Up to twice the number
-    the finding is an information: most programs still cope.
+    Every simulation step and every pose that a planner tries tests all of them. Collision shapes of a few hundred
+    triangles, or a few boxes and cylinders, find the same contacts in a hundredth of the time. Up to twice the number,
+    the finding is an information, because most programs still handle this.
 
     ## Example
 
@@ -107,8 +107,8 @@ class OpenMesh(Rule):
 
     ## Why
 
-    Through a hole there is no inside: volumes and inertia computed from it are wrong, and some engines push bodies
-    out at the wrong side. Others take its convex hull, which is then larger than it looks.
+    A mesh with a hole has no inside: volumes and inertias computed from it are wrong, and some engines push bodies out
+    on the wrong side. Others use its convex hull, which is larger than it looks.
 
     ## Example
 

@@ -1,4 +1,4 @@
-"""Rules about mesh files: whether the file of an address exists, and whether it is a mesh."""
+"""Rules about mesh files: whether the file of a URI exists, and whether it is a mesh."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.packages import PackageNotFoundError, enclosing_package
 
 
 def case_twin(path: Path) -> Path | None:
-    """Return the existing file whose path differs only in capitals, or None."""
+    """Return an existing file whose path differs only in upper and lower case, or None."""
     current = Path(path.anchor)
     changed = False
     for name in path.relative_to(path.anchor).parts:
@@ -36,7 +36,7 @@ def case_twin(path: Path) -> Path | None:
 
 
 def _is_listed(folder: Path, name: str) -> bool:
-    """Return whether a folder has an entry of exactly this name; a disk that ignores case finds others too."""
+    """Return whether a folder has an entry with exactly this name, even on a case-insensitive disk."""
     if (folder / name.swapcase()).exists() and name.swapcase() != name:
         try:
             return any(path.name == name for path in folder.iterdir())
@@ -70,13 +70,13 @@ def _folder_hint(use: MeshUse, name: str) -> Phrase | None:
 
 
 class UnknownPackage(Rule):
-    """A mesh address that names a package that is not found.
+    """A mesh URI that names a package that is not found.
 
     ## Why
 
-    Without the package there is no mesh. Its name is misspelt, or the workspace with it is missing or not sourced, or a
-    folder such as `meshes` is in the place of the package's name. The finding is an information if `package.xml`, or
-    that of a package beside it, declares the package: it is only missing on this machine.
+    Without the package, the mesh is missing. The package's name is misspelt, its workspace is missing or not sourced,
+    or a folder such as `meshes` is written in place of the package's name. The finding is an information if
+    `package.xml`, or that of a neighbouring package, declares the package: it is only missing on this machine.
 
     ## Example
 
@@ -125,12 +125,11 @@ class UnknownPackage(Rule):
 
 
 class MissingFile(Rule):
-    """A mesh address that leads to no file.
+    """A mesh URI whose file does not exist.
 
     ## Why
 
-    The part is not shown, and does not collide. If a whole folder of meshes is missing, one finding reports all of
-    them.
+    The part is not shown and does not collide. If a whole folder of meshes is missing, one finding reports all of them.
 
     ## Example
 
@@ -153,7 +152,7 @@ class MissingFile(Rule):
         missing: dict[Path, list[tuple[MeshUse, Path]]] = {}
         for use, path in subject.meshes.files:
             if malformed(use.mesh.filename)[0] or HOME.match(written(use.element, "filename")):
-                continue  # that is said already
+                continue  # reported already
             if path.is_file() or case_twin(path) is not None or is_ignored_by_git(path):
                 continue
             missing.setdefault(_last_folder(path), []).append((use, path))
@@ -189,11 +188,11 @@ class MissingFile(Rule):
 
 
 class WrongCase(Rule):
-    """A mesh address whose capitals differ from those of the file.
+    """A mesh URI that differs from the file's name in upper and lower case.
 
     ## Why
 
-    macOS and Windows find the file all the same, Linux does not: it works for the author and fails on the robot.
+    macOS and Windows still find the file, but Linux does not: it works for the author and fails on the robot.
 
     ## Example
 
@@ -240,7 +239,7 @@ class OutsidePackage(Rule):
 
     ## Why
 
-    A file outside a package is not installed, so the mesh is missing after `colcon build` and on another computer.
+    A file outside a package is not installed, so the mesh is missing after `colcon build` and on other computers.
 
     ## Example
 
@@ -250,7 +249,7 @@ class OutsidePackage(Rule):
 
     ## Use instead
 
-    The file in a folder of the package that is installed, and
+    Move the file to an installed folder of the package, and write
 
     ```xml
     <mesh filename="package://my_robot_description/meshes/base.stl"/>
@@ -268,7 +267,7 @@ class OutsidePackage(Rule):
         for use, path in files:
             uri = use.mesh.filename
             if HOME.match(written(use.element, "filename")):
-                continue  # that is said already
+                continue  # reported already
             resolved = Path(normal(path))
             message = None
             if uri.startswith("package://"):
@@ -293,8 +292,8 @@ class UnreadableMesh(Rule):
 
     ## Why
 
-    It is empty, truncated, or has another format than its extension. If the repository stores meshes with Git LFS, the
-    file may be a pointer to the mesh, a text of three lines.
+    The file is empty, truncated, or in a format that does not match its extension. If the repository stores meshes with
+    Git LFS, the file may be a pointer to the mesh, a text of three lines.
 
     ## Example
 
@@ -324,7 +323,7 @@ class UnreadableMesh(Rule):
 
 
 def _with_case(uri: str, twin: Path) -> str:
-    """An address with the end of its path in the capitals of a file."""
+    """Return a URI with the end of its path in the upper and lower case of a file."""
     parts = uri.split("/")
     for back, name in enumerate(reversed(twin.parts), start=1):
         if back >= len(parts) or parts[-back].casefold() != name.casefold():
@@ -334,5 +333,5 @@ def _with_case(uri: str, twin: Path) -> str:
 
 
 def _last_folder(path: Path) -> Path:
-    """Return the deepest existing folder on the way to a file."""
+    """Return the deepest existing folder on the path of a file."""
     return next((folder for folder in path.parents if folder.is_dir()), Path(path.anchor))

@@ -1,4 +1,4 @@
-"""Frames that have names and meanings of their own: REP 103, 105 and 120."""
+"""Rules about frames with standard names and meanings: REP 103, 105 and 120."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ class BaseLinkMissing(Rule):
 
     ## Why
 
-    REP 105 calls the frame that is fixed to a mobile robot `base_link`. Navigation, localisation and teleoperation look
-    for it under that name.
+    According to REP 105, the frame that is fixed to a mobile robot is `base_link`. Navigation, localisation and
+    teleoperation expect this name.
 
     ## Example
 
@@ -78,8 +78,9 @@ class BaseLinkNotAtTheTop(Rule):
 
     ## Why
 
-    REP 105 has `odom` as the parent of `base_link`. A frame has one parent, so a link of the robot above it either
-    takes that place or is disconnected. Pedantic: everything works if the odometry is for the root of the tree.
+    In REP 105, `odom` is the parent of `base_link`. A frame has only one parent, so a link of the robot above
+    `base_link` either takes the place of `odom` or is disconnected. Pedantic: everything works if the odometry is for
+    the root of the tree.
 
     ## Example
 
@@ -173,9 +174,9 @@ class FootprintHasBody(Rule):
 
     ## Why
 
-    `base_footprint` is a place on the ground, not a thing. A body there rubs on the floor of a simulation, and its mass
-    is counted twice. Where the link has a visual, too, it is the whole body of the robot under another name, and the
-    finding is an information.
+    `base_footprint` is a place on the ground, not a body. A body there rubs on the floor in simulation, and its mass is
+    counted twice. If the link also has a visual, it is the whole body of the robot under another name, and the finding
+    is an information.
 
     ## Example
 
@@ -202,7 +203,7 @@ class FootprintHasBody(Rule):
             solid = next((collision for collision in link.collisions if not _is_tiny(collision.geometry)), None)
             part = None if solid is None else solid.element
             is_root = subject.robot is None or subject.robot.root == link.name
-            # The mass of a root has a rule of its own.
+            # RootInertia reports the mass of a root link.
             if part is None and not is_root and link.inertial is not None and link.inertial.mass > 0.1:
                 part = link.element.first("inertial")
             if part is not None:
@@ -218,8 +219,8 @@ class FixedFrameInRobot(Rule):
     ## Why
 
     REP 105 gives these names to frames that localisation and odometry publish. A frame has one parent: with the link in
-    the description and a node that publishes the same frame, transforms jump between the two. A name that comes from an
-    argument or a property is the choice of whoever gives it.
+    the description and a node that publishes the same frame, transforms jump between the two. A name from an argument
+    or a property is the choice of the caller, and is not reported.
 
     ## Example
 
@@ -230,7 +231,7 @@ class FixedFrameInRobot(Rule):
 
     ## Use instead
 
-    Leave the link out. Where a frame without odometry is wanted, publish it with static_transform_publisher.
+    Leave the link out. If a frame without odometry is intended, publish it with static_transform_publisher.
     """
 
     code = "LW624"
@@ -248,12 +249,12 @@ class FixedFrameInRobot(Rule):
 
 
 class OpticalFrameRotation(Rule):
-    """The rotation of an optical frame to its camera is not that of REP 103.
+    """The rotation between an optical frame and its camera frame does not follow REP 103.
 
     ## Why
 
-    A camera's own frame has x forward and z up; its optical frame has z forward and y down, like images. Point clouds
-    and detections are in the optical frame, and appear turned on their side if the rotation is missing.
+    In a camera's body frame, x points forward and z up. In its optical frame, z points forward and y down, as in
+    images. Point clouds and detections are in the optical frame, and appear rotated if the rotation is missing.
 
     ## Example
 
@@ -308,25 +309,25 @@ class OpticalFrameRotation(Rule):
 
 
 def _is_optical(joint: Joint | None) -> bool:
-    """Return whether a joint turns its child as REP 103 says of optical frames, whatever the child is called."""
+    """Return whether a joint has the rotation of an optical frame in REP 103, whatever its child's name."""
     return joint is not None and angle_between(rotation(joint.origin), _OPTICAL_ROTATION) <= _TOLERANCE
 
 
 def _is_tiny(shape: Geometry) -> bool:
-    """Return whether a shape is a mark for a place: some simulators want one on every link."""
+    """Return whether a shape only marks a place, because some simulators need one on every link."""
     if isinstance(shape, Box):
         return max(shape.size) <= _TINY
     return not isinstance(shape, Mesh) and 2.0 * shape.radius <= _TINY
 
 
 def _same_camera(stem: str, parent: str) -> bool:
-    """Return whether a parent link is the camera's own frame, which has x forward, by its name."""
+    """Return whether, by its name, a parent link is the camera's body frame, in which x is forward."""
     base = re.sub(r"_(link|frame)$", "", parent)
     return bool(stem) and (base == stem or (stem.startswith(f"{base}_") and bool(_CAMERA.search(base))))
 
 
 def _is_slip(turned: Matrix) -> bool:
-    """Return whether a rotation is by right angles: a camera that looks elsewhere has other angles."""
+    """Return whether a rotation consists of right angles, unlike that of a camera that looks elsewhere."""
     return all(min(abs(value), abs(abs(value) - 1.0)) < 0.02 for row in turned for value in row)
 
 
@@ -335,8 +336,8 @@ class CameraWithoutOpticalFrame(Rule):
 
     ## Why
 
-    Images and point clouds name their frame, and REP 103 requires z to point forward in it. Pedantic: a camera for
-    viewing alone does not need one.
+    Images and point clouds name their frame, and REP 103 requires z to point forward in it. Pedantic: a camera that is
+    only for viewing does not need one.
 
     ## Example
 

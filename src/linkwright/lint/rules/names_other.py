@@ -1,4 +1,4 @@
-"""Names that joints share with links, and that of the robot."""
+"""Rules about names that joints share with links, and about the name of the robot."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ class JointNameIsLinkName(Rule):
 
     ## Why
 
-    URDF allows that, but SDF, to which Gazebo converts it, does not: all parts of a model need different names, and
-    Gazebo refuses or renames parts with the same name.
+    URDF allows this, but SDF, to which Gazebo converts the description, does not: all parts of a model need different
+    names, and Gazebo refuses or renames parts with the same name.
 
     ## Example
 
@@ -54,8 +54,8 @@ class RobotNameUnusual(Rule):
 
     ## Why
 
-    Tools make file names, namespaces and parameter names of it: MoveIt's assistant a package, Gazebo a model. Pedantic:
-    nothing in ROS looks names of robots up.
+    Tools derive file names, namespaces and parameter names from it, such as the package of MoveIt's assistant and the
+    model in Gazebo. Pedantic: nothing in ROS looks up robots by name.
 
     ## Example
 

@@ -1,4 +1,4 @@
-"""How links and joints are named: characters, case, blanks and repetitions."""
+"""Rules about how links and joints are named: characters, case, blanks and repetitions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _DOUBLED = lazy_pattern(r"(?:^|.*[_-])(link|joint|frame)[_-]\1$", re.IGNORECASE)
 
 
 def named(subject: Subject) -> Iterator[tuple[str, str, Element]]:
-    """Kind, name and element of every link and joint that has a name, in file order."""
+    """Yield the kind, name and element of every link and joint that has a name, in file order."""
     for kind in ("link", "joint"):
         for element in subject.elements(kind):
             name = element.attributes.get("name", "")
@@ -66,8 +66,8 @@ class NameBlank(Rule):
 
     ## Why
 
-    Names become names of frames, parameters and topics, and words on command lines. Those take blanks badly or not
-    at all.
+    Names of links and joints become names of frames, parameters and topics, and words on command lines. Blanks cause
+    problems there or are not allowed.
 
     ## Example
 
@@ -105,7 +105,7 @@ class NameLeadingSlash(Rule):
     ## Why
 
     tf2, the transform library of ROS 2, refuses names of frames that begin with a slash, so this link can never be
-    looked up. The slash was customary with the first tf.
+    looked up. The slash was customary in the first version of tf.
 
     ## Example
 
@@ -119,7 +119,7 @@ class NameLeadingSlash(Rule):
     <link name="base_link"/>
     ```
 
-    To tell several robots apart, give robot_state_publisher its parameter `frame_prefix`.
+    To distinguish several robots, set the parameter `frame_prefix` of robot_state_publisher.
     """
 
     code = "LW603"
@@ -137,7 +137,7 @@ class NameLeadingSlash(Rule):
 
 
 class NameNotAscii(Rule):
-    """The name of a link or joint has a letter outside ASCII.
+    """The name of a link or joint has a non-ASCII letter.
 
     ## Why
 
@@ -180,8 +180,8 @@ class NameUnusualCharacter(Rule):
 
     ## Why
 
-    Brackets, quotes, colons and their like have a meaning on command lines, in YAML and in the names of topics and
-    parameters. A name with them works in one tool and fails in the next.
+    Brackets, quotes, colons and similar characters have a meaning on command lines, in YAML and in the names of topics
+    and parameters. A name with them works in one tool and fails in another.
 
     ## Example
 
@@ -214,13 +214,13 @@ class NameUnusualCharacter(Rule):
 
 
 class NameUpperCase(Rule):
-    """The name of a link or joint has upper case letters or dashes in it.
+    """The name of a link or joint has upper case letters or dashes.
 
     ## Why
 
-    REP 144 asks for lower case and underscores in the names of packages, and REP 103, 105 and 120 name all their
-    frames that way. Names in one style need no looking up. Pedantic: many arms carry the names that their makers gave
-    the axes.
+    REP 144 asks for lower case and underscores in the names of packages, and REP 103, 105 and 120 name all their frames
+    in this way. Names in one style are easier to remember. Pedantic: the joints of many arms have the names that the
+    manufacturer gave the axes.
 
     ## Example
 
@@ -255,8 +255,8 @@ class NamesDifferInCase(Rule):
 
     ## Why
 
-    They are two names for ROS and one for a reader, so one of them is used in place of the other. Gazebo, and mesh
-    files on Windows and macOS, do not distinguish them.
+    They are two names for ROS but look like one to a reader, so one is easily used in place of the other. Gazebo, and
+    mesh files on Windows and macOS, do not distinguish them.
 
     ## Example
 
@@ -297,8 +297,8 @@ class NameSuffixDoubled(Rule):
 
     ## Why
 
-    A macro appends `_link` to a parameter that has it already. The name works, but anyone who writes it from memory
-    writes another one.
+    A macro appends `_link` to a parameter that already ends with it. The name works, but is easily written wrong from
+    memory.
 
     ## Example
 

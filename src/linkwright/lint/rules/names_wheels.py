@@ -1,8 +1,8 @@
-"""Wheels: whether their names, positions and axes agree.
+"""Rules about wheels: whether their names, positions and axes agree.
 
-A wheel is recognised by its name alone: the word "wheel" in the name of the joint or its child link, without a word for
-a steering or suspension joint. All positions are those with every joint at zero, in the frame of ``base_link`` (or the
-root), in which REP 103 has x forward and y to the left.
+A wheel is recognised by its name alone: the word "wheel" in the name of the joint or its child link, without a word
+for a steering or suspension joint. All positions are given with every joint at zero, in the frame of ``base_link``
+(or the root), in which x points forward and y to the left (REP 103).
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _AXIS_TOLERANCE = cos(radians(10.0))
 
 
 class Wheel(NamedTuple):
-    """A joint that turns a wheel: with its link, its frame and its axis in the base frame."""
+    """A joint that turns a wheel, with its link, and its pose and axis in the base frame."""
 
     joint: Joint
     link: Link
@@ -40,7 +40,7 @@ class Wheel(NamedTuple):
 
 
 def wheels(subject: Subject, type_of_joint: str = "continuous") -> Iterator[Wheel]:
-    """The wheels of a robot on joints of a type, in file order; by default those that turn freely."""
+    """Yield the wheels of a robot on joints of a type, by default continuous, in file order."""
     robot, frames = subject.robot, subject.frames
     if robot is None:
         return
@@ -56,7 +56,7 @@ def wheels(subject: Subject, type_of_joint: str = "continuous") -> Iterator[Whee
 
 
 def joints_above(robot: Robot, joint: Joint) -> Iterator[Joint]:
-    """The joints between a joint and the root, from below."""
+    """Yield the joints from a joint up to the root."""
     moving = {joint.child: joint for joint in robot.joints.values()}
     while (above := moving.get(joint.parent)) is not None:
         yield above
@@ -64,18 +64,18 @@ def joints_above(robot: Robot, joint: Joint) -> Iterator[Joint]:
 
 
 def is_wheel(joint: Joint) -> bool:
-    """Return whether a joint is that of a wheel, by the names."""
+    """Return whether a joint belongs to a wheel, according to the names."""
     names = f"{joint.name} {joint.child}"
     return "wheel" in names.lower() and not _NO_WHEEL.search(names)
 
 
 def words(name: str) -> list[str]:
-    """The words of a name in lower case; ``leftWheel_joint`` has three."""
+    """Return the words of a name in lower case; ``leftWheel_joint`` has three."""
     return [word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+", name)]
 
 
 def pairs(found: list[Wheel]) -> Iterator[tuple[Wheel, Wheel]]:
-    """Left and right wheels whose names differ in nothing but the side."""
+    """Yield pairs of left and right wheels whose names differ only in the side."""
     by_words = {tuple(words(wheel.joint.name)): wheel for wheel in found}
     for wheel in found:
         own = words(wheel.joint.name)
@@ -94,8 +94,8 @@ class WheelSide(Rule):
 
     ## Why
 
-    REP 103 has x forward and y to the left, so the left wheel has the larger y. With the names exchanged a controller
-    for differential drive turns the robot the wrong way round.
+    In REP 103, x points forward and y to the left, so the left wheel has the larger y. If the names are exchanged, a
+    differential drive controller turns the robot in the wrong direction.
 
     ## Example
 
@@ -139,9 +139,9 @@ class WheelHasLimits(Rule):
     ## Why
 
     A revolute joint stops at its limits, so the wheel turns once and stops. A wheel turns without limits, which is what
-    `continuous` means. A joint that steers the wheel rightly has limits: its axis is not that of the wheel's cylinder
-    or, if the wheel has no cylinder, does not point to the side. A part that carries wheels, such as the arm of a
-    rover, is not a wheel.
+    `continuous` means. A joint that steers the wheel may have limits. It is recognised by its axis, which is not that
+    of the wheel's cylinder or, if the wheel has no cylinder, does not point to the side. A part that carries wheels,
+    such as the arm of a rover, is not a wheel.
 
     ## Example
 
@@ -184,8 +184,8 @@ class WheelAxis(Rule):
 
     ## Why
 
-    The cylinder of URDF stands along z, so a wheel's shape is turned by a right angle against the link, and the axis of
-    the joint has to be that of the turned cylinder. Otherwise the wheel tumbles instead of rolling.
+    In URDF, the axis of a cylinder is z, so a wheel's shape is rotated by a right angle relative to the link, and the
+    axis of the joint must be that of the rotated cylinder. Otherwise the wheel tumbles instead of rolling.
 
     ## Example
 
@@ -239,10 +239,10 @@ class WheelsTurnAgainst(Rule):
 
     ## Why
 
-    Equal velocities then turn the wheels against each other, and a controller for differential drive makes the robot
-    spin instead of driving straight. If nothing in the description drives the wheels, neither a plugin of a simulator
-    nor `<ros2_control>`, the finding is an information: the driver of the robot may negate the velocity of one side. If
-    a plugin does so, the configuration can ignore this rule.
+    Equal velocities then turn the wheels against each other, and a differential drive controller makes the robot spin
+    instead of driving straight. If nothing in the description drives the wheels, neither a plugin of a simulator nor
+    `<ros2_control>`, the finding is an information: the driver of the robot may negate the velocity of one side. If a
+    plugin does so, the configuration can ignore this rule.
 
     ## Example
 
@@ -283,8 +283,8 @@ class WheelsNotMirrored(Rule):
 
     ## Why
 
-    A robot that is meant symmetric and has one wheel a little off drives in circles in simulation. Pedantic: robots
-    need not be symmetric.
+    A robot that should be symmetric but has one slightly misplaced wheel drives in circles in simulation. Pedantic:
+    robots need not be symmetric.
 
     ## Example
 
@@ -326,8 +326,8 @@ class WheelsTurnBackward(Rule):
 
     ## Why
 
-    By the right hand rule a wheel that turns about +y, to the left, rolls forward. With both axes the other way round a
-    positive velocity drives backward. Pedantic: a controller may be configured for that.
+    By the right-hand rule, a wheel that turns about +y, which points to the left, rolls forward. If both axes are
+    reversed, a positive velocity drives backward. Pedantic: a controller may be configured for that.
 
     ## Example
 
@@ -373,7 +373,7 @@ def _is_driven(subject: Subject, joint: Joint) -> bool:
 
 
 def _disc_axes(link: Link) -> Iterator[Vector3]:
-    """The axes, in the link's frame, of the flat cylinders of a link."""
+    """Yield the axes of a link's flat cylinders in the link's frame."""
     parts: tuple[Visual | Collision, ...] = (*link.collisions, *link.visuals)
     for part in parts:
         shape = part.geometry
@@ -391,12 +391,12 @@ def _rolls(wheel: Wheel) -> bool:
 
 
 def _is_wide(joint: Joint) -> bool:
-    """Return whether the limits leave room for many turns."""
+    """Return whether the limits allow many turns."""
     return joint.limit is not None and joint.limit.upper - joint.limit.lower > 1000.0
 
 
 def _rounded(axis: Vector3) -> str:
-    """A direction as it is written, with its largest part positive: a wheel's axis has no front."""
+    """Return a direction as text with a positive largest component, as a wheel's axis has no sign."""
     sign = 1.0 if max(axis, key=abs) > 0 else -1.0
     return " ".join(f"{round(sign * value, 3) + 0.0:g}" for value in axis)
 

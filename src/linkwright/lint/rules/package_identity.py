@@ -26,12 +26,12 @@ _PLACEHOLDER_EMAIL = lazy_pattern(
 
 
 class PackageNameDiffers(PackageRule):
-    """``setup.py`` or ``CMakeLists.txt`` gives the package another name than ``package.xml``.
+    """``setup.py`` or ``CMakeLists.txt`` gives the package a different name than ``package.xml``.
 
     ## Why
 
-    With two names the build stops, or it installs files under one name that are looked for under the other. It happens
-    when a package is copied and renamed.
+    With two names, the build stops, or it installs files under one name that are looked up under the other. This
+    happens when a package is copied and renamed.
 
     ## Example
 
@@ -99,7 +99,8 @@ class PackageName(ManifestRule):
 
     colcon reads `package.xml` through catkin_pkg, which refuses a name with blanks or dots: that is an error. REP 144
     asks for lower case, digits and underscores; Python cannot import a package whose name has a dash, and `ros2 pkg
-    create` makes none. That is an information: others know a published package by its name.
+    create` does not create one. Such a name is only an information, because others know a published package by its
+    name.
 
     ## Example
 
@@ -123,7 +124,7 @@ class PackageName(ManifestRule):
         if name is None or element is None:
             return
         if not name:
-            return  # which LW802 reports
+            return  # LW802 reports this
         for found in check_package_name(name):
             if is_accepted_name(name):
                 advice = found if iskeyword(name) else departure_from_rep(name)
@@ -133,11 +134,12 @@ class PackageName(ManifestRule):
 
 
 class FolderNameDiffers(PackageRule):
-    """The folder of a package has another name than the package.
+    """The folder of a package has a different name than the package.
 
     ## Why
 
-    Who reads `package://my_robot_description/...` looks for a folder of that name. Pedantic: nothing needs it.
+    A user who reads `package://my_robot_description/...` looks for a folder with this name. Pedantic: no program
+    depends on it.
 
     ## Example
 
@@ -145,7 +147,7 @@ class FolderNameDiffers(PackageRule):
 
     ## Use instead
 
-    Rename the folder, or leave it where a repository is one package.
+    Rename the folder, or leave it if the repository is one package.
     """
 
     code = "LW806"
@@ -174,8 +176,7 @@ class MaintainerEmail(ManifestRule):
     ## Why
 
     colcon reads `package.xml` through catkin_pkg, which refuses addresses such as `me@localhost` or `a@b.c`. The
-    package is built all the same, but without its environment hooks: after `source install/setup.bash` ROS does not
-    find it.
+    package is still built, but without its environment hooks: after `source install/setup.bash`, ROS does not find it.
 
     ## Example
 

@@ -1,7 +1,7 @@
-"""Rules about ``setup.py`` and ``CMakeLists.txt``: files that are not installed, and installed files that are missing.
+"""Rules about files that ``setup.py`` or ``CMakeLists.txt`` does not install or cannot find.
 
-If it is not known what a build file installs (a value that only CMake knows, a command of another package), the rules
-about missing files do not apply.
+If the installed files of a build file are not known (a value that only CMake knows, a command of another package),
+the rules about missing files do not apply.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class PatternMatchesNothing(PackageRule):
 
     ## Why
 
-    `glob` is silent when it finds nothing, so the intended files are missing after the build: a launch file or an
+    `glob` does not report that it finds nothing, so the intended files are missing after the build: a launch file or an
     include then fails with "no such file". A misspelt folder is the usual cause. If another pattern finds files in the
     same folder, the finding is an information.
 
@@ -94,10 +94,9 @@ class FolderNotInstalled(PackageRule):
 
     ## Why
 
-    ROS looks in the share folder of the installed package, not in the sources. The launch file or the description does
-    not find a file that is not installed. Folders with unusual names count if a launch file of the package looks for a
-    file in them. For a folder of YAML and RViz files that no launch file of the package reads, the finding is an
-    information.
+    ROS looks in the share folder of the installed package, not in the sources. A launch file or description cannot find
+    a file that is not installed. Folders with unusual names count if a launch file of the package looks for a file in
+    them. For a folder of YAML and RViz files that no launch file of the package reads, the finding is an information.
 
     ## Example
 
@@ -135,7 +134,7 @@ class FolderNotInstalled(PackageRule):
         files = {file for item in setup.installed for file in item.files(package.folder)}
         installed = {file.rpartition("/")[0] for file in files}
         empty = [item for item in setup.installed if item.is_pattern and not item.files(package.folder)]
-        meant = {near_folder(package, item.text.rpartition("/")[0]) for item in empty}  # LW821 reports these
+        meant = {near_folder(package, item.text.rpartition("/")[0]) for item in empty}  # LW821 reports these folders
         lacking: dict[str, list[str]] = {}
         for folder in _left_out(package, lambda folder: folder in installed or folder in meant):
             lacking.setdefault(_top(folder), []).append(folder)
@@ -167,7 +166,7 @@ class FolderNotInstalled(PackageRule):
             yield self.report(message, span=span, source=cmake.source, hint=hint, severity=severity)
 
     def _severity(self, package: PackageContext, folders: Iterable[str]) -> Severity:
-        """An information for settings that no launch file of the package reads."""
+        """Return the severity: an information for settings that no launch file of the package reads."""
         inside = tuple(f"{folder}/" for folder in folders)
         held = [file for file in package.files if file.startswith(inside) and _is_shared(file)]
         is_unread = not any(path.startswith(inside) for path in _asked(package))
@@ -179,7 +178,7 @@ class FileNotInstalled(PackageRule):
 
     ## Why
 
-    The file works from the sources and is missing after the build.
+    The file works from the sources but is missing after the build.
 
     ## Example
 
@@ -270,19 +269,19 @@ class InstalledFileMissing(PackageRule):
 
 
 def _is_there(package: PackageContext, path: str) -> bool:
-    """Return whether a file or folder is among the sources, or is made before the package is installed."""
+    """Return whether a file or folder is among the sources, or is created before the package is installed."""
     place = package.folder / path
     is_ignored = is_ignored_by_git(place) or is_ignored_by_git(place / "_")
     return package.has(path) or is_ignored or is_made_by_cmake(package, path)
 
 
 def shared_folders(package: PackageContext) -> list[str]:
-    """The folders that directly hold files which belong into the share folder, sorted."""
+    """Return the sorted folders that directly contain files for the share folder."""
     return sorted({file.rpartition("/")[0] for file in package.files if "/" in file and _is_shared(file)})
 
 
 def _left_out(package: PackageContext, is_installed: Callable[[str], bool]) -> list[str]:
-    """Return the folders that are not installed although they are usual ones, or a launch file looks into them."""
+    """Return the folders that are not installed although they are common or used by a launch file."""
     asked = _asked(package)
     return [
         folder
@@ -292,7 +291,7 @@ def _left_out(package: PackageContext, is_installed: Callable[[str], bool]) -> l
 
 
 def _asked(package: PackageContext) -> set[str]:
-    """The paths in share folders that the package's launch files name."""
+    """Return the paths in share folders that the package's launch files name."""
     return {shared.path for file in package.launch_files.values() for shared in file.paths}
 
 
@@ -301,7 +300,7 @@ def _top(folder: str) -> str:
 
 
 def near_folder(package: PackageContext, folder: str) -> str | None:
-    """The folder of the package that is most like a name, or None."""
+    """Return the folder of the package whose name is most similar to a name, or None."""
     if not folder or package.has(folder):
         return None
     parent = folder.rpartition("/")[0]
@@ -319,7 +318,7 @@ def _covers(directory: str, folder: str) -> bool:
 
 
 def checkout_hint(package: PackageContext, path: str) -> Phrase | None:
-    """A hint to check out the submodule of Git that a path of the package is in, or None if it is in none."""
+    """Return a hint to check out the Git submodule that contains a path of the package, or None."""
     submodule = submodule_of(package.folder / path)
     if submodule is None:
         return None
@@ -327,7 +326,7 @@ def checkout_hint(package: PackageContext, path: str) -> Phrase | None:
 
 
 def near_file(package: PackageContext, path: str) -> Phrase | None:
-    """A hint that names the file beside a path whose name is most like it, or None."""
+    """Return a hint that names the most similar file in the folder of a path, or None."""
     folder = path.rpartition("/")[0]
     beside = [file for file in package.files if file.rpartition("/")[0] == folder]
     like = next(iter(nearest(path, beside, 1)), None)

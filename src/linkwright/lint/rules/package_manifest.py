@@ -1,4 +1,4 @@
-"""Rules about ``package.xml``, and its agreement with the files beside it."""
+"""Rules about ``package.xml``, and its agreement with the files next to it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _BUILD_FILES = {
 
 
 class PackageRule(Rule, ABC):
-    """A rule about a package; it does not apply to a description outside a package."""
+    """The base of rules about packages; they do not apply to a description outside a package."""
 
     scope = Scope.PACKAGE
 
@@ -44,7 +44,7 @@ class PackageRule(Rule, ABC):
 
 
 class ManifestRule(PackageRule):
-    """A rule about a ``package.xml`` that is XML."""
+    """The base of rules about a ``package.xml`` that is well-formed XML."""
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
         """Yield the findings in a package."""
@@ -61,7 +61,7 @@ class ManifestMalformed(PackageRule):
 
     ## Why
 
-    colcon and rosdep do not see the package at all, and say little about it.
+    colcon and rosdep do not recognize the package at all, and report little about it.
 
     ## Example
 
@@ -100,8 +100,8 @@ class ManifestIncomplete(ManifestRule):
 
     ## Why
 
-    REP 149 asks for name, version, description, maintainer and licence. colcon leaves a package without a name out, and
-    tools for releasing refuse one without the others.
+    REP 149 requires name, version, description, maintainer and licence. colcon ignores a package without a name, and
+    release tools refuse a package without the other elements.
 
     ## Example
 
@@ -187,7 +187,7 @@ class DependencyRepeated(ManifestRule):
 
     `<depend>` means `<build_depend>`, `<build_export_depend>` and `<exec_depend>` together. catkin_pkg, with which
     colcon and `ament_package()` read the file, refuses it if one of them names the package, too: the package is not
-    built. The same line twice changes nothing, as in files of MoveIt's Setup Assistant: then the finding is an
+    built. The same line twice has no effect, as in files of MoveIt's Setup Assistant; then the finding is an
     information.
 
     ## Example
@@ -233,7 +233,7 @@ class DependencyOnItself(ManifestRule):
 
     ## Why
 
-    colcon cannot put the packages in an order and refuses to build.
+    colcon cannot determine a build order and refuses to build.
 
     ## Example
 
@@ -262,12 +262,12 @@ class DependencyOnItself(ManifestRule):
 
 
 class BuildTypeDiffers(PackageRule):
-    """The build type in ``package.xml`` is not that of the build file.
+    """The build type in ``package.xml`` does not match the build file.
 
     ## Why
 
     colcon uses `<build_type>`. With `ament_cmake` it looks for a `CMakeLists.txt`, with `ament_python` for a
-    `setup.py`; without a build type it treats the package as one of ROS 1.
+    `setup.py`; without a build type, it treats the package as a ROS 1 package.
 
     ## Example
 

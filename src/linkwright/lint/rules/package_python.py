@@ -1,4 +1,4 @@
-"""Packages built by setuptools: the marker, the Python package, executables and ``setup.cfg``."""
+"""Rules about packages built by setuptools: marker, Python package, executables and ``setup.cfg``."""
 
 from __future__ import annotations
 
@@ -61,12 +61,12 @@ class MarkerMissing(PackageRule):
 
     ## Why
 
-    `setup.py` installs it into the index of packages. Without the file the build stops; and without the entry `ros2
+    `setup.py` installs it into the package index. Without the file, the build stops. Without the index entry, `ros2
     run` and `ros2 launch` do not find the package.
 
     ## Example
 
-    A package `my_robot_description` built by `ament_python`, with the file `resource/robot_description`.
+    A package `my_robot_description` built by `ament_python`, with a file `resource/robot_description`.
 
     ## Use instead
 
@@ -101,8 +101,8 @@ class MarkerNotInstalled(PackageRule):
 
     ## Why
 
-    ROS 2 finds an installed package by a file of its name in the index, and tools read its `package.xml` from the share
-    folder. colcon adds both for now, with a warning that it will not always do so.
+    ROS 2 finds an installed package by a file with its name in the index, and tools read its `package.xml` from the
+    share folder. Currently, colcon adds both, with a warning that this will change.
 
     ## Example
 
@@ -182,7 +182,7 @@ class EntryPointMissing(PackageRule):
         for entry in setup.entry_points:
             top = entry.module.partition(".")[0]
             if not package.has(top):
-                continue  # a module from elsewhere, or from another folder
+                continue  # a module of another package, or in another folder
             path = entry.module.replace(".", "/")
             file = next((name for name in (f"{path}.py", f"{path}/__init__.py") if package.has(name)), None)
             if file is None:
@@ -204,7 +204,7 @@ class EntryPointMissing(PackageRule):
 
 
 class PythonPackageMissing(PackageRule):
-    """``setup.py`` names a Python package that has no folder.
+    """``setup.py`` names a Python package whose folder does not exist.
 
     ## Why
 
@@ -242,11 +242,11 @@ class PythonPackageMissing(PackageRule):
 
 
 class SetupCfgDiffers(PackageRule):
-    """``setup.cfg`` does not put the executables where ``ros2 run`` looks for them.
+    """``setup.cfg`` does not install the executables where ``ros2 run`` looks for them.
 
     ## Why
 
-    Setuptools puts executables into `bin`. `ros2 run` and launch files look in `lib/NAME`, and report that the
+    Setuptools installs executables into `bin`. `ros2 run` and launch files look in `lib/NAME`, and report that the
     executable is not found.
 
     ## Example

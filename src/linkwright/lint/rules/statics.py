@@ -1,7 +1,7 @@
-"""Rules about standing: wheels on the ground, and the centre of mass above them.
+"""Rules about static stability: wheels on the ground, and the centre of mass above them.
 
-Everything is at rest, with all joints at zero. Wheels and casters are known by their names, and where they touch the
-ground by their cylinders and spheres; where one has only a mesh, nothing is said.
+Everything is at rest, with all joints at zero. Wheels and casters are recognised by their names, and their contacts
+with the ground are computed from their cylinders and spheres. If one has only a mesh, nothing is reported.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ Point = tuple[float, float]
 
 
 class Contact(NamedTuple):
-    """Where a wheel or caster touches the ground.
+    """The contact of a wheel or caster with the ground.
 
     Attributes:
-        link: its link.
+        link: the link of the wheel or caster.
         place: its lowest point in the frame of the base, in m.
-        is_wheel: whether it is a wheel; else a caster.
+        is_wheel: whether it is a wheel and not a caster.
     """
 
     link: Link
@@ -43,7 +43,7 @@ class Contact(NamedTuple):
 
 
 def contacts(subject: Subject) -> list[Contact] | None:
-    """Return the contacts of a robot with the ground; None if there is no robot, or a wheel cannot be measured."""
+    """Return a robot's contacts with the ground; None if there is no robot or a wheel cannot be measured."""
     robot, frames = subject.robot, subject.frames
     if robot is None:
         return None
@@ -74,7 +74,7 @@ class WheelsNotLevel(Rule):
 
     A driven wheel in the air turns without moving the robot, and a robot on two wheels and one corner of its body turns
     in circles. The lowest points of all wheels and casters should be in one plane. Wheels on a joint that lifts them,
-    such as the rockers of a rover, reach the ground by themselves, and are not reported.
+    such as the rockers of a rover, adapt to the ground and are not reported.
 
     ## Example
 
@@ -82,7 +82,7 @@ class WheelsNotLevel(Rule):
 
     ## Use instead
 
-    The same height for both, and a caster whose lowest point is at that of the wheels.
+    The same height for both, and a caster whose lowest point is level with that of the wheels.
     """
 
     code = "LW390"
@@ -118,7 +118,10 @@ class WheelsNotLevel(Rule):
 
 
 def _springing(subject: Subject) -> set[str]:
-    """The wheels and casters that a joint between them and the body can lift; one that steers turns about z."""
+    """Return the wheels and casters that a joint between them and the body can lift.
+
+    A joint that steers, which turns about z, does not count.
+    """
     robot, frames = subject.robot, subject.frames
     found: set[str] = set()
     if robot is None:
@@ -138,8 +141,8 @@ class CenterBeyondWheels(Rule):
 
     ## Why
 
-    The robot tips over as soon as the simulation starts. Only robots with three contacts or more are looked at, since
-    one with two wheels may be made to balance.
+    The robot tips over as soon as the simulation starts. Only robots with three or more contacts are checked, because a
+    robot with two wheels may be designed to balance.
 
     ## Example
 
@@ -191,7 +194,10 @@ class CenterBeyondWheels(Rule):
 
 
 def _depth(shape: object, upward: float) -> float | None:
-    """Return how far a shape reaches below its middle, given its z axis' part upward; None if it is not a wheel."""
+    """Return how far a shape extends below its middle; None if it is not the shape of a wheel.
+
+    `upward` is the upward component of its z axis.
+    """
     if isinstance(shape, Sphere):
         return shape.radius
     if isinstance(shape, Cylinder) and abs(upward) < _LEVEL:
@@ -200,7 +206,7 @@ def _depth(shape: object, upward: float) -> float | None:
 
 
 def _center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | None:
-    """Return the centre of mass of a robot, x and y in the frame of the base; None if it has no mass."""
+    """Return the x and y of a robot's centre of mass in the base frame; None if it has no mass."""
     base = frames.get("base_link", frames[robot.root])
     total = x = y = 0.0
     for name, link in robot.links.items():
@@ -213,7 +219,10 @@ def _center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | No
 
 
 def _hull(points: Sequence[Point]) -> list[Point]:
-    """The corners around points, counter-clockwise (Andrew's monotone chain); fewer than three for a line."""
+    """Return the corners of the convex hull, counter-clockwise; fewer than three for a line.
+
+    The algorithm is Andrew's monotone chain.
+    """
     ordered = sorted(set(points))
 
     def half(sequence: Iterable[Point]) -> list[Point]:
@@ -228,7 +237,10 @@ def _hull(points: Sequence[Point]) -> list[Point]:
 
 
 def _distance_outside(point: Point, corners: Sequence[Point]) -> float:
-    """Return a point's distance from a convex polygon, measured from the line of the edge that it exceeds most."""
+    """Return the distance of a point outside a convex polygon.
+
+    It is measured from the line of the edge that the point exceeds most.
+    """
     farthest = 0.0
     for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
         edge = hypot(end[0] - start[0], end[1] - start[1])

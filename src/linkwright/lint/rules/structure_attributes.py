@@ -1,4 +1,4 @@
-"""Rules about attributes that no program reads."""
+"""Rules about attributes that no URDF reader uses."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from linkwright.lint.unread import (
 
 
 class MisspeltAttribute(Rule):
-    """An attribute that is almost one that URDF knows.
+    """An attribute whose name is almost that of a URDF attribute.
 
     ## Why
 
-    urdfdom silently ignores every unknown attribute: `<limit loewr="-1" .../>` leaves the lower limit at 0, `<origin
-    rpw="0 0 1"/>` does not turn anything.
+    urdfdom silently ignores every unknown attribute: `<limit loewr="-1" .../>` leaves the lower limit at 0, and
+    `<origin rpw="0 0 1"/>` does not rotate anything.
 
     ## Example
 
@@ -43,7 +43,7 @@ class MisspeltAttribute(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every unread attribute whose name is similar to that of a missing one."""
+        """Report every unread attribute whose name is similar to that of a missing attribute."""
         hints = hints_of_reader(subject)
         for place, attribute in subject.structure.unknown_attributes:
             meant = meant_attribute(place, attribute)
@@ -62,12 +62,12 @@ class MisspeltAttribute(Rule):
 
 
 class UnknownAttribute(Rule):
-    """An attribute on an element of URDF that does not have it.
+    """An attribute that its URDF element does not have.
 
     ## Why
 
-    urdfdom ignores it, so it does not have the intended effect. Attributes with a prefix, and names that URDF does not
-    have anywhere, such as those for a vendor's software, are not reported.
+    urdfdom ignores it, so it does not have the intended effect. Attributes with a prefix, and names that do not occur
+    in URDF at all, such as those for a vendor's software, are not reported.
 
     ## Example
 
@@ -86,7 +86,7 @@ class UnknownAttribute(Rule):
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every other unread attribute."""
+        """Report every unread attribute that `MisspeltAttribute` does not report."""
         hints = hints_of_reader(subject)
         for place, attribute in subject.structure.unknown_attributes:
             if not is_expected_attribute(attribute):

@@ -1,4 +1,4 @@
-"""Rules about elements that no program reads: misspelt, in the wrong place, unknown."""
+"""Rules about elements that URDF readers ignore: misspelt, in the wrong place, or unknown."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from linkwright.xmltree import Element
 
 
 class MisspeltElement(Rule):
-    """An element that is almost one that URDF knows.
+    """An element whose name is almost that of a URDF element.
 
     ## Why
 
@@ -50,7 +50,7 @@ class MisspeltElement(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every unread element whose name is similar to one that is allowed there."""
+        """Report every unread element whose name is similar to that of an element allowed there."""
         reported = hints_of_reader(subject)
         for place, child in subject.structure.unknown_elements:
             meant = meant_element(place.rule, child)
@@ -69,8 +69,8 @@ class MisplacedElement(Rule):
 
     ## Why
 
-    An `<origin>` inside `<geometry>` does not move the shape, a `<mass>` directly in a link gives it no mass: urdfdom
-    silently ignores them.
+    An `<origin>` inside `<geometry>` does not move the shape, and a `<mass>` directly in a link gives it no mass:
+    urdfdom silently ignores them.
 
     ## Example
 
@@ -98,7 +98,7 @@ class MisplacedElement(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every element that is known elsewhere; a material in a collision has a rule of its own."""
+        """Report every element that is known in other places; another rule checks materials in collisions."""
         reported = hints_of_reader(subject)
         for place, child in subject.structure.unknown_elements:
             homes = HOMES.get(child.tag, ())
@@ -115,24 +115,27 @@ class MisplacedElement(Rule):
 
 
 def _is_no_offset(origin: Element) -> bool:
-    """Return whether an origin would move nothing where it is read either."""
+    """Return whether an origin would have no effect even if it were read."""
     return not any(float(value) for name in ("xyz", "rpy") for value in values(origin, name))
 
 
 def _nearest_homes(homes: Sequence[str], place: Place) -> Sequence[str]:
-    """Return the possible parents of a misplaced element inside its present parent, else the parent's own parent."""
+    """Return the possible parents of a misplaced element that are closest to its present place.
+
+    These are parents inside its present parent, or else the parent's own parent, or else all possible parents.
+    """
     around = place.parent.tag if place.parent is not None else ""
     inside = [home for home in homes if home in place.rule.child_rules]
     return inside or ((around,) if around in homes else homes)
 
 
 class UnknownElement(Rule):
-    """An element of another format inside a link or joint, where URDF has none.
+    """An element of another format inside a link or joint, where URDF does not define it.
 
     ## Why
 
     urdfdom ignores it, so it does not have the intended effect: SDF's `<max_contacts>` has no effect in a
-    `<collision>`. Elements directly in `<robot>`, and names that no format around URDF has, such as those for a
+    `<collision>`. Elements directly in `<robot>`, and names that no format related to URDF has, such as those for a
     vendor's software, are not reported.
 
     ## Example
@@ -145,7 +148,7 @@ class UnknownElement(Rule):
 
     ## Use instead
 
-    Remove it, or move it into a `<gazebo reference="arm">` where a simulator is to read it.
+    Remove it, or move it into a `<gazebo reference="arm">` if a simulator should read it.
     """
 
     code = "LW107"
@@ -154,7 +157,7 @@ class UnknownElement(Rule):
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every other unread element."""
+        """Report every unread element that the other rules do not report."""
         reported = hints_of_reader(subject)
         for place, child in subject.structure.unknown_elements:
             if place.rule is schema.ROBOT or child.tag in INNER_EXTENSIONS or child.tag in HOMES:
@@ -178,7 +181,7 @@ class MaterialInCollision(Rule):
     ## Why
 
     Collision shapes have no colour: the material is not read, and a material that is defined only there does not exist
-    elsewhere. It is harmless if a macro writes one body for both, so the rule is off by default.
+    elsewhere. This is harmless if a macro writes the same content for both, so the rule is off by default.
 
     ## Example
 

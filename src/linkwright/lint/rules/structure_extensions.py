@@ -1,4 +1,4 @@
-"""Rules about names inside the elements that URDF readers pass on."""
+"""Rules about names inside the elements that URDF readers pass on to other programs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class MisspeltExtension(Rule):
 
     ## Why
 
-    URDF readers pass these parts on, and their readers ignore unknown elements: a `<command_interfce>` is an interface
+    URDF readers pass these parts on to programs that ignore unknown elements: a `<command_interfce>` is an interface
     that no controller can claim.
 
     ## Example
@@ -42,7 +42,7 @@ class MisspeltExtension(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every element and attribute there whose name is a misspelling of a known one."""
+        """Report every element and attribute in these parts whose name misspells a known one."""
         for top in subject.elements():
             if top.tag not in CHILDREN:
                 continue

@@ -1,4 +1,4 @@
-"""Rules about leftovers: unevaluated expressions, and texts, names and materials without use."""
+"""Rules about leftovers: unevaluated expressions, stray texts, and empty names."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from linkwright.xmltree import Text
 
 
 class XacroInUrdf(Rule):
-    """An expression of xacro in an attribute of plain URDF.
+    """A xacro expression in an attribute of plain URDF.
 
     ## Why
 
-    It is not evaluated: tools look for the mesh in a folder with the name `$(find my_robot)`.
+    It is not evaluated: tools look for the mesh in a folder named `$(find my_robot)`.
 
     ## Example
 
@@ -29,7 +29,7 @@ class XacroInUrdf(Rule):
 
     ## Use instead
 
-    Give the file the ending `.urdf.xacro`, declare `xmlns:xacro="http://www.ros.org/wiki/xacro"` on `<robot>`, and
+    Give the file the extension `.urdf.xacro`, declare `xmlns:xacro="http://www.ros.org/wiki/xacro"` on `<robot>`, and
     expand it.
     """
 
@@ -38,7 +38,7 @@ class XacroInUrdf(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every address with an expression; the reader reports numbers."""
+        """Report every URI with an expression; the reader reports expressions in place of numbers."""
         if subject.expansion is not None:
             return
         for place in subject.structure.places:
@@ -60,7 +60,7 @@ class XacroInUrdf(Rule):
 
 
 class StrayText(Rule):
-    """Text in an element that holds none.
+    """Text in an element that does not contain text.
 
     ## Why
 
@@ -114,7 +114,7 @@ class EmptyName(Rule):
 
     ## Why
 
-    urdfdom accepts it, and then the frame has no name: TF refuses frames without one, and joint states cannot be
+    urdfdom accepts it, and then the frame has no name: tf2 refuses frames without a name, and joint states cannot be
     matched.
 
     ## Example
@@ -136,7 +136,7 @@ class EmptyName(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every name without a letter."""
+        """Report every name that is empty or blank."""
         named = [element for element in subject.elements() if element.tag in ("link", "joint")]
         for element in [subject.root, *named]:
             name = element.attributes.get("name")

@@ -26,12 +26,12 @@ def _names(subject: Subject, tag: str) -> set[str]:
 
 
 def _without_siblings(name: str, known: Iterable[str]) -> list[str]:
-    """Return the known names with the same numbers in them; ``arm_2`` is not meant by ``arm_1``."""
+    """Return the known names that contain the same numbers as a name; ``arm_1`` never means ``arm_2``."""
     return [each for each in known if _NUMBER.findall(each) == _NUMBER.findall(name)]
 
 
 def _kind_meant(gazebo: Element, name: str) -> str:
-    """Return whether a `<gazebo>` is meant for a ``link`` or a ``joint``, by its content and then by the name."""
+    """Return the kind that a `<gazebo>` refers to, ``link`` or ``joint``, by its content, then its name."""
     held = {child.tag for child in gazebo.elements()}
     if held & OF_JOINTS:
         return "joint"
@@ -41,12 +41,12 @@ def _kind_meant(gazebo: Element, name: str) -> str:
 
 
 def _is_left_over(gazebo: Element, name: str) -> bool:
-    """Return whether a `<gazebo>` without its link looks like that of a part which the robot does not have."""
+    """Return whether a `<gazebo>` without its link seems to belong to a part that the robot does not have."""
     return _UNFILLED.isdisjoint(name) and not any(child.tag in _MISSED for child in gazebo.elements())
 
 
 def _control_joints(subject: Subject) -> Iterator[tuple[Element, Element]]:
-    """The joints of every ``<ros2_control>``, each with that."""
+    """Yield the joints of every ``<ros2_control>``, each with its ``<ros2_control>``."""
     for system in subject.elements("ros2_control"):
         for joint in system.elements("joint"):
             yield system, joint
@@ -57,9 +57,9 @@ class GazeboReferenceUnknown(Rule):
 
     ## Why
 
-    Gazebo silently drops its content: the wheel has no friction, the camera no sensor. The finding is an information if
-    no name is similar, only colours and surfaces are lost, and most references of the description are valid: then the
-    part is one that this robot does not have.
+    Gazebo silently drops its content: the wheel has no friction, and the camera has no sensor. The finding is an
+    information if no name is similar, only colours and surfaces are lost, and most references of the description are
+    valid: then the reference probably belongs to a part that this robot does not have.
 
     ## Example
 
@@ -79,7 +79,7 @@ class GazeboReferenceUnknown(Rule):
     needs_all_sets = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every reference to nothing."""
+        """Report every reference to a link or joint that does not exist."""
         links, joints = _names(subject, "link"), _names(subject, "joint")
         named = [
             (element, name) for element in subject.elements("gazebo") if (name := element.attributes.get("reference"))
@@ -107,7 +107,7 @@ class TransmissionJointUnknown(Rule):
 
     ## Why
 
-    Whoever reads the transmission stops with an error, or leaves the joint without a drive.
+    The program that reads the transmission stops with an error, or leaves the joint without a drive.
 
     ## Example
 
@@ -118,14 +118,14 @@ class TransmissionJointUnknown(Rule):
 
     ## Use instead
 
-    Give the name of the joint as the description has it.
+    Write the name of the joint as it is in the description.
     """
 
     code = "LW121"
     name = "transmission-joint-unknown"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every transmission of a missing joint, in ``<ros2_control>`` as well."""
+        """Report every transmission of a missing joint, including those in ``<ros2_control>``."""
         known = _names(subject, "joint")
         tops = list(subject.elements("transmission"))
         tops += [inner for system in subject.elements("ros2_control") for inner in system.elements("transmission")]
@@ -146,7 +146,7 @@ class ControlJointUnknown(Rule):
 
     ## Why
 
-    The hardware offers interfaces for a joint that the robot does not have: its state is published, no frame moves,
+    The hardware offers interfaces for a joint that the robot does not have: its state is published but no frame moves,
     and gz_ros2_control skips the joint.
 
     ## Example
@@ -158,7 +158,7 @@ class ControlJointUnknown(Rule):
 
     ## Use instead
 
-    Give the name of the joint as the description has it.
+    Write the name of the joint as it is in the description.
     """
 
     code = "LW122"
@@ -168,7 +168,7 @@ class ControlJointUnknown(Rule):
         """Report every joint of ros2_control that the robot does not have."""
         known = _names(subject, "joint")
         if not known:
-            return  # a description of the hardware alone
+            return  # a file that describes only the hardware
         for _, joint in _control_joints(subject):
             name = joint.attributes.get("name")
             if name and name not in known:
@@ -184,7 +184,7 @@ class ControlJointUnknown(Rule):
 
 
 class ControlInterfaceMisspelt(Rule):
-    """An interface in `<ros2_control>` whose name is almost that of a standard one.
+    """An interface in `<ros2_control>` whose name is almost that of a standard interface.
 
     ## Why
 
@@ -209,7 +209,7 @@ class ControlInterfaceMisspelt(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every interface of a joint that is near a standard name without being it."""
+        """Report every interface of a joint whose name is close to a standard name but differs from it."""
         for _, joint in _control_joints(subject):
             for interface in joint.elements():
                 if interface.tag not in ("command_interface", "state_interface"):
@@ -260,10 +260,10 @@ class ControlPluginMissing(Rule):
         for system in subject.elements("ros2_control"):
             hardware = system.first("hardware")
             if hardware is None and any(misspelling_of(child.tag, ["hardware"]) for child in system.elements()):
-                continue  # misspelt, which another rule says
+                continue  # misspelt, which another rule reports
             plugin = hardware.first("plugin") if hardware is not None else None
             if plugin is None and ("<hardware" if hardware is None else "<plugin") in _written(system):
-                continue  # an argument chooses it, and has no value that does
+                continue  # the file has one, in a branch that xacro left out
             if plugin is None or not plugin.text().strip():
                 missing = "<hardware>" if hardware is None else "<plugin>"
                 yield self.report(
@@ -280,7 +280,7 @@ class ControlPluginMissing(Rule):
 
 
 def _written(element: Element) -> str:
-    """Return the element as its file has it, including the parts that xacro left out."""
+    """Return the element as written in its file, including the parts that xacro omitted."""
     found = element_range(element)
     return "" if element.source is None or found is None else element.source.text[slice(*found)]
 
@@ -290,7 +290,7 @@ class ControlJointRepeated(Rule):
 
     ## Why
 
-    Both entries offer interfaces of the same names, which the resource manager refuses.
+    Both entries offer interfaces with the same names, which the resource manager refuses.
 
     ## Example
 
@@ -310,7 +310,7 @@ class ControlJointRepeated(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every joint after the first of its name."""
+        """Report every further joint with the same name."""
         for system in subject.elements("ros2_control"):
             first: dict[str, Element] = {}
             for joint in system.elements("joint"):
@@ -331,7 +331,7 @@ class ControlOfFixedJoint(Rule):
 
     ## Why
 
-    The joint ignores all commands. Usually the type was changed for a test.
+    The joint ignores all commands. Usually, the type was changed for a test.
 
     ## Example
 
@@ -342,7 +342,7 @@ class ControlOfFixedJoint(Rule):
 
     ## Use instead
 
-    Remove the joint from `<ros2_control>`, or give it a type that moves.
+    Remove the joint from `<ros2_control>`, or give it the type of a moving joint.
     """
 
     code = "LW126"
@@ -357,7 +357,7 @@ class ControlOfFixedJoint(Rule):
             if joint is None or command is None or joint.element is None:
                 continue
             if joint.element.attributes.get("type") != "fixed":
-                continue  # a type that is none, which the reader reports
+                continue  # an invalid type, which the reader reports
             yield self.report(
                 phrase("<ros2_control> commands joint '{name}', which is fixed", name=joint.name),
                 command,
@@ -371,9 +371,9 @@ class TransmissionIgnored(Rule):
 
     ## Why
 
-    It is the form of ROS 1. ros2_control and its Gazebo plugins only read joints, interfaces and transmissions inside
-    `<ros2_control>`. Not reported are packages that build with catkin, which ROS 1 has, robots that have both, and
-    files outside a package, which may be for ROS 1.
+    This is the form of ROS 1. ros2_control and its Gazebo plugins only read joints, interfaces and transmissions inside
+    `<ros2_control>`. Packages that build with catkin, the build tool of ROS 1, robots that have both forms, and files
+    outside a package, which may be for ROS 1, are not reported.
 
     ## Example
 
@@ -400,7 +400,7 @@ class TransmissionIgnored(Rule):
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """The first transmission of the form of ROS 1."""
+        """Report the first transmission in the form of ROS 1."""
         manifest = subject.package.manifest if subject.package is not None else None
         if manifest is None or manifest.is_ros1 or any(subject.elements("ros2_control")):
             return

@@ -30,20 +30,20 @@ class NothingToSee(Rule):
 
     ## Use instead
 
-    Give the links a `<visual>`. Where nothing moves and no link holds anything, the description is probably meant for
-    frames alone, such as those between two cameras, and the finding is an information.
+    Give the links a `<visual>`. If nothing moves and no link contains anything, the description is probably only for
+    frames, such as those between two cameras, and the finding is an information.
     """
 
     code = "LW102"
     name = "nothing-to-see"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """A robot whose links have neither visual nor collision."""
+        """Report a robot whose links have neither visuals nor collisions."""
         robot = subject.robot
         if robot is None or len(robot.links) < 2 or any(link.inertial for link in robot.links.values()):
-            return  # one link, or a model for dynamics, which needs no shapes
+            return  # a single link, or a model for dynamics, which needs no shapes
         if any(subject.elements("ros2_control")):
-            return  # hardware on a bench
+            return  # a bench setup, which describes only hardware
         if not any(link.visuals or link.collisions for link in robot.links.values()) and not any(
             link.element is not None and (link.element.first("visual") or link.element.first("collision"))
             for link in robot.links.values()
@@ -90,7 +90,10 @@ class DisconnectedPart(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every part but the one with the most links and the one that the reader reports, at its topmost link."""
+        """Report every separate part at its topmost link.
+
+        The part with the most links and the part that the reader reports are left out.
+        """
         links = {link.name: link for link in subject.links if link.name}
         joints = [joint for joint in subject.joints if joint.parent in links and joint.child in links]
         above = {joint.child: joint.parent for joint in joints}
@@ -127,11 +130,11 @@ class DisconnectedPart(Rule):
 
 
 class RepeatedElement(Rule):
-    """An element twice in a place where only the first counts.
+    """An element that occurs twice although only the first is read.
 
     ## Why
 
-    urdfdom reads the first `<origin>`, `<geometry>`, `<limit>`, ... of its parent and ignores the others. A change of
+    urdfdom reads the first `<origin>`, `<geometry>`, `<limit>`, ... of its parent and ignores the others. A change to
     the second one has no effect.
 
     ## Example
@@ -144,7 +147,7 @@ class RepeatedElement(Rule):
 
     ## Use instead
 
-    Keep the one that is meant.
+    Keep the intended one.
     """
 
     code = "LW111"
@@ -152,7 +155,7 @@ class RepeatedElement(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every element after the first of its tag, where one is read."""
+        """Report every repetition of an element that may occur only once."""
         for place in subject.structure.places:
             first: dict[str, Element] = {}
             for child in place.element.elements():
@@ -175,7 +178,7 @@ class NewerVersion(Rule):
 
     ## Why
 
-    Versions 1.1 and 1.2 are read from urdfdom 5.1 on. The urdfdom of ROS 2 Jazzy and older reads 1.0 only and refuses
+    Versions 1.1 and 1.2 require urdfdom 5.1 or newer. The urdfdom of ROS 2 Jazzy and older reads only 1.0 and refuses
     the whole model.
 
     ## Example
@@ -186,14 +189,14 @@ class NewerVersion(Rule):
 
     ## Use instead
 
-    Write `version="1.0"`, or leave it out, until all who read the description are newer. Ignore the rule when they are.
+    Write `version="1.0"`, or omit it, until all programs that read the description are newer. Then ignore the rule.
     """
 
     code = "LW113"
     name = "newer-version"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """A description of a version above 1.0."""
+        """Report a description with a version above 1.0."""
         robot = subject.robot
         if robot is not None and robot.version > (1, 0):
             written = ".".join(map(str, robot.version))
@@ -206,7 +209,7 @@ class NewerVersion(Rule):
 
 
 def _root_of(name: str, above: dict[str, str]) -> str | None:
-    """Return the topmost link above one; None if the joints form a cycle."""
+    """Return the topmost link above a link; None if the joints form a cycle."""
     steps = 0
     while name in above:
         name = above[name]

@@ -1,4 +1,4 @@
-"""Rules about the comments that suppress findings; the engine, which knows what they did, reports them."""
+"""Rules about comments that suppress findings; the engine reports them, as it knows their effects."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class UnusedSuppression(Rule):
 
     ## Use instead
 
-    Remove the comment; `linkwright check --select LW001 --fix FILE` does.
+    Remove the comment; `linkwright check --select LW001 --fix FILE` does this.
     """
 
     code = "LW001"
@@ -37,7 +37,7 @@ class UnknownSuppression(Rule):
 
     ## Why
 
-    It suppresses nothing, so the finding it was written for is still reported.
+    It suppresses nothing, so the finding that it was written for is still reported.
 
     ## Example
 
@@ -51,7 +51,7 @@ class UnknownSuppression(Rule):
     <!-- linkwright: ignore limit-inverted -->
     ```
 
-    A code (`LW201`), the beginning of one (`LW2`) and the name of a rule will do.
+    A code (`LW201`), the beginning of a code (`LW2`) and the name of a rule are valid.
     """
 
     code = "LW002"

@@ -1,4 +1,4 @@
-"""Expressions in xacro files: deprecated functions, constant conditions, arguments that nothing declares."""
+"""Rules about xacro expressions: deprecated functions, constant conditions, undeclared arguments."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class DeprecatedFunction(XacroRule):
 
     ## Why
 
-    `load_yaml`, `abs_filename`, `dotify`, `sorted` and `range` have moved into the groups `xacro` and `python`. By
-    their bare names every expansion warns, and a coming xacro may not know them. A file that calls the function by both
-    names chooses between them, for older releases.
+    `load_yaml`, `abs_filename`, `dotify`, `sorted` and `range` have moved into the groups `xacro` and `python`. With
+    their bare names, every expansion warns, and a future xacro may not know them. A file that calls the function by
+    both names chooses between them to support older releases, and is not reported.
 
     ## Example
 
@@ -76,7 +76,7 @@ class DeprecatedFunction(XacroRule):
 
 
 def _is_called_by(name: str, file: FileFacts) -> bool:
-    """Return whether a file calls a function of a group, by its full name."""
+    """Return whether a file calls a function of a group by its full name."""
     return file.document.source is not None and f"{name}(" in file.document.source.text
 
 
@@ -85,8 +85,8 @@ class ConstantCondition(XacroRule):
 
     ## Why
 
-    The content is always there or never. A constant condition is left from a trial, and hides the structure of the
-    robot.
+    The content is either always included or never. A constant condition is usually left from a trial, and hides the
+    structure of the robot.
 
     ## Example
 
@@ -124,11 +124,11 @@ class ConstantCondition(XacroRule):
 
 
 class UndeclaredArgument(XacroRule):
-    """An argument is used, in a branch that was not taken, and nothing declares it.
+    """An undeclared argument is used in a branch that was not taken.
 
     ## Why
 
-    The expansion fails as soon as the branch is taken. Pedantic: the argument may be meant to be given always.
+    The expansion fails as soon as the branch is taken. Pedantic: callers may be expected to always set the argument.
 
     ## Example
 

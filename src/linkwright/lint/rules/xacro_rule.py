@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class XacroRule(Rule, ABC):
-    """A rule about the xacro files of a description; it has nothing to say of plain URDF."""
+    """The base of rules about the xacro files of a description; they report nothing in plain URDF."""
 
     holds_for_libraries = True
     of_sources = True

@@ -1,4 +1,4 @@
-"""Tags of xacro: prefixes, namespaces, includes, packages and recursion."""
+"""Rules about xacro tags: prefixes, namespaces, includes, packages and recursion."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ class XacroPrefixMissing(Rule):
 
     ## Why
 
-    Without the prefix it is an ordinary element, which comes out as it is and which readers of URDF ignore. Until ROS
-    Melodic xacro accepted such tags, and old descriptions have them.
+    Without the prefix, the tag is an ordinary element, which xacro copies unchanged and URDF readers ignore. Up to ROS
+    Melodic, xacro accepted such tags, and old descriptions contain them.
 
     ## Example
 
@@ -94,7 +94,7 @@ class XacroPrefixMissing(Rule):
 
 
 def _macro_names(documents: Iterable[Iterable[Element]]) -> set[str]:
-    """The names of all macros among the elements of some documents, those of elements of URDF left out."""
+    """Return the names of all macros among the elements of some documents, except names of URDF elements."""
     macros = (
         element.attributes.get("name", "")
         for elements in documents
@@ -109,13 +109,12 @@ def _elements_of(rule: ElementRule) -> set[str]:
 
 
 class XacroNamespaceMissing(XacroRule):
-    """A xacro file does not declare the namespace of xacro.
+    """A xacro file does not declare the xacro namespace.
 
     ## Why
 
-    Without `xmlns:xacro` on its root a file is plain URDF for every tool that does not use the extension of its name:
-    it is not expanded, and its expressions are read as names and numbers. ROS's xacro expands it all the same.
-    Pedantic.
+    Without `xmlns:xacro` on its root, a file is plain URDF for every tool that does not look at the file extension: it
+    is not expanded, and its expressions are read as names and numbers. ROS's xacro still expands it. Pedantic.
 
     ## Example
 
@@ -142,7 +141,7 @@ class XacroNamespaceMissing(XacroRule):
         if "xmlns:xacro" in root.attributes or not file.uses:
             return
         if any(_NEEDED.get(element.tag) for element in _described(root)):
-            return  # the prefix is missing too, and that was said
+            return  # the prefix is missing, too, which is reported already
         message = phrase("this file has xacro expressions but does not declare the prefix 'xacro'")
         fix = add_attribute(root, "xmlns:xacro", ADDRESS)
         yield self.report(
@@ -154,11 +153,11 @@ class XacroNamespaceMissing(XacroRule):
 
 
 class XacroNamespaceAddress(Rule):
-    """The prefix ``xacro`` is declared with another URI than that of ROS.
+    """The prefix ``xacro`` is declared with a URI other than the ROS one.
 
     ## Why
 
-    xacro uses only the prefix and accepts any address, but editors that check the file use the address. Pedantic.
+    xacro uses only the prefix and accepts any URI, but editors that check the file use the URI. Pedantic.
 
     ## Example
 
@@ -195,11 +194,11 @@ class XacroNamespaceAddress(Rule):
 
 
 class IncludeAbsolutePath(XacroRule):
-    """An include names its file by an absolute path.
+    """An include uses an absolute path.
 
     ## Why
 
-    The path exists on one machine. On every other one, in a container and after the build the expansion fails.
+    The path exists on one machine only. On any other machine, in a container, and after the build, the expansion fails.
 
     ## Example
 
@@ -213,7 +212,7 @@ class IncludeAbsolutePath(XacroRule):
     <xacro:include filename="$(find my_robot)/urdf/wheel.xacro"/>
     ```
 
-    or, for a file beside the including one, `filename="wheel.xacro"`.
+    or, for a file in the same folder, `filename="wheel.xacro"`.
     """
 
     code = "LW723"
@@ -230,12 +229,12 @@ class IncludeAbsolutePath(XacroRule):
 
 
 class IncludeOutsidePackage(XacroRule):
-    """An include names its file by a path that leaves the package.
+    """An include uses a path that leaves the package.
 
     ## Why
 
     The path works in the sources, where the packages are side by side. When installed, each package has its own folder,
-    and the path leads nowhere.
+    and the path does not exist.
 
     ## Example
 
@@ -280,9 +279,9 @@ class UndeclaredPackage(Rule):
 
     ## Why
 
-    rosdep and colcon know of dependencies from `package.xml` alone: on a fresh machine the package is not installed,
-    and the expansion fails. Where a condition stands around every use, the package may be an extra, and the finding is
-    an information. A package that depends on this one itself cannot be declared and is left out.
+    rosdep and colcon know dependencies only from `package.xml`: on a fresh machine, the package is not installed, and
+    the expansion fails. If every use is inside a condition, the package may be optional, and the finding is an
+    information. A package that itself depends on this one cannot be declared, and is not reported.
 
     ## Example
 
@@ -341,7 +340,7 @@ class RecursiveMacro(XacroRule):
 
     ## Why
 
-    Once called, it never ends, and xacro gives up when the calls are nested too deeply.
+    Once called, the macro never ends, and xacro fails when the calls are nested too deeply.
 
     ## Example
 
@@ -383,11 +382,11 @@ class RecursiveMacro(XacroRule):
 
 
 class IncludeOfItself(XacroRule):
-    """A file includes itself, directly or through others.
+    """A file includes itself, directly or through other files.
 
     ## Why
 
-    xacro has no guard against it: without a condition that ends it, the expansion goes in circles until the calls are
+    xacro has no guard against this: without a condition that ends it, the expansion repeats until the includes are
     nested too deeply.
 
     ## Example
@@ -399,7 +398,7 @@ class IncludeOfItself(XacroRule):
 
     ## Use instead
 
-    Move what both files need into a third one, which includes neither.
+    Move the shared definitions into a third file, which includes neither of the others.
     """
 
     code = "LW726"
@@ -416,11 +415,11 @@ class IncludeOfItself(XacroRule):
 
 
 class MacroDefinedTwice(XacroRule):
-    """A macro is defined again in the same file, with another body.
+    """A macro is defined again in the same file with a different body.
 
     ## Why
 
-    The second definition silently replaces the first. Calls before it and calls after it make different elements.
+    The second definition silently replaces the first. Calls before and after it produce different elements.
 
     ## Example
 
@@ -431,7 +430,7 @@ class MacroDefinedTwice(XacroRule):
 
     ## Use instead
 
-    Give the macros two names, or remove the one that is not meant.
+    Give the macros different names, or remove the unintended one.
     """
 
     code = "LW727"
@@ -464,7 +463,7 @@ def _unconditional_call(macro: Definition, file: FileFacts) -> Definition | None
 
 
 def _described(root: Element) -> Iterator[Element]:
-    """The elements of a description, those of simulators and plugins left out."""
+    """Yield the elements of a description, except those of simulators and plugins."""
     waiting = [root]
     while waiting:
         element = waiting.pop()

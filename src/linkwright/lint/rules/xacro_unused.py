@@ -1,8 +1,8 @@
 """Rules about unused definitions in xacro files.
 
 A name counts as used if any file of the description, or any other description file of the package, mentions it
-anywhere; if names may be composed from values, the rules do not apply. They never report files that only have
-definitions for others to include.
+anywhere. If names may be composed from values, the rules do not apply. They never report files that only contain
+definitions for other files to include.
 """
 
 from __future__ import annotations
@@ -39,13 +39,14 @@ class UnusedProperty(XacroRule):
 
     ## Why
 
-    A user who changes its value expects the robot to change. Often the place that should use it has a literal number.
+    A user who changes the value expects the robot to change. Often, the place that should use the property contains a
+    literal number.
 
-    Only properties of the checked file and those inside macros are checked: a file of properties for several robots
-    has more than one of them needs. Not reported are mathematical constants, such as `PI`, and a property that is
-    evaluated at once, with `lazy_eval="false"`, and calls `xacro.fatal`, `error`, `warning` or `message`. For one of a
-    table of dimensions, such as `d415_cam_depth_px` beside `d415_cam_depth_py` and `d415_cam_depth_pz`, which are used,
-    the finding is an information: the table is complete.
+    Only properties of the checked file and properties inside macros are checked: a file of properties for several
+    robots contains more than each robot needs. Mathematical constants, such as `PI`, are not reported, nor is a
+    property that is evaluated immediately, with `lazy_eval="false"`, and calls `xacro.fatal`, `error`, `warning` or
+    `message`. For a property from a table of dimensions, such as `d415_cam_depth_px` next to `d415_cam_depth_py` and
+    `d415_cam_depth_pz`, which are used, the finding is an information, because the table is kept complete.
 
     ## Example
 
@@ -93,7 +94,7 @@ class UnusedArgument(XacroRule):
 
     ## Why
 
-    Whoever gives it a value, on the command line or in a launch file, waits in vain for something to change.
+    A user who sets it, on the command line or in a launch file, sees no change.
 
     ## Example
 
@@ -137,10 +138,10 @@ class UnusedMacro(XacroRule):
 
     ## Why
 
-    Its content is missing in the robot. Either the call was forgotten, or the macro is left from an earlier version.
+    Its content is missing from the robot. Either the call was forgotten, or the macro is left from an earlier version.
 
-    The rule only checks macros of the checked file, and only if it makes a robot itself: files of macros for others
-    offer a choice.
+    The rule only checks macros of the checked file, and only if that file describes a robot: libraries of macros
+    contain more than each robot needs.
 
     ## Example
 
@@ -185,7 +186,7 @@ class UnusedInclude(XacroRule):
     ## Why
 
     The file neither adds anything to the robot nor defines anything that the description uses. Every expansion reads
-    it, and readers look in it for its purpose.
+    it, and readers of the description look for its purpose.
 
     ## Example
 
@@ -227,8 +228,8 @@ class UnusedMacroParameter(XacroRule):
 
     ## Why
 
-    Every call has to give it a value, and no value makes a difference. A parameter that is meant for a macro called
-    inside has to be passed on. Usually it is left from an earlier version, which is harmless.
+    Every call must set it, but its value has no effect. If the parameter is meant for a macro that is called inside, it
+    must be passed on. Usually, it is left from an earlier version, which is harmless.
 
     ## Example
 
@@ -254,14 +255,14 @@ class UnusedMacroParameter(XacroRule):
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.calls_open:
-            return  # macros that are called by a value of their name must all take the same parameters
+            return  # macros that are called by a computed name must all accept the same parameters
         shared = _shared_parameters(facts)
         for file in facts.own.values():
             if file.has_bare_tags:
                 continue
             for macro in file.macros:
                 if next(macro.element.elements(), None) is None:
-                    continue  # an empty one that others of its name replace
+                    continue  # an empty macro that others with the same name replace
                 yield from (each for name, each in self._of_macro(macro, file, facts) if name not in shared)
 
     def _of_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[tuple[str, Diagnostic]]:
@@ -272,11 +273,11 @@ class UnusedMacroParameter(XacroRule):
         for parameter in file.parameters(macro.element):
             name = parameter.name.lstrip("*")
             if parameter.forward:
-                continue  # no call has to give it
+                continue  # a call need not pass it
             if parameter.is_block:
                 is_used = name in blocks or (calls_others and any(name in file.blocks for file in facts.files.values()))
             else:
-                # What a macro calls sees the properties of the macro, so a name that is used elsewhere may be this one.
+                # A called macro sees the properties of its caller, so a name that is used elsewhere may be this one.
                 is_used = name in used or is_open or (calls_others and (name in facts.names or facts.is_open))
                 is_used = is_used or (bool(blocks) and name in facts.names)
             if name and not is_used and name.isidentifier():
@@ -291,7 +292,7 @@ class UnusedMacroParameter(XacroRule):
 
 
 def _shared_parameters(facts: XacroFacts) -> set[str]:
-    """The parameters that several macros take: these are their convention, whoever needs them."""
+    """Return the parameters that several macros share by convention, whether or not each uses them."""
     taken = Counter(
         name
         for file in facts.files.values()
@@ -302,7 +303,7 @@ def _shared_parameters(facts: XacroFacts) -> set[str]:
 
 
 def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], bool]:
-    """Names and blocks that a macro's body mentions, and whether it may mention others."""
+    """Return the names and blocks that a macro's body mentions, and whether it may mention others."""
     names: set[str] = set()
     is_open = False
     for use in (*file.uses_by_macro.get(id(macro), ()), *file.uses_of_parameters.get(id(macro), ())):
@@ -320,13 +321,16 @@ def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], b
 
 
 def _speaks(element: Element) -> bool:
-    """Return whether a property is evaluated where it is defined and tells the user something then."""
+    """Return whether a property is evaluated where it is defined and then shows a message to the user."""
     lazy = element.attributes.get("lazy_eval", "true").strip() not in ("false", "False", "0")
     return (not lazy or "scope" in element.attributes) and bool(_SPEAKING.search(element.attributes.get("value", "")))
 
 
 def _is_of_table(definition: Definition, file: FileFacts, used: frozenset[str]) -> bool:
-    """Whether a property is one of several in a file whose names differ in the last word, most of which are used."""
+    """Return whether a property belongs to a table of properties, most of which are used.
+
+    The names in such a table, in one file, differ only in the last word.
+    """
     table, _, _ = definition.name.rpartition("_")
     if "_" not in table or misspelling_of(definition.name, used) is not None:
         return False
@@ -337,7 +341,7 @@ def _is_of_table(definition: Definition, file: FileFacts, used: frozenset[str]) 
 
 
 def _is_mathematics(value: str) -> bool:
-    """Return whether a value is pi, a part or multiple of it, or a factor between degrees and radians."""
+    """Return whether a value is pi, a fraction or multiple of it, or a degree-radian conversion factor."""
     if re.fullmatch(r"\$\{[\s\d.*/()-]*\bpi\b[\s\d.*/()-]*\}", value.strip()):
         return True
     try:
@@ -364,7 +368,7 @@ def _hint(name: str, used: frozenset[str], form: str = "${...}") -> Phrase:
 
 
 def _included_paths(facts: XacroFacts) -> dict[int, Path]:
-    """Yield each include with a simple file name, and the file that was read for it."""
+    """Return the file that was read for each include with a simple file name, by the include's identity."""
     found: dict[int, Path] = {}
     by_name: dict[str, list[Path]] = {}
     for path in facts.files:
@@ -379,7 +383,7 @@ def _included_paths(facts: XacroFacts) -> dict[int, Path]:
 
 
 def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
-    """Return whether a comment calls a macro of an included file, which its author can so switch on again."""
+    """Return whether a comment contains a call of an included file's macro, which its author can enable."""
     defined = {macro.name for macro in facts.files[path].macros} if path in facts.files else set()
     texts = (file.document.source.text for file in facts.own.values() if file.document.source is not None)
     comments = (comment for text in texts for comment in _COMMENT.findall(text))
@@ -387,9 +391,9 @@ def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
 
 
 def _contributes(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
-    """Return whether a file, or one that it includes, puts anything into the robot or defines anything used outside.
+    """Return whether a file or its includes add anything to the robot or define anything used outside.
 
-    An empty file is one to be filled, and left alone.
+    An empty file is still to be written, and counts as contributing.
     """
     inside: dict[Path, FileFacts] = {}
     waiting = [path]

@@ -22,8 +22,8 @@ class LiteralChangesType(XacroRule):
 
     ## Why
 
-    xacro makes numbers and truth values of the values of properties and parameters that look like ones: `007` becomes 7
-    and `true` becomes True. In a sum that is wanted; in the name of a link it is not.
+    xacro converts the values of properties and parameters that look like numbers or truth values: `007` becomes 7 and
+    `true` becomes True. This is useful in a sum, but not in the name of a link.
 
     ## Example
 
@@ -37,7 +37,8 @@ class LiteralChangesType(XacroRule):
     <xacro:wheel id="'01'"/>
     ```
 
-    Quotes keep the value of a parameter as it is. The value of a property needs two pairs: `value="''01''"`.
+    Quotes protect the value of a parameter from conversion. The value of a property needs two pairs of quotes:
+    `value="''01''"`.
     """
 
     code = "LW710"
@@ -90,7 +91,7 @@ class LiteralChangesType(XacroRule):
 
 
 class PropertyDefinedTwice(XacroRule):
-    """A property gets another value before anything used the first one.
+    """A property is redefined before anything has used its first value.
 
     ## Why
 
@@ -106,7 +107,7 @@ class PropertyDefinedTwice(XacroRule):
 
     ## Use instead
 
-    Keep one of the definitions. Where the first is meant as a default, write it last, with `default`:
+    Keep one of the definitions. If the first is meant as a default, write it last, with `default`:
 
     ```xml
     <xacro:property name="wheel_radius" default="0.06"/>
@@ -148,7 +149,7 @@ class PropertyDefinedTwice(XacroRule):
                 return False
         between = [
             call for call in (*file.calls, *file.includes) if first.order < call.order < second.order
-        ]  # what they hold may use it
+        ]  # their content may use it
         return not between or not (facts.is_open or name in facts.names)
 
 
@@ -157,8 +158,9 @@ class ShadowedProperty(XacroRule):
 
     ## Why
 
-    Inside the macro the name has another meaning than outside, and a macro that is called there sees the inner one:
-    scopes in xacro follow the calls. Pedantic: parameters often have the name of the property that is passed to them.
+    Inside the macro, the name has a different meaning than outside, and a macro that is called there sees the inner
+    one, because scopes in xacro are dynamic. Pedantic: parameters often have the name of the property that is passed to
+    them.
 
     ## Example
 
@@ -217,8 +219,8 @@ class ParameterHidesGlobal(XacroRule):
 
     ## Why
 
-    Inside the macro the name no longer means the constant or function, and expressions with it give wrong numbers
-    without any error. Pedantic: xacro warns of calls of the macro anyway.
+    Inside the macro, the name no longer refers to the constant or function, and expressions with it give wrong numbers
+    without any error. Pedantic: xacro already warns about calls of the macro.
 
     ## Example
 
@@ -257,7 +259,7 @@ class ParameterHidesGlobal(XacroRule):
 
 
 def _changes(value: str) -> bool:
-    """Return whether the literal rule changes what is written for a value."""
+    """Return whether the conversion of literals changes the text that is written for a value."""
     return "$" not in value and "'" not in value and str(literal(value)) != value
 
 
@@ -266,7 +268,10 @@ def _kind(value: object) -> Phrase:
 
 
 def _use_in_name(name: str, facts: XacroFacts, macro: Element | None) -> tuple[Element, str] | None:
-    """Where ``${name}`` becomes part of an attribute that holds a name: inside a macro, or outside all that hide it."""
+    """Return a place where ``${name}`` becomes part of a name in an attribute, or None.
+
+    The place is inside the macro, or outside all macros that hide the name.
+    """
     for file in facts.files.values():
         for use in file.uses:
             if use.attribute not in _NAMES or use.element.tag.startswith("xacro:") or name not in use.found.names:
