@@ -1,4 +1,4 @@
-"""The current package finder, for code that cannot be handed one, such as a launch file."""
+"""The current package finder, for code that cannot receive one as an argument, such as a launch file."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ _active: ContextVar[PackageFinder | None] = ContextVar("linkwright_package_finde
 
 
 def current_finder() -> PackageFinder:
-    """The finder of the innermost `use_finder`, else a new one that starts from the current folder."""
+    """Return the finder of the innermost `use_finder`, or a new one that starts in the current folder."""
     return _active.get() or PackageFinder()
 
 
 def active_finder() -> PackageFinder | None:
-    """The finder of the innermost `use_finder`, if there is one."""
+    """Return the finder of the innermost `use_finder`, or None if there is none."""
     return _active.get()
 
 

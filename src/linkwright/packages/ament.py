@@ -1,9 +1,9 @@
 """Installed packages: the ament resource index and colcon's ``install`` folders.
 
-An ament package at a prefix has the marker ``share/ament_index/resource_index/packages/NAME`` and keeps its
-files in ``share/NAME``. colcon lays a workspace's ``install`` folder out either as one prefix for all
-(``--merge-install``) or as one prefix for each package. With ``--symlink-install`` the files in ``share`` are
-links to the sources; paths are returned as they are written in ``share``, never resolved, as in ROS.
+An ament package at a prefix has the marker ``share/ament_index/resource_index/packages/NAME`` and keeps its files
+in ``share/NAME``. colcon creates a workspace's ``install`` folder either as one prefix for all packages
+(``--merge-install``) or with one prefix for each package. With ``--symlink-install`` the files in ``share`` are
+links to the sources; the returned paths are those in ``share``, with links unresolved, as in ROS.
 """
 
 from __future__ import annotations
@@ -25,30 +25,30 @@ _COLCON_LAYOUT = ".colcon_install_layout"
 
 
 def install_prefix(share: Path) -> Path:
-    """The prefix of a package: the folder that holds its ``share/NAME``, or its source folder."""
+    """Return the prefix of a package: the folder that contains its ``share/NAME``, or its source folder."""
     return share.parents[1] if is_installed(share) else share
 
 
 def is_installed(share: Path) -> bool:
-    """Whether a share folder belongs to an installed package, not to a source tree."""
+    """Return whether a share folder belongs to an installed package, not to a source tree."""
     return share.parent.name == "share"
 
 
 def environment_prefixes(environment: Mapping[str, str]) -> list[Path]:
-    """The prefixes that ``AMENT_PREFIX_PATH`` names, in its order."""
+    """Return the prefixes in ``AMENT_PREFIX_PATH``, in its order."""
     return [Path(entry) for entry in environment.get(PREFIX_PATH, "").split(os.pathsep) if entry]
 
 
 def is_share_of_prefix(folder: Path) -> bool:
-    """Whether a folder is the ``share`` of a prefix: it is called so and holds an ament resource index."""
+    """Return whether a folder is the ``share`` of a prefix, by its name and an ament resource index."""
     return folder.name == "share" and (folder.parent / _MARKERS).is_dir()
 
 
 def share_in_prefix(prefix: Path, name: str) -> Path | None:
-    """The share folder of a package in one prefix, or None.
+    """Return the share folder of a package in one prefix, or None.
 
-    A ``package.xml`` in the share folder is enough where the index marker was forgotten, a frequent slip in
-    hand-written ``setup.py`` files.
+    A ``package.xml`` in the share folder suffices if the index marker was forgotten, a frequent mistake in hand-written
+    ``setup.py`` files.
     """
     share = prefix / "share" / name
     if (prefix / _MARKERS / name).is_file() or (share / MANIFEST).is_file():
@@ -57,7 +57,7 @@ def share_in_prefix(prefix: Path, name: str) -> Path | None:
 
 
 def packages_in_prefix(prefix: Path) -> Iterator[tuple[str, Path]]:
-    """Name and share folder of every package in one prefix, by name."""
+    """Yield the name and share folder of every package in one prefix, by name."""
     names = set(_entries(prefix / _MARKERS))
     share = prefix / "share"
     names.update(name for name in _entries(share) if (share / name / MANIFEST).is_file())
@@ -66,17 +66,17 @@ def packages_in_prefix(prefix: Path) -> Iterator[tuple[str, Path]]:
 
 
 def is_colcon_install(folder: Path) -> bool:
-    """Whether a folder named ``install`` was written by colcon."""
+    """Return whether a folder named ``install`` was created by colcon."""
     return (folder / _COLCON_LAYOUT).is_file() or (folder / "local_setup.sh").is_file()
 
 
 def share_in_install(install: Path, name: str) -> Path | None:
-    """The share folder of a package in a colcon install folder of either layout, or None."""
+    """Return the share folder of a package in a colcon install folder of either layout, or None."""
     return share_in_prefix(install / name, name) or share_in_prefix(install, name)
 
 
 def packages_in_install(install: Path) -> Iterator[tuple[str, Path]]:
-    """Name and share folder of every package in a colcon install folder of either layout."""
+    """Yield the name and share folder of every package in a colcon install folder of either layout."""
     yield from packages_in_prefix(install)
     for entry in _entries(install):
         share = share_in_prefix(install / entry, entry)

@@ -1,4 +1,4 @@
-"""The functions of ``ament_index_python.packages``, answered by the current package finder."""
+"""The functions of ``ament_index_python.packages``, implemented with the current package finder."""
 
 from __future__ import annotations
 
@@ -9,32 +9,32 @@ from linkwright.packages.ament import install_prefix
 
 
 def get_package_share_path(package_name: str, print_warning: bool = True) -> Path:  # noqa: ARG001 - as in ament
-    """The share folder of a package.
+    """Return the share folder of a package.
 
     Raises:
-        PackageNotFoundError: PKG101, there is no such package.
+        PackageNotFoundError: PKG101 if there is no such package.
     """
     return current_finder().share(package_name)
 
 
 def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:  # noqa: ARG001 - as in ament
-    """The share folder of a package, as text.
+    """Return the share folder of a package as a string.
 
     Raises:
-        PackageNotFoundError: PKG101, there is no such package.
+        PackageNotFoundError: PKG101 if there is no such package.
     """
     return str(current_finder().share(package_name))
 
 
 def get_package_prefix(package_name: str) -> str:
-    """The install prefix of a package.
+    """Return the install prefix of a package.
 
     Raises:
-        PackageNotFoundError: PKG101, there is no such package.
+        PackageNotFoundError: PKG101 if there is no such package.
     """
     return str(install_prefix(current_finder().share(package_name)))
 
 
 def get_packages_with_prefixes() -> dict[str, str]:
-    """All packages: name -> install prefix."""
+    """Return the install prefixes of all packages, by name."""
     return {name: str(install_prefix(share)) for name, share in current_finder().packages().items()}

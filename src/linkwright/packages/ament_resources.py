@@ -1,7 +1,7 @@
-"""The resource index of ament: what installed packages have registered (``ament_index_python.resources``).
+"""The ament resource index, in which packages register resources (``ament_index_python.resources``).
 
-Packages in their sources count as registered under the type ``packages``. Only their build knows their other
-resources.
+Packages in their sources count as registered under the type ``packages``. Their other resources are known only when
+they are built.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ _SEPARATORS = ("/", "\\")
 
 
 class InvalidResourceTypeNameError(Exception):
-    """The name of a type of resources is empty, or a path."""
+    """Raised when the name of a resource type is empty or a path."""
 
 
 class InvalidResourceNameError(Exception):
-    """The name of a resource is empty, or a path."""
+    """Raised when the name of a resource is empty or a path."""
 
 
 def get_search_paths() -> list[str]:
-    """The prefixes that resources are looked for in, in their order.
+    """Return the prefixes in which resources are searched, in order.
 
     Raises:
-        LookupError: there are none.
+        LookupError: if there are none.
     """
     prefixes = [str(prefix) for prefix in _prefixes() if prefix.is_dir()]
     if not prefixes:
@@ -38,13 +38,13 @@ def get_search_paths() -> list[str]:
 
 
 def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
-    """The content of a resource, and the prefix that it is in.
+    """Return the content of a resource and its prefix.
 
     Raises:
-        LookupError: there is no such resource.
-        OSError: it cannot be read.
-        InvalidResourceTypeNameError: a type that cannot be.
-        InvalidResourceNameError: a name that cannot be.
+        LookupError: if there is no such resource.
+        OSError: if the resource cannot be read.
+        InvalidResourceTypeNameError: if the type is invalid.
+        InvalidResourceNameError: if the name is invalid.
     """
     prefix = _found(resource_type, resource_name)
     if prefix is None:
@@ -54,21 +54,21 @@ def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
 
 
 def has_resource(resource_type: str, resource_name: str) -> str | bool:
-    """The prefix that a resource is in, or False.
+    """Return the prefix that contains a resource, or False if there is no such resource.
 
     Raises:
-        InvalidResourceTypeNameError: a type that cannot be.
-        InvalidResourceNameError: a name that cannot be.
+        InvalidResourceTypeNameError: if the type is invalid.
+        InvalidResourceNameError: if the name is invalid.
     """
     prefix = _found(resource_type, resource_name)
     return False if prefix is None else str(prefix)
 
 
 def get_resources(resource_type: str) -> dict[str, str]:
-    """The resources of a type: name -> prefix.
+    """Return the resources of a type: name -> prefix.
 
     Raises:
-        InvalidResourceTypeNameError: a type that cannot be.
+        InvalidResourceTypeNameError: if the type is invalid.
     """
     _check_type(resource_type)
     found: dict[str, str] = {}
@@ -82,7 +82,7 @@ def get_resources(resource_type: str) -> dict[str, str]:
 
 
 def get_resource_types() -> set[str]:
-    """The types of all resources."""
+    """Return the types of all resources."""
     types = {_PACKAGES} if current_finder().packages() else set()
     for prefix in _prefixes():
         types.update(entry.name for entry in (prefix / INDEX).glob("*") if entry.is_dir())
@@ -105,7 +105,7 @@ def _check_type(kind: str) -> None:
 
 
 def _prefixes() -> list[Path]:
-    """The prefixes of the environment, and those of installed packages that are not sourced."""
+    """Return the prefixes of the environment, and those of installed packages that are not sourced."""
     shares = current_finder().packages().values()
     unsourced = (install_prefix(share) for share in shares if is_installed(share))
     return list(dict.fromkeys([*environment_prefixes(os.environ), *unsourced]))

@@ -1,4 +1,4 @@
-"""Finding packages: in the environment, colcon workspaces, source trees, and among those shipped with Linkwright."""
+"""The package finder, for the environment, colcon workspaces, source trees and shipped packages."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ START_VARIABLE = "LINKWRIGHT_START"
 
 
 class PackageNotFoundError(LinkwrightError, KeyError):
-    """No package of that name is in any place (PKG101).
+    """Raised when no package with a name is found in any place (PKG101).
 
-    It is a KeyError too, like the exception of the same name in ``ament_index_python``, so that launch files
-    that catch the latter continue to work.
+    It is also a KeyError, like the exception with the same name in ``ament_index_python``, so that launch files that
+    catch that exception continue to work.
 
     Args:
-        searched: the places.
-        meant: the hint at a package that may be meant.
+        searched: the places that were searched.
+        meant: the hint that names the package that may be meant.
 
     Attributes:
-        name: the package that was looked for.
-        is_slip: whether it is the misspelt name of a package that there is.
+        name: the name that was searched for.
+        is_slip: whether it is the misspelt name of an existing package.
     """
 
     def __init__(self, name: str, searched: Sequence[str], meant: Phrase | None, *, is_slip: bool) -> None:
@@ -50,9 +50,9 @@ class PackageNotFoundError(LinkwrightError, KeyError):
 
 
 class PackageFinder:
-    """Finds ROS packages in the usual layouts of ROS workspaces.
+    """A finder for ROS packages in the usual layouts of ROS workspaces.
 
-    The places, in the order of the search:
+    The places are searched in this order:
 
     1. `extra`, given by the caller;
     2. the prefixes of ``AMENT_PREFIX_PATH`` (a sourced ROS or workspace);
@@ -61,17 +61,16 @@ class PackageFinder:
     4. source trees: the package that contains a start folder and its sibling packages, the packages below
        a start folder, and those below ``src`` of the folders above it;
     5. the packages shipped with Linkwright;
-    6. our substitutes for packages of ROS that launch files include, see `linkwright.packages.share_layout`.
+    6. our substitutes for ROS packages that launch files include; see `linkwright.packages.share_layout`.
 
-    Nothing is read from the disk before it is needed, and a search through source trees stops where it meets
-    the package.
+    Nothing is read from disk before it is needed, and a search through source trees stops at the package.
 
     Args:
-        start: the user's folder, or several folders in order of preference; by default the current folder, and
-            then those that `START_VARIABLE` names.
-        environment: the variables to read ``AMENT_PREFIX_PATH`` from; the process's by default.
-        extra: package name -> share folder, before everything else.
-        sources_first: whether sources come before the files that an earlier build installed of them.
+        start: the user's folder, or several folders in order of preference; by default, the current folder, followed by
+            those in `START_VARIABLE`.
+        environment: the environment variables with ``AMENT_PREFIX_PATH``; by default, those of the process.
+        extra: package name -> share folder, searched first.
+        sources_first: whether sources take precedence over the files that an earlier build installed from them.
     """
 
     def __init__(
@@ -96,7 +95,7 @@ class PackageFinder:
         self._offered: str | None = None
 
     def starting_at(self, start: Sequence[Path]) -> PackageFinder:
-        """Return a finder for another place, which shares this one's searches of source trees."""
+        """Return a finder that starts in other folders and shares this finder's searches of source trees."""
         finder = PackageFinder(
             start=start, environment=self._environment, extra=self._extra, sources_first=self._sources_first
         )
@@ -105,11 +104,11 @@ class PackageFinder:
 
     @property
     def starts(self) -> tuple[Path, ...]:
-        """Where the search begins."""
+        """The folders where the search starts."""
         return self._starts
 
     def find(self, name: str) -> Path | None:
-        """The share folder of a package, or None; if it is not installed, see `share_of_sources`."""
+        """Return the share folder of a package, or None; for uninstalled packages, see `share_of_sources`."""
         share = self._known.get(name)
         if share is None:
             share = next((place for place in self._places(name) if place is not None), None)
@@ -118,12 +117,12 @@ class PackageFinder:
         return share
 
     def find_in_sources(self, name: str) -> Path | None:
-        """Return the share folder that the sources of a package make, whatever an earlier build installed of it."""
+        """Return the share folder for the sources of a package, ignoring files of an earlier build."""
         found = (_share_of(name, self._scan(root).find(name)) for root in self._source_roots())
         return next(filter(None, found), None)
 
     def share(self, name: str) -> Path:
-        """The share folder of a package; if it is not installed, see `share_of_sources`.
+        """Return the share folder of a package; for uninstalled packages, see `share_of_sources`.
 
         Raises:
             PackageNotFoundError: PKG101, with the places that were searched and the nearest names.
@@ -137,29 +136,32 @@ class PackageFinder:
         return share
 
     def packages(self) -> dict[str, Path]:
-        """All packages: name -> share folder, or source folder; of two with one name the one that `find` returns."""
+        """Return all packages, as a mapping from name to share folder or source folder.
+
+        If several packages have the same name, the mapping contains the one that `find` returns.
+        """
         found = dict(self._extra)
         for name, share in self._all():
             found.setdefault(name, share)
         return found
 
     def resolve(self, address: str, relative_to: Path | None = None) -> Path:
-        """The file that an address in a description or launch file means; it need not exist.
+        """Return the path for a URI or path in a description or launch file; it need not exist.
 
         Args:
             address: ``package://NAME/PATH``, ``file:///PATH`` or a plain path.
-            relative_to: the folder that a relative plain path starts from; the current folder by default.
+            relative_to: the folder that a relative path starts from; by default, the current folder.
 
         Raises:
-            LinkwrightError: PKG101 for an unknown package, PKG102 for an address of another form.
+            LinkwrightError: PKG101 for an unknown package, PKG102 for a URI of another form.
         """
         return uri.resolve(address, self.share, relative_to)
 
     def offer_prefix_path(self, environment: MutableMapping[str, str]) -> None:
         """Set ``AMENT_PREFIX_PATH`` for programs that read it, unless a workspace is sourced.
 
-        It names the prefixes that sourcing the workspaces would set; before a build, the folder that a build would
-        install to. This finder ignores the variable until a program changes it.
+        It contains the prefixes that sourcing the workspaces would set or, before a build, the folder to which a build
+        would install. This finder ignores the variable until a program changes it.
         """
         if environment.get(ament.PREFIX_PATH):
             return
@@ -173,7 +175,10 @@ class PackageFinder:
         return ament.environment_prefixes(self._environment)
 
     def forget(self) -> None:
-        """Read the disk again at the next search; packages may have appeared, disappeared or moved."""
+        """Drop all cached results, so that the next search reads the disk again.
+
+        Packages may have appeared, disappeared or moved.
+        """
         self._known.clear()
         self._meant.clear()
         self._scans.clear()
@@ -264,7 +269,7 @@ class PackageFinder:
     # --- the text of the error -------------------------------------------------------------------------------
 
     def _nearest(self, name: str) -> tuple[Phrase | None, bool]:
-        """The hint at a package with a name like this one, and whether this one is that name misspelt."""
+        """Return a hint on a package with a similar name, and whether this name is a misspelling of that name."""
         ours = self._shipped()
         known = [package for package in self.packages() if package not in ours or is_misspelt(name, [package])]
         return did_you_mean(name, known), is_misspelt(name, known)
@@ -298,7 +303,7 @@ class PackageFinder:
 
 
 def shipped_folder() -> Path | None:
-    """The folder of the packages shipped with us: in the wheel, or in the repository of an editable install."""
+    """Return the folder of the shipped packages, in the wheel or in the repository of an editable install."""
     package = Path(__file__).parents[1]
     for folder in (package / "robots", package.parents[1] / "robots"):
         if folder.is_dir():
@@ -311,5 +316,5 @@ def _share_of(name: str, folder: Path | None) -> Path | None:
 
 
 def _absolute(path: str | Path) -> Path:
-    """An absolute path with its links kept: share folders are full of them."""
+    """Return an absolute path with unresolved links, which are common in share folders."""
     return Path(os.path.abspath(path))  # noqa: PTH100 - Path.resolve would follow the links

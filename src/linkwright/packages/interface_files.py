@@ -8,14 +8,14 @@ _ENDINGS = {"msg": (".msg", ".idl"), "srv": (".srv", ".idl"), "action": (".actio
 
 
 def interface_files(share: Path, kind: str) -> dict[str, Path]:
-    """The interfaces of one kind that a package defines.
+    """Return the files of the interfaces of one kind that a package defines.
 
     Args:
         share: the package's share folder, or its source folder.
         kind: ``msg``, ``srv`` or ``action``.
 
     Returns:
-        Name -> file. An installed package has each interface also as IDL made from it: that one is left out.
+        Name -> file. An installed package also contains a generated IDL file for each interface, which is left out.
     """
     found: dict[str, Path] = {}
     for ending in _ENDINGS[kind]:
@@ -25,7 +25,7 @@ def interface_files(share: Path, kind: str) -> dict[str, Path]:
 
 
 def interface_file(share: Path, kind: str, name: str) -> Path | None:
-    """The file that defines one interface of a package, or None."""
+    """Return the file that defines one interface of a package, or None."""
     for ending in _ENDINGS[kind]:
         path = share / kind / (name + ending)
         if path.is_file():

@@ -1,4 +1,4 @@
-"""Which files of a package are launch files."""
+"""The launch files of a package."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ _BUILT = ("build", "install", "log")
 
 
 def is_launch_file_name(name: str) -> bool:
-    """Whether a file is called as launch files are (``ros2launch.api.is_launch_file``)."""
+    """Return whether a file is named like a launch file (``ros2launch.api.is_launch_file``)."""
     return name.endswith(_ENDINGS)
 
 
 def launch_files_below(folder: Path) -> list[Path]:
-    """The launch files in a folder and a few levels of folders below, those of a folder by name.
+    """Return the launch files in a folder and a few levels below it, sorted by name in each folder.
 
-    Hidden folders are left out, and those that colcon builds into. A file that the share folder of a package has in two
-    places, where its sources have it and where it is installed (see `share_layout`), comes once.
+    Hidden folders and the build folders of colcon are left out. If the share folder of a package contains a file twice,
+    at its path in the sources and at its installed path (see `share_layout`), it is returned once.
     """
     found: dict[str, Path] = {}
     for path in _below(folder, _DEPTH):

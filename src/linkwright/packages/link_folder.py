@@ -20,17 +20,17 @@ _KEPT_SECONDS = 7 * 24 * 3600.0
 
 
 def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> Path:
-    """A folder with links to the sources of a package and to its installed files at their installed paths.
+    """Return a folder with links to a package's sources and to its installed files at installed paths.
 
-    Each content gets a folder of its own, which other processes use too.
+    Each different content has its own folder, which other processes use, too.
 
     Args:
-        name: the package, and the folder's name.
-        folder: its source folder.
-        moved: the files that are elsewhere than in the sources, by their paths in the share folder.
+        name: the name of the package, which is also the folder's name.
+        folder: the source folder of the package.
+        moved: the files whose installed paths differ from those in the sources, by their paths in the share folder.
 
     Raises:
-        OSError: it cannot be made.
+        OSError: if the folder cannot be created.
     """
     links: dict[str, str | Path] = {}
     tops = {path.partition("/")[0] for path in moved}
@@ -63,7 +63,7 @@ def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> 
                 target.write_text(link, encoding="utf-8")
             else:
                 target.symlink_to(link)
-        with suppress(OSError):  # another process was faster
+        with suppress(OSError):  # another process has created it already
             new_folder.rename(share.parent)
     finally:
         shutil.rmtree(new_folder, ignore_errors=True)

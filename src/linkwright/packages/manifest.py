@@ -1,4 +1,4 @@
-"""``package.xml``: the file that makes a folder a ROS package (REP 149), and the search for it, as colcon does it."""
+"""``package.xml``, the file that makes a folder a ROS package (REP 149), and its search as in colcon."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _NAME = lazy_pattern(r"<package\b[^>]*>.*?<name>\s*([^<\s]+)\s*</name>", re.DOTA
 
 
 def package_name(folder: Path) -> str | None:
-    """The name in a folder's ``package.xml``; None if there is no such file or no name in it.
+    """Return the name in a folder's ``package.xml``; None if the file or a name in it is missing.
 
-    The text is searched, not parsed: one broken manifest must not stop a search through a whole workspace,
-    and a search reads many of them.
+    The text is searched, not parsed: a broken manifest must not stop the search through a whole workspace, and a search
+    reads many manifests.
     """
     try:
         text = (folder / MANIFEST).read_text(encoding="utf-8", errors="replace")
@@ -31,7 +31,10 @@ def package_name(folder: Path) -> str | None:
 
 
 def enclosing_package(path: Path) -> tuple[str, Path] | None:
-    """Name and folder of the package that contains a file or folder: the nearest ``package.xml`` upwards."""
+    """Return the name and folder of the package that contains a file or folder.
+
+    It has the nearest ``package.xml`` upwards.
+    """
     for folder in (path, *path.parents):
         name = package_name(folder)
         if name is not None:
@@ -49,15 +52,15 @@ MAXIMUM_FOLDERS = 3000
 class SourceScan:
     """A breadth-first search for packages below one folder that proceeds only on demand.
 
-    Folders nearer to the root come first and siblings in the order of their names. A folder with a
-    ``package.xml`` is a package and is not searched further; hidden folders, build products and folders with
-    an ignore marker are left out. The search ends `MAXIMUM_DEPTH` folders down or after `MAXIMUM_FOLDERS`
-    folders, so that a start in a home folder does not walk the whole disk.
+    Folders nearer to the root come first, and siblings are sorted by name. A folder with a ``package.xml`` is a package
+    and is not searched further; hidden folders, build products and folders with an ignore marker are left out. The
+    search ends `MAXIMUM_DEPTH` folders down or after `MAXIMUM_FOLDERS` folders, so that a search that starts in a home
+    folder does not read the whole disk.
 
     Attributes:
-        root: where the search starts.
-        truncated: whether the search ended at a bound with folders left.
-        unnamed: folders with a ``package.xml`` that names no package.
+        root: the folder where the search starts.
+        truncated: whether the search reached a limit before it had visited all folders.
+        unnamed: the folders with a ``package.xml`` that names no package.
     """
 
     def __init__(self, root: Path) -> None:
@@ -68,7 +71,7 @@ class SourceScan:
         self._steps: Iterator[tuple[str, Path]] | None = self._walk()
 
     def find(self, name: str) -> Path | None:
-        """The folder of a package, or None; the search stops as soon as the package is found."""
+        """Return the folder of a package, or None; the search stops as soon as the package is found."""
         if name in self._found:
             return self._found[name]
         while self._advance():
@@ -77,7 +80,7 @@ class SourceScan:
         return None
 
     def packages(self) -> dict[str, Path]:
-        """All packages below the root: name -> folder. Of two with the same name the one found first."""
+        """Return all packages below the root, by name; of two with the same name, the first one found."""
         while self._advance():
             pass
         return dict(self._found)
@@ -119,7 +122,7 @@ class SourceScan:
 
 
 def _listing(folder: str) -> tuple[set[str], list[str]]:
-    """Names of the files in a folder, and of the folders in it that are worth a search, sorted."""
+    """Return the names of the files in a folder, and the sorted names of the subfolders worth searching."""
     files: set[str] = set()
     folders: list[str] = []
     try:
@@ -138,7 +141,7 @@ def _listing(folder: str) -> tuple[set[str], list[str]]:
 
 
 def _links_upwards(entry: os.DirEntry[str]) -> bool:
-    """Whether a folder is a link to one of its parents: following it would never end."""
+    """Return whether a folder is a link to one of its parents, so that following it would never end."""
     if not entry.is_symlink():
         return False
     link = Path(entry.path)

@@ -1,7 +1,7 @@
-"""Rules for the names and addresses in a package: the limits of the build tools, and the advice of REP 144.
+"""Rules for names and e-mail addresses in a package: limits of build tools, and advice of REP 144.
 
-Errors are names that would break a build later (a folder that Python cannot import, a project that CMake refuses, an
-e-mail address for which colcon drops the package's environment hooks). Departures from REP 144 are warnings.
+Errors are names that would break a build later (a folder that Python cannot import, a project that CMake refuses,
+an e-mail address for which colcon drops the package's environment hooks). Deviations from REP 144 are warnings.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase, quoted,
 from linkwright.loading.lean_patterns import lazy_pattern
 
 _IDENTIFIER = lazy_pattern(r"[A-Za-z][A-Za-z0-9_]*")
-# A name as catkin_pkg accepts it, for the sake of old packages.
+# A name that catkin_pkg accepts, including names of old packages.
 _ACCEPTED = lazy_pattern(r"[A-Za-z0-9][A-Za-z0-9_-]*")
 _DEPENDENCY = lazy_pattern(r"[A-Za-z0-9][A-Za-z0-9_.+-]*")
 # An address that catkin_pkg, which colcon uses, accepts: ASCII, with a top-level domain of two or more letters.
@@ -21,7 +21,7 @@ _EMAIL = lazy_pattern(r"[\w%+-]+(\.[\w%+-]+)*@[\w%-]+(\.[\w%-]+)*\.[A-Za-z]{2,}"
 
 
 def check_package_name(name: str) -> list[Diagnostic]:
-    """The findings on the name of a package; errors first (PKG201), or advice (PKG202)."""
+    """Return the findings on the name of a package: errors (PKG201), or else advice (PKG202)."""
     if not _IDENTIFIER.fullmatch(name):
         message = phrase("'{name}' cannot be the name of a package: {problem}", name=name, problem=_broken_rule(name))
         return [Diagnostic("PKG201", message, hint=_suggestion(name))]
@@ -32,14 +32,14 @@ def check_package_name(name: str) -> list[Diagnostic]:
 
 
 def departure_from_rep(name: str) -> Diagnostic:
-    """Return the advice (PKG202) on a name that does not follow REP 144, with the rule that it breaks."""
+    """Return the advice (PKG202) on a name that does not follow REP 144, naming the violated rule."""
     advice = _departure(name) or _broken_rule(name)
     message = phrase("package name '{name}' does not follow REP 144: {advice}", name=name, advice=advice)
     return Diagnostic("PKG202", message, severity=Severity.WARNING, hint=_suggestion(name))
 
 
 def check_member_name(name: str, what: str) -> list[Diagnostic]:
-    """The findings on the name of a node or library (PKG203); `what` is "node" or "library"."""
+    """Return the findings on the name of a node or library (PKG203); `what` is "node" or "library"."""
     if _IDENTIFIER.fullmatch(name) and not keyword.iskeyword(name):
         return []
     problem = phrase("it is a Python keyword") if keyword.iskeyword(name) else _broken_rule(name)
@@ -53,7 +53,7 @@ def check_member_name(name: str, what: str) -> list[Diagnostic]:
 
 
 def check_dependency(name: str) -> list[Diagnostic]:
-    """The findings on the name of a package or system key that is depended on (PKG204)."""
+    """Return the findings on the name of a package or system key in a dependency (PKG204)."""
     if _DEPENDENCY.fullmatch(name):
         return []
     message = phrase("'{name}' cannot be the name of a dependency", name=name)
@@ -61,7 +61,7 @@ def check_dependency(name: str) -> list[Diagnostic]:
 
 
 def check_email(address: str) -> list[Diagnostic]:
-    """The findings on a maintainer's e-mail address (PKG205)."""
+    """Return the findings on a maintainer's e-mail address (PKG205)."""
     if is_email(address):
         return []
     message = phrase("'{address}' is not an e-mail address that colcon accepts", address=address)
@@ -69,12 +69,12 @@ def check_email(address: str) -> list[Diagnostic]:
 
 
 def is_accepted_name(name: str) -> bool:
-    """Whether colcon builds a package of this name, even against the advice of REP 144."""
+    """Return whether colcon builds a package with this name, even against the advice of REP 144."""
     return _ACCEPTED.fullmatch(name) is not None
 
 
 def is_email(address: str) -> bool:
-    """Whether colcon takes this for an e-mail address."""
+    """Return whether colcon accepts a text as an e-mail address."""
     return _EMAIL.fullmatch(address) is not None
 
 

@@ -1,15 +1,16 @@
-"""The share folder of a package that is not built, laid out as its build would do it; and our substitutes.
+"""The share folder of an unbuilt package, with the layout of its build, and our substitutes.
 
-Most packages keep their files in the sources as they install them, and their source folder serves as the share folder.
-Some do not: ``install(DIRECTORY description/urdf DESTINATION share/${PROJECT_NAME})``, ``glob('cfg/*')`` to ``config``.
-For these a folder of links is made in the user's cache, with the installed files at their installed paths and
-everything else of the sources. So a user of the share folder, a launch file with ``os.path.join`` too, finds
-the files that would exist after a build. Files that need compiling are ours if we have them.
+In most packages, the installed files have the same paths in the sources, so their source folder serves as the share
+folder. Some packages differ: ``install(DIRECTORY description/urdf DESTINATION share/${PROJECT_NAME})``, or
+``glob('cfg/*')`` to ``config``. For these, a folder of links is created in the user's cache, with the installed
+files at their installed paths and everything else from the sources. A user of the share folder, including a launch
+file with ``os.path.join``, then finds the files that would exist after a build. Files that require compilation are
+replaced by ours if they exist.
 
-Our substitutes for packages of ROS that launch files include, such as those of Gazebo and nav2.
+Our substitutes replace ROS packages that launch files include, such as those of Gazebo and nav2.
 
-They have the launch files of those packages and the files that these need, and start nodes of ours. They are found
-through the entry points ``linkwright.package_substitutes``: each has the name of a package, and points to a module
+They contain the launch files of those packages and the files that these need, and start our nodes. They are found
+through the entry points ``linkwright.package_substitutes``: each is named after a package and points to a module
 whose folder is a prefix with that package, ``share/NAME``. A package that is replaced only by modules, messages or
 nodes, such as rclpy, std_msgs and robot_state_publisher, has a share folder that does not exist.
 """
@@ -35,7 +36,7 @@ _IN_PART = Path(__file__).parent / "substitutes"
 
 
 def substituted_share(name: str) -> Path | None:
-    """The share folder of our substitute for a package of ROS; None if there is none."""
+    """Return the share folder of our substitute for a ROS package; None if there is none."""
     share = _share_with_files(name)
     if share is None and name in _known_in_part():
         return _IN_PART / "share" / name
@@ -43,7 +44,7 @@ def substituted_share(name: str) -> Path | None:
 
 
 def substitutes() -> Iterator[tuple[str, Path]]:
-    """Name and share folder of every substitute that has files, by name."""
+    """Yield the name and share folder of every substitute that has files, by name."""
     for name in sorted(extensions(_GROUP)):
         share = _share_with_files(name)
         if share is not None:
@@ -64,38 +65,41 @@ def _share_with_files(name: str) -> Path | None:
 
 @cache
 def substituted_executables() -> dict[str, frozenset[str]]:
-    """Return the packages that are replaced in part, by modules, messages or nodes, with the executables that are."""
+    """Return the partly replaced packages, each with the executables that we replace.
+
+    The replacements are modules, messages or nodes.
+    """
     lines = Path(__file__).with_name("substituted_names.txt").read_text(encoding="utf-8").splitlines()
     return {package: frozenset(executables) for package, *executables in map(str.split, lines)}
 
 
 @cache
 def _known_in_part() -> frozenset[str]:
-    """The packages that are replaced in part by us, or by the nodes of other installed packages."""
+    """Return the packages that are partly replaced by us or by nodes of other installed packages."""
     nodes = (name for group in ("linkwright.nodes", "linkwright.components") for name in extensions(group))
     return frozenset({*substituted_executables(), *(name.partition("/")[0] for name in nodes)})
 
 
 def is_substitute(share: Path) -> bool:
-    """Whether a share folder is our substitute for a missing package of ROS, such as gazebo_ros.
+    """Return whether a share folder is our substitute for a missing ROS package, such as gazebo_ros.
 
-    It has the launch files that others include, but not the rest of that package.
+    It contains the launch files that others include, but not the rest of that package.
     """
     return install_prefix(share) == _IN_PART or share == _share_with_files(share.name)
 
 
 def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
-    """The files of ours that unbuilt sources of a package lack: path in the share folder -> file.
+    """Return our files that unbuilt sources of a package lack, by path in the share folder.
 
-    A launch file that a build makes, such as ros_gz_sim's ``gz_sim.launch.py``, names programs of that build; ours
-    starts our nodes. Files in the sources take precedence: the names of their nodes lead to ours, and the user may
+    A launch file that a build generates, such as ros_gz_sim's ``gz_sim.launch.py``, names programs of that build, while
+    ours starts our nodes. Files in the sources take precedence: the names of their nodes lead to ours, and the user may
     have edited them.
 
     Args:
         name: the package.
-        folder: its source folder.
+        folder: the source folder of the package.
     """
-    text = _text_with_targets(folder)  # before the entry points, which take longer to read
+    text = _text_with_targets(folder)  # checked before the entry points, which take longer to read
     share = None if text is None else _share_with_files(name)
     if text is None or share is None or not _compiles(folder, text):
         return {}
@@ -122,7 +126,7 @@ def _text_with_targets(folder: Path) -> str | None:
 
 
 def _compiles(folder: Path, text: str) -> bool:
-    """Whether a package with this CMakeLists.txt has to be compiled."""
+    """Return whether a package with this CMakeLists.txt must be compiled."""
     from linkwright.diagnostics import SourceText
     from linkwright.packages.readers.cmake import read_cmake
 
@@ -133,15 +137,16 @@ _MARK = os.path.join("", "linkwright", SHARES, "")  # noqa: PTH118 - a part of t
 
 
 def share_of_sources(name: str, folder: Path) -> Path:
-    """The share folder of a package in its sources: the source folder, or a folder of links into it.
+    """Return the share folder of an unbuilt package: its source folder, or a folder of links to it.
 
-    Where the links cannot be made (a full disk, Windows without the right to make links) it is the source folder too.
+    If the links cannot be created (a full disk, Windows without the permission to create links), it is also the source
+    folder.
 
     Args:
         name: the package.
-        folder: its source folder.
+        folder: the source folder of the package.
     """
-    if _MARK in str(folder):  # it is one already: that of a launch file which was found here
+    if _MARK in str(folder):  # it is a folder of links already, of a launch file that was found here
         return folder
     moved = {path: file for path, file in _shared(name, folder) if path != file.source}
     moved |= substituted_files(name, folder)
@@ -156,12 +161,15 @@ def share_of_sources(name: str, folder: Path) -> Path:
 
 
 def source_of(path: str) -> str:
-    """The file of a package that a file in such a folder of links represents; any other path as it is."""
+    """Return the package file that a file in a folder of links represents; any other path unchanged."""
     return os.path.realpath(path) if _MARK in path else path
 
 
 def _shared(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
-    """The files that a package installs into its share folder, by path. Some with an unchanged path are left out."""
+    """Yield the files that a package installs into its share folder, by path.
+
+    Some files with an unchanged path are left out.
+    """
     share = f"share/{name}/"
     with suppress(OSError, ValueError):
         for file in _installed(folder, share):
@@ -170,7 +178,10 @@ def _shared(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
 
 
 def _is_own(source: str) -> bool:
-    """Whether a file is in the package. A page is not shown files that an untrusted package takes from elsewhere."""
+    """Return whether a file is in the package.
+
+    A page must not show files that an untrusted package takes from other places.
+    """
     path = Path(os.path.normpath(source))
     return not path.is_absolute() and path.parts[:1] != (os.pardir,)
 
@@ -192,6 +203,6 @@ def _installed(folder: Path, share: str) -> Iterator[InstalledFile]:
         from linkwright.packages.readers.cmake import read_cmake
 
         cmake = read_cmake(source, folder)
-        hooks = set(cmake.hooks)  # they are read where a build is sourced
+        hooks = set(cmake.hooks)  # hooks are read when a build is sourced
         yield from (file for file in cmake.moved(folder, share) if file.destination not in hooks)
         return

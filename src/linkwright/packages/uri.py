@@ -1,4 +1,4 @@
-"""Resolving ``package://`` and ``file://`` URIs and the plain paths of descriptions."""
+"""Resolution of ``package://`` and ``file://`` URIs and of plain paths in descriptions."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _SCHEME = lazy_pattern(r"([A-Za-z][A-Za-z0-9+.-]+):")
 
 
 def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None) -> Path:
-    """The path that an address means, with `share` to ask for a package's share folder.
+    """Return the path for a URI or path, calling `share` for a package's share folder.
 
     Raises:
-        LinkwrightError: an error of `share`, or PKG102 for an address that has none of the three forms.
+        LinkwrightError: an error of `share`, or PKG102 for a URI that has none of the three forms.
     """
     if not address.strip():
         raise _bad_uri(phrase("'{uri}' is empty where the path of a file is expected", uri=address))
@@ -61,12 +61,12 @@ def _file_path(address: str, rest: str) -> Path:
 
 
 def absolute_path(rest: str, *, with_drives: bool = os.name == "nt") -> str | None:
-    """The path in an address, None if it is not absolute.
+    """Return the path in a ``file:`` URI; None if it is not absolute.
 
     Args:
-        rest: the address without ``file:``.
-        with_drives: whether paths begin with the letter of a drive, as on Windows: ``///C:/robots``, as
-            `pathlib.Path.as_uri` writes it, and ``//C:/robots``, which results from ``file://$(find PACKAGE)`` there.
+        rest: the URI without ``file:``.
+        with_drives: whether paths begin with a drive letter, as on Windows: ``///C:/robots``, as `pathlib.Path.as_uri`
+            writes it, and ``//C:/robots``, which results from ``file://$(find PACKAGE)`` there.
     """
     if rest.startswith("//localhost/"):
         rest = rest.removeprefix("//localhost")
@@ -87,5 +87,5 @@ def _decoded(text: str) -> str:
 
 
 def _bad_uri(problem: Phrase, hint: Phrase | None = None) -> LinkwrightError:
-    """The error for a resource address that cannot be understood (PKG102)."""
+    """Return the error for an invalid resource URI (PKG102)."""
     return LinkwrightError(Diagnostic("PKG102", problem, hint=hint))

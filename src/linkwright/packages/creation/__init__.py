@@ -1,1 +1,1 @@
-"""Making new packages."""
+"""Creation of new packages."""

@@ -1,4 +1,4 @@
-"""Texts of the files of a new package that CMake builds."""
+"""Texts of the files of a new package that is built with CMake."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ endif()
 
 
 def ament_cmake_lists(request: PackageRequest) -> str:
-    """``CMakeLists.txt`` of an ament_cmake package."""
+    """Return the ``CMakeLists.txt`` of an ament_cmake package."""
     library, node = request.library_name, request.node
     tools = ["ament_cmake", "ament_cmake_ros"] if library else ["ament_cmake"]
     parts = [_head(request), _find([*tools, *request.dependencies])]
@@ -66,7 +66,7 @@ def ament_cmake_lists(request: PackageRequest) -> str:
 
 
 def plain_cmake_lists(request: PackageRequest) -> str:
-    """``CMakeLists.txt`` of a package that knows nothing of ament."""
+    """Return the ``CMakeLists.txt`` of a package that does not use ament."""
     library, node = request.library_name, request.node
     parts = [_head(request, version=True)]
     parts.append(_find(request.dependencies) if request.dependencies else f"\n{_NO_DEPENDENCIES}")
@@ -93,7 +93,7 @@ def plain_cmake_lists(request: PackageRequest) -> str:
 
 
 def config(request: PackageRequest) -> str:
-    """``<name>Config.cmake.in``: the file that ``find_package`` of another project reads."""
+    """Return ``<name>Config.cmake.in``, which ``find_package`` of other projects reads."""
     lines = [
         f"# Found by find_package({request.name}). It defines",
         f"#   {request.name}_INCLUDE_DIRS: folders with headers",
@@ -111,7 +111,7 @@ def config(request: PackageRequest) -> str:
 
 
 def config_version() -> str:
-    """``<name>ConfigVersion.cmake.in``: whether this version is the requested one."""
+    """Return ``<name>ConfigVersion.cmake.in``, which checks that this version is the requested one."""
     return """\
 set(PACKAGE_VERSION "@PROJECT_VERSION@")
 
@@ -127,7 +127,7 @@ endif()
 
 
 def node_cpp(request: PackageRequest) -> str:
-    """The source of the executable."""
+    """Return the source of the executable."""
     return f"""\
 #include <iostream>
 
@@ -140,7 +140,7 @@ int main()
 
 
 def library_hpp(request: PackageRequest) -> str:
-    """The header of the library."""
+    """Return the header of the library."""
     guard = f"{request.name}__{request.library_name}_HPP_".upper()
     name = _class_name(request)
     return f"""\
@@ -167,7 +167,7 @@ public:
 
 
 def library_cpp(request: PackageRequest) -> str:
-    """The source of the library."""
+    """Return the source of the library."""
     name = _class_name(request)
     return f"""\
 #include "{request.name}/{request.library_name}.hpp"
@@ -188,7 +188,7 @@ namespace {request.name}
 
 
 def visibility_control(request: PackageRequest) -> str:
-    """The header with the macros that make a symbol visible outside a shared library."""
+    """Return the header with the macros that make a symbol visible outside a shared library."""
     name = request.name.upper()
     guard = f"{name}__VISIBILITY_CONTROL_H_"
     return f"""\

@@ -1,6 +1,7 @@
-"""New packages, laid out as ``ros2 pkg create`` (ROS 2 Humble) lays them out.
+"""Creation of new packages with the layout of ``ros2 pkg create`` (ROS 2 Humble).
 
-A request is checked, turned into a list of steps (folders and files with their texts), and the steps are carried out.
+A request is checked and turned into a list of steps (folders and files with their texts). Then the steps are
+carried out.
 """
 
 from __future__ import annotations
@@ -30,14 +31,14 @@ from linkwright.packages.naming import check_dependency, check_email, check_memb
 
 @dataclass(frozen=True)
 class Folder:
-    """A folder to make, relative to the package's folder."""
+    """A folder to create, relative to the package's folder."""
 
     path: Path
 
 
 @dataclass(frozen=True)
 class File:
-    """A file to write, relative to the package's folder; one that is not announced is written silently."""
+    """A file to write, relative to the package's folder; it is written silently if it is not announced."""
 
     path: Path
     text: str
@@ -46,7 +47,7 @@ class File:
 
 @dataclass(frozen=True)
 class Remark:
-    """A line of the report between the steps."""
+    """A line of the report that is printed between the steps."""
 
     text: str
 
@@ -55,7 +56,7 @@ Step = Folder | File | Remark
 
 
 def create_package(request: PackageRequest, report: Callable[[str], None]) -> list[Diagnostic]:
-    """Make the package's folder and files.
+    """Create the folder and the files of a new package.
 
     Args:
         request: the package to create.
@@ -65,8 +66,8 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
         Warnings: about the name, the licence, and a node that was renamed.
 
     Raises:
-        LinkwrightError: PKG201 to PKG206 when the request cannot be met (nothing is written then), PKG207 when the
-            folder exists, PKG208 when the disk refuses.
+        LinkwrightError: PKG201 to PKG206 if the request cannot be fulfilled (then nothing is written), PKG207 if the
+            folder exists, PKG208 if a file cannot be written.
     """
     findings = check_request(request)
     if has_errors(findings):
@@ -83,7 +84,7 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
             _carry_out(step, package, report)
     except OSError as error:
         if is_created:
-            shutil.rmtree(package, ignore_errors=True)  # half a package would be in the way of the next attempt
+            shutil.rmtree(package, ignore_errors=True)  # an incomplete package would block the next attempt
         where = shown(Path(error.filename)) if error.filename else shown(package)
         message = phrase("cannot create '{where}': {strerror}", where=where, strerror=foreign(error.strerror or error))
         hint = phrase("choose a folder that you may write to: --destination-directory FOLDER")
@@ -92,7 +93,7 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
 
 
 def check_request(request: PackageRequest) -> list[Diagnostic]:
-    """Everything that is wrong with a request, and advice."""
+    """Return all errors and advice about a request."""
     findings = check_package_name(request.name)
     if request.build_type == "ament_python" and request.name == "test":
         message = phrase(
@@ -143,7 +144,7 @@ def _check_license(identifier: str) -> list[Diagnostic]:
 
 
 def summary(request: PackageRequest) -> Iterator[str]:
-    """The lines that announce the new package."""
+    """Yield the lines that announce the new package."""
     yield "going to create a new package"
     yield f"package name: {request.name}"
     yield f"destination directory: {request.destination.resolve()}"
@@ -161,7 +162,7 @@ def summary(request: PackageRequest) -> Iterator[str]:
 
 
 def steps(request: PackageRequest) -> Iterator[Step]:
-    """The files and folders to create in the package's folder, in the order of ``ros2 pkg create``."""
+    """Yield the files and folders to create in the package's folder, in the order of ``ros2 pkg create``."""
     yield File(Path("package.xml"), package_templates.manifest(request))
     if request.build_type == "ament_python":
         yield from _python_steps(request)
@@ -173,7 +174,7 @@ def steps(request: PackageRequest) -> Iterator[Step]:
 
 
 def shown(path: Path) -> str:
-    """A path as ros2 prints it: below the current folder it begins with a dot."""
+    """Format a path as ros2 prints it: below the current folder, it begins with a dot."""
     return str(path) if path.is_absolute() or path.parts[:1] == ("..",) else f"./{path}"
 
 

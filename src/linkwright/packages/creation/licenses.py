@@ -1,4 +1,4 @@
-"""Licences by their SPDX identifiers, with the texts that go into a new package's ``LICENSE``."""
+"""Licences by SPDX identifier, with the texts for a new package's ``LICENSE``."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ _TEXTS = Path(__file__).with_name("license_texts")
 
 
 def known_licenses() -> list[str]:
-    """The identifiers whose texts are at hand, in alphabetical order."""
+    """Return the identifiers of the licences whose texts are available, in alphabetical order."""
     return sorted(path.name.removesuffix(".txt") for path in _TEXTS.glob("*.txt"))
 
 
 def license_text(identifier: str, *, year: int, holder: str) -> str | None:
-    """The text of a licence with its copyright line filled in, or None when the identifier is not known.
+    """Return the text of a licence with its copyright line filled in; None for an unknown identifier.
 
-    The Lesser GPL is a set of permissions on top of the GPL, so its text is followed by that one.
+    The Lesser GPL is a set of additional permissions to the GPL, so its text is followed by that of the GPL.
     """
     if identifier not in known_licenses():
         return None

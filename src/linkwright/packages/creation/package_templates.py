@@ -1,4 +1,4 @@
-"""Texts of the files of a new package that Python or every build type needs."""
+"""Texts of the files of a new package that Python packages or all build types need."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_pep257():
 
 
 def manifest(request: PackageRequest) -> str:
-    """``package.xml``."""
+    """Return the text of ``package.xml``."""
     schema = _SCHEMA.format(format=request.package_format)
     maintainer = request.maintainer
     lines = [
@@ -82,7 +82,7 @@ def manifest(request: PackageRequest) -> str:
 
 
 def setup_py(request: PackageRequest) -> str:
-    """``setup.py``."""
+    """Return the text of ``setup.py``."""
     scripts = f"            '{request.node} = {request.name}.{request.node}:main',\n" if request.node else ""
     return f"""\
 from setuptools import find_packages, setup
@@ -113,18 +113,18 @@ setup(
 
 
 def setup_cfg(request: PackageRequest) -> str:
-    """``setup.cfg``: executables go where ``ros2 run`` looks for them."""
+    """Return the text of ``setup.cfg``, which installs executables where ``ros2 run`` looks for them."""
     scripts = f"$base/lib/{request.name}"
     return f"[develop]\nscript_dir={scripts}\n[install]\ninstall_scripts={scripts}\n"
 
 
 def linter_test(linter: str) -> str:
-    """A test that runs one of ament's linters over the package."""
+    """Return a test that runs one of ament's linters on the package."""
     return _LINTER_BODIES[linter]
 
 
 def node_py(request: PackageRequest) -> str:
-    """The module of the executable."""
+    """Return the source of the executable's module."""
     return f"""\
 def main():
     print('Hello from {request.name}.')

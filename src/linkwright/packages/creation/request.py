@@ -30,12 +30,12 @@ class PackageRequest:
     """The package to create.
 
     Attributes:
-        destination: the folder in which the package's own folder is made, as the user wrote it.
-        license: an SPDX identifier, or any other words; only for a known identifier is a ``LICENSE`` written.
+        destination: the folder in which the package's folder is created, as the user wrote it.
+        license: an SPDX identifier or any other text; a ``LICENSE`` is written only for a known identifier.
         dependencies: names for ``<depend>``.
-        node_name: an executable to begin with, or None.
-        library_name: a library to begin with, or None.
-        year: for the copyright line of the ``LICENSE``.
+        node_name: the name of an initial executable, or None.
+        library_name: the name of an initial library, or None.
+        year: the year in the copyright line of the ``LICENSE``.
     """
 
     name: str
@@ -52,7 +52,7 @@ class PackageRequest:
 
     @property
     def node(self) -> str | None:
-        """The executable's name; it gives way when the library has the same one, since both become a target."""
+        """The executable's name, with a suffix if the library has the same name, since both become targets."""
         if self.node_name is not None and self.node_name == self.library_name:
             return f"{self.node_name}_node"
         return self.node_name

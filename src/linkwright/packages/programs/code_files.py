@@ -1,4 +1,4 @@
-"""Whose program a file of code is."""
+"""The owner of a code file: Linkwright, the user, or an installed library."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def is_ours(filename: str) -> bool:
 
 
 def is_users(filename: str) -> bool:
-    """Return whether a code file is the user's: neither Linkwright's nor of an installed library."""
+    """Return whether a code file is the user's, and neither Linkwright's nor an installed library's."""
     if filename.startswith("<") or is_ours(filename):
         return False
     return not filename.startswith(tuple(folder for folder in _LIBRARY if folder))

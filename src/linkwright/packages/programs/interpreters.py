@@ -1,4 +1,4 @@
-"""Which Python runs an installed script."""
+"""The Python interpreter that runs an installed script."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _ASK_SECONDS = 5.0
 
 
 def needs_our_interpreter(path: Path) -> bool:
-    """Whether a script requires another Python version than ours, for which no ROS is installed.
+    """Return whether a script requires a Python version other than ours for which no ROS is installed.
 
-    The stand-ins for ROS's modules need compiled libraries that are for one version of Python only.
+    The stand-ins for ROS's modules need compiled libraries, which exist for only one version of Python.
     """
     interpreter = _interpreter_of(path)
     if interpreter is None or _has_ros_for_python():
@@ -28,7 +28,7 @@ def needs_our_interpreter(path: Path) -> bool:
 
 
 def interpreter_words(path: Path) -> list[str]:
-    """The words of a script's first line, an interpreter and perhaps an argument; none for other files."""
+    """Return the words of a script's first line, an interpreter and optional arguments; empty otherwise."""
     try:
         with path.open("rb") as file:
             first = file.readline(512)
@@ -38,7 +38,7 @@ def interpreter_words(path: Path) -> list[str]:
 
 
 def _interpreter_of(path: Path) -> str | None:
-    """The Python that a script's first line names; None for other programs."""
+    """Return the Python interpreter in a script's first line; None for other programs."""
     words = interpreter_words(path)
     if words and Path(words[0]).name == "env":
         words = [word for word in words[1:] if not word.startswith("-")]
@@ -63,7 +63,7 @@ def _version_of(interpreter: str) -> tuple[int, ...] | None:
 
 
 def _has_ros_for_python() -> bool:
-    """Whether a prefix of the environment contains a real rclpy."""
+    """Return whether a prefix of the environment contains a real rclpy."""
     prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     patterns = ("lib/python*/site-packages/rclpy", "local/lib/python*/dist-packages/rclpy")
     return any(

@@ -1,4 +1,4 @@
-"""Where a Python module or name that cannot be imported is: its ROS package, its PyPI distribution, another module."""
+"""Hints on where a missing Python module or name is: ROS package, PyPI distribution, or other module."""
 
 from __future__ import annotations
 
@@ -79,13 +79,16 @@ _CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")
 
 
 def missing_name(error: ImportError) -> tuple[str, str] | None:
-    """Return the name that a module lacks, and the module; None if the module itself is missing."""
+    """Return the missing name and the module that lacks it; None if the module itself is missing."""
     found = _CANNOT_IMPORT.search(str(error))
     return None if found is None else (found[1], found[2])
 
 
 def where_it_is(error: ImportError) -> Phrase | None:
-    """Return the other module that has a missing name; None if the module, like real ones, does not know it."""
+    """Return a hint on other modules that define a missing name; None if this is not known.
+
+    Real modules, unlike stand-ins, do not provide this information.
+    """
     missing = missing_name(error)
     if missing is None:
         return None
@@ -104,7 +107,7 @@ def provider_hint(module: str) -> Phrase:
 
 
 def known_provider_hint(module: str) -> Phrase | None:
-    """Return the hint of `provider_hint`, or None for an unknown module."""
+    """Return the hint of `provider_hint` for a known module, or None for an unknown one."""
     top = module.partition(".")[0]
     project = _ROS_PACKAGES.get(top)
     if project is not None:

@@ -1,9 +1,8 @@
-"""The programs that a package in its sources would install, found without building it.
+"""The programs that an unbuilt package would install, found without building it.
 
 They are read from ``setup.py``, ``setup.cfg`` and ``pyproject.toml`` (entry points and scripts) and from the
-``install(PROGRAMS ...)`` of a ``CMakeLists.txt``. Nothing is run for it, with one exception: a ``setup.py`` that
-computes its entry points is run, in a process of its own with a ``setup()`` that only
-reports.
+``install(PROGRAMS ...)`` of a ``CMakeLists.txt``. Nothing is executed, with one exception: a ``setup.py`` that
+computes its entry points is run in a separate process, with a ``setup()`` that only reports them.
 """
 
 from __future__ import annotations
@@ -53,11 +52,11 @@ class SourcePrograms:
     """The programs that a source package would install to ``lib/PACKAGE``.
 
     Attributes:
-        folder: the package.
-        entry_points: by the program's name.
-        scripts: files by the program's name.
-        compiled: names of programs that have to be built first.
-        is_complete: whether it has no others; False if the files that describe its build are missing, or use
+        folder: the folder of the package.
+        entry_points: the entry points, by program name.
+        scripts: the script files, by program name.
+        compiled: the names of programs that must be built first.
+        is_complete: whether there are no other programs; False if the files that describe its build are missing, or use
             unknown commands.
     """
 
@@ -68,12 +67,12 @@ class SourcePrograms:
     is_complete: bool = True
 
     def names(self) -> list[str]:
-        """The names of all programs, built or not, sorted."""
+        """Return the sorted names of all programs, built or not."""
         return sorted({*self.entry_points, *self.scripts, *self.compiled})
 
 
 def source_programs(folder: Path) -> SourcePrograms:
-    """The programs of a source package."""
+    """Return the programs of a source package."""
     found = SourcePrograms(folder)
     found.is_complete = any((folder / name).is_file() for name in BUILD_FILES)
     _read_configurations(found)
@@ -83,7 +82,7 @@ def source_programs(folder: Path) -> SourcePrograms:
 
 
 def python_root(folder: Path, package: str) -> Path | None:
-    """The folder to import the Python modules of a source package from; None where it has none."""
+    """Return the folder from which a source package's Python modules are imported; None if it has none."""
     for candidate in (folder, folder / "src"):
         if (candidate / package / "__init__.py").is_file():
             return candidate
@@ -94,7 +93,7 @@ def python_root(folder: Path, package: str) -> Path | None:
 
 
 def module_file(root: Path, module: str) -> Path | None:
-    """The file of a module below a folder; None if there is none."""
+    """Return the file of a module below a folder; None if it does not exist."""
     path = root.joinpath(*module.split("."))
     for candidate in (path.with_name(path.name + ".py"), path / "__init__.py"):
         if candidate.is_file():
@@ -103,14 +102,14 @@ def module_file(root: Path, module: str) -> Path | None:
 
 
 def _modules(folder: Path) -> Iterator[Path]:
-    """The modules and packages in a folder that a program could import; not those for building and testing."""
+    """Yield the importable modules and packages in a folder, except those for building and testing."""
     for path in (*folder.glob("*.py"), *(path.parent for path in folder.glob("*/__init__.py"))):
         if path.stem not in NOT_FOR_PROGRAMS:
             yield path
 
 
 def _read_configurations(found: SourcePrograms) -> None:
-    """Read ``pyproject.toml`` and ``setup.cfg``."""
+    """Add the programs in ``pyproject.toml`` and ``setup.cfg``."""
     cfg = text_of(found.folder / "setup.cfg")
     for line in (*in_pyproject(text_of(found.folder / "pyproject.toml"), PROGRAMS), *in_setup_cfg(cfg, PROGRAMS)):
         _add_entry(found, line)
@@ -138,7 +137,7 @@ def _read_setup_py(found: SourcePrograms) -> None:
 
 
 def _asked(folder: Path) -> tuple[list[str], list[str]]:
-    """The entry points and scripts that a ``setup.py`` gives when it runs; none where it fails."""
+    """Return the entry points and scripts that a ``setup.py`` reports when it runs; empty if it fails."""
     try:
         done = subprocess.run(  # noqa: S603 - the user runs a program of this very package
             [sys.executable, "-c", _ASK], cwd=folder, capture_output=True, timeout=_ASK_SECONDS, check=True, text=True

@@ -1,4 +1,4 @@
-"""The environment in which a user's executable finds the packages that its launcher found."""
+"""The environment in which a user's executable finds the same packages as its launcher."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _PYTHON = "PYTHONPATH"
 
 
 def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dict[str, str]:
-    """An environment as after building the workspaces and sourcing their ``setup.bash``.
+    """Return the environment as if the workspaces were built and their ``setup.bash`` sourced.
 
     Args:
-        finder: finds the packages.
+        finder: the finder of packages.
         base: the environment to extend; its own entries stay first.
     """
     environment = dict(base)
@@ -28,7 +28,7 @@ def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dic
     folders: dict[str, None] = {}
     for name, share in finder.packages().items():
         if is_substitute(share):
-            continue  # programs that use our finder find it, and others cannot use it
+            continue  # programs with our finder find it, and others cannot use it
         prefix = install_prefix(share)
         if not is_installed(share):
             root = python_root(share, name)
@@ -43,7 +43,10 @@ def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dic
 
 
 def python_folders(prefix: Path, package: str) -> Iterator[Path]:
-    """The folders of an installed package's Python modules, links to its sources (``--symlink-install``) included."""
+    """Yield the folders of an installed package's Python modules.
+
+    They include links to its sources (``--symlink-install``).
+    """
     for pattern in ("lib/python*/site-packages", "local/lib/python*/dist-packages"):
         yield from prefix.glob(pattern)
     for hook in (prefix / "share" / package / "hook").glob("pythonpath*.dsv"):

@@ -1,6 +1,7 @@
-"""Reading the install rules of a ``CMakeLists.txt``, without CMake.
+"""Reader for the install rules of a ``CMakeLists.txt``, which works without CMake.
 
-Packages of descriptions, launch files, scripts and interfaces compile nothing; CMake only copies files for them.
+Packages of descriptions, launch files, scripts and interfaces do not compile anything; CMake only copies their
+files.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ _INDEX = "share/ament_index/resource_index"
 
 @dataclass(frozen=True, slots=True)
 class PathPattern:
-    """A ``PATTERN`` or ``REGEX`` of files and folders in a folder that is copied.
+    """A ``PATTERN`` or ``REGEX`` for the files and folders in a copied folder.
 
     Attributes:
         text: the pattern.
@@ -70,10 +71,10 @@ class PathPattern:
     is_excluded: bool
 
     def matches(self, path: str) -> bool:
-        """Whether it means a file or folder.
+        """Return whether the pattern matches a file or folder.
 
         Args:
-            path: from the package on, beginning with a slash.
+            path: the path starting from the package, beginning with a slash.
         """
         if self.is_regex:
             return bool(matched(self.text, path))
@@ -84,16 +85,16 @@ class PathPattern:
 
 @dataclass(frozen=True, slots=True)
 class CopyRule:
-    """Files or folders that are copied.
+    """An install rule that copies files or folders.
 
     Attributes:
         kind: ``FILES``, ``PROGRAMS`` or ``DIRECTORY``.
-        items: the sources, relative to the package; the content of a folder if the text ends with a slash.
-        destination: the target folder, relative to the prefix; None if that is not known.
-        renamed: the new name of the one file, if it changes.
-        patterns: of files and folders in a folder.
+        items: the sources, relative to the package; a trailing slash means the content of a folder.
+        destination: the target folder, relative to the prefix; None if it is not known.
+        renamed: the new name of a single file, if it changes.
+        patterns: the patterns for files and folders in a copied folder.
         only_matching: whether only files that match a pattern are copied.
-        is_optional: whether it may be missing.
+        is_optional: whether the sources may be missing.
     """
 
     kind: str
@@ -105,25 +106,25 @@ class CopyRule:
     is_optional: bool = False
 
     def takes(self, folder: str, inside: PurePosixPath) -> bool:
-        """Whether a file in a folder is copied.
+        """Return whether the rule copies a file in a folder.
 
         Args:
-            folder: relative to the package.
-            inside: the file, relative to the folder.
+            folder: the folder, relative to the package.
+            inside: the path of the file, relative to the folder.
         """
         if not self.patterns:
             return not self.only_matching
         return self._takes([f"/{folder.rstrip('/')}/{path}" for path in (*list(inside.parents)[:-1], inside)])
 
     def may_lack(self, item: str) -> bool:
-        """Whether the build continues without one of the items.
+        """Return whether the build continues if one of the items is missing.
 
         CMake applies the patterns first: a missing item does not count as a folder, and ``FILES_MATCHING`` skips it.
         """
         return self.is_optional or not self._takes([f"/{item.rstrip('/')}"])
 
     def _takes(self, paths: Sequence[str]) -> bool:
-        """Whether the patterns take the last of some paths, the others being those of the folders around it."""
+        """Return whether the patterns select the last of some paths; the others are its enclosing folders."""
         if any(pattern.is_excluded and pattern.matches(path) for pattern in self.patterns for path in paths):
             return False
         included = (pattern for pattern in self.patterns if not pattern.is_excluded)
@@ -132,19 +133,19 @@ class CopyRule:
 
 @dataclass
 class CMakeFile:
-    """A ``CMakeLists.txt`` with the files that it calls and includes.
+    """A ``CMakeLists.txt`` with its subdirectories and included files.
 
     Attributes:
         project: the name of the project, or None.
         copies: its copy rules.
         targets: the names of the programs that it builds or installs.
-        interfaces: the interface files that it generates code for, relative to the package.
+        interfaces: the interface files for which it generates code, relative to the package.
         modules: the Python packages and modules that it installs, folders and files relative to the package.
         hooks: the installed files that set variables where the package is used, relative to the prefix.
         compiled: its compiled targets.
-        foreign: the commands of other packages that it calls, which may install more than was read here.
-        unknown: reasons why it may install more than was read here.
-        is_ament: whether it is the one of an ament package.
+        foreign: the commands of other packages that it calls, which may install further files.
+        unknown: the reasons why it may install further files.
+        is_ament: whether it belongs to an ament package.
     """
 
     source: SourceText
@@ -163,17 +164,17 @@ class CMakeFile:
 
     @property
     def is_complete(self) -> bool:
-        """Whether this describes everything that it installs except the targets that it compiles."""
+        """Whether everything is known that the file installs, except the targets that it compiles."""
         return not self.unknown
 
     @property
     def directories(self) -> list[Argument]:
-        """The folders that it installs, relative to the package."""
+        """The folders that the file installs, relative to the package."""
         return [item for rule in self.copies if rule.kind == "DIRECTORY" for item in rule.items]
 
     @property
     def files(self) -> list[Argument]:
-        """The files that it installs."""
+        """The files that the file installs."""
         return [item for rule in self.copies if rule.kind != "DIRECTORY" for item in rule.items]
 
     @property
@@ -193,28 +194,28 @@ class CMakeFile:
 
     @property
     def executables(self) -> set[str]:
-        """The names of the programs that it installs or builds."""
+        """The names of the programs that the file installs or builds."""
         return self.targets | set(self.programs)
 
     def span(self, argument: Argument) -> Span:
-        """The place of an argument."""
+        """Return the place of an argument."""
         return argument.source.span(argument.start, argument.end)
 
     def installed(self, package: Path) -> Iterator[InstalledFile]:
-        """The copied files, one by one.
+        """Yield each copied file.
 
         Args:
             package: the package's folder.
 
         Raises:
-            FileNotFoundError: a file or folder does not exist; the exception carries its name.
+            FileNotFoundError: if a file or folder does not exist; the exception contains its name.
         """
         return self._files(package, None)
 
     def moved(self, package: Path, share: str) -> Iterator[InstalledFile]:
-        """The copied files that exist and whose path changes.
+        """Yield the existing copied files whose paths change.
 
-        A path does not change if it is the same in the package and in the share folder. This holds for most folders,
+        A path is unchanged if it is the same in the package and in the share folder. This is true for most folders,
         which then need not be read. Some files that are copied to other folders are left out, too.
 
         Args:
@@ -269,14 +270,14 @@ class CMakeFile:
                     yield file._replace(destination=str(below / inside))
 
     def _make(self, source: str, destination: str, values: dict[str, str] | None = None, content: str = "") -> None:
-        """Note a file that the build makes and installs; more content for the same file is added to it."""
+        """Record a file that the build generates and installs; repeated content is appended to the same file."""
         before = self._made.get(destination)
         text = None if values is not None else (before.content or "" if before else "") + content
         self._made[destination] = InstalledFile(source, destination, values, text)
 
 
 def _overlap(one: PurePosixPath, other: PurePosixPath) -> bool:
-    """Whether one folder is in the other."""
+    """Return whether one of two folders contains the other."""
     return one.is_relative_to(other) or other.is_relative_to(one)
 
 
@@ -284,8 +285,8 @@ def read_cmake(source: SourceText, package: Path | None = None) -> CMakeFile:
     """Read the install rules of a ``CMakeLists.txt``.
 
     Args:
-        source: the file.
-        package: the package's folder, for subdirectories, included files and patterns of files.
+        source: the text of the file.
+        package: the package's folder, to find subdirectories, included files and files that match patterns.
     """
     file = CMakeFile(source)
     program = CMakeProgram(package)
@@ -343,7 +344,7 @@ def _in_build(word: str, program: CMakeProgram) -> str:
 
 
 def _read_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
-    """Read environment hooks: copied, or made from a template whose name ends with ``.in``."""
+    """Record the environment hooks, copied or generated from a template with the suffix ``.in``."""
     for word in command.words:
         if is_open(word):
             continue
@@ -358,7 +359,7 @@ def _read_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> Non
 
 
 def _read_resource(file: CMakeFile, command: Command) -> None:
-    """An entry of the resource index, and the description of a plugin that it leads to."""
+    """Record an entry of the resource index, and the plugin description that it refers to."""
     words, project = command.words, file.project.text if file.project else ""
     if command.name == "ament_index_register_resource":
         name, content = _following(words, "PACKAGE_NAME") or project, _following(words, "CONTENT") or ""
@@ -394,7 +395,7 @@ def _install(file: CMakeFile, command: Command) -> None:
 
 
 def _add(file: CMakeFile, rule: CopyRule, command: Command) -> None:
-    """Take in a rule with the items of it that are known."""
+    """Add a rule with those of its items that are known."""
     known = tuple(
         Argument(within_package(item.text, command.folder), item.start, item.end, item.source)
         for item in rule.items
@@ -407,7 +408,7 @@ def _add(file: CMakeFile, rule: CopyRule, command: Command) -> None:
 
 
 def _following(words: Sequence[str], keyword: str) -> str | None:
-    """The word after a keyword; None if there is none."""
+    """Return the word after a keyword; None if there is none."""
     at = words.index(keyword) + 1 if keyword in words else len(words)
     return words[at] if at < len(words) else None
 

@@ -1,7 +1,7 @@
-"""The commands whose installed files are known: those of CMake and of ROS' build tools.
+"""The commands whose installed files are known: those of CMake and of ROS's build tools.
 
-A package may bring other commands, such as ``pal_register_modules`` of pal_module_cmake. Their definitions cannot be
-read here, so their installed files are not known.
+A package may define other commands, such as ``pal_register_modules`` of pal_module_cmake. Their definitions cannot
+be read here, so their installed files are not known.
 """
 
 from __future__ import annotations

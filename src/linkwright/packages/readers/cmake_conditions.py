@@ -1,4 +1,4 @@
-"""Conditions of ``if(...)`` and ``while(...)`` of CMake: true, false, or known to CMake alone."""
+"""Conditions of CMake's ``if(...)`` and ``while(...)``, which may be true, false or unknown."""
 
 from __future__ import annotations
 
@@ -29,25 +29,25 @@ _LONGEST_SEARCH = 0.2
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A word of a condition: its text with known variables filled in, and whether it is quoted."""
+    """A word of a condition: its text with known variables substituted, and whether it is quoted."""
 
     text: str
     is_quoted: bool = False
 
     @property
     def keyword(self) -> str:
-        """Its text as an operator; empty if it is quoted."""
+        """The text of the word as an operator; empty if it is quoted."""
         return "" if self.is_quoted else self.text
 
 
 @dataclass(slots=True)
 class Condition:
-    """Evaluates a condition.
+    """A condition to evaluate.
 
     Args:
         words: the words of the condition.
-        variables: those that are known; ``MATCHES`` sets ``CMAKE_MATCH_...``.
-        is_there: whether a path exists, or is a folder for ``IS_DIRECTORY``; None if that is not known.
+        variables: the known variables; ``MATCHES`` sets ``CMAKE_MATCH_...``.
+        is_there: the function that returns whether a path exists, or is a folder for ``IS_DIRECTORY``; None if unknown.
     """
 
     words: Sequence[Word]
@@ -56,7 +56,7 @@ class Condition:
     _at: int = 0
 
     def answer(self) -> bool | None:
-        """Whether it holds; None if that is not known."""
+        """Return whether the condition is true; None if it is not known."""
         if len(self.words) > _MOST_WORDS:
             return None
         answer = self._either()
@@ -158,7 +158,7 @@ class Condition:
 
 
 def matched(pattern: str, text: str) -> list[tuple[str, list[str]]] | None:
-    """The places where a regular expression of CMake matches, each with its groups; None if it is invalid here."""
+    """Return the matches of a CMake regular expression with their groups; None if Python rejects it."""
     import regex
 
     try:

@@ -1,9 +1,10 @@
-"""CMake's language as far as it decides which files a package installs: commands in the order that CMake runs them.
+"""An interpreter for the part of CMake's language that decides which files a package installs.
 
-Variables, lists, texts, loops, functions and macros of the file, subdirectories and included files are followed;
-so are patterns of files and the conditions that can be answered here. Facts that only CMake knows, such as the
-variables of ``find_package``, are not: of such a condition all branches are read, and a variable that two branches set
-differently has no value. A variable whose value is not known stays in the text as ``${...}``.
+Commands are yielded in the order in which CMake runs them. Variables, lists, texts, loops, functions and macros of
+the file, subdirectories and included files are followed. So are patterns of files and the conditions that can be
+evaluated here. Facts that only CMake knows, such as the variables of ``find_package``, are not: for such a
+condition, all branches are read, and a variable that two branches set differently has no value. A variable with an
+unknown value stays in the text as ``${...}``.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ _FOUND = {"catkin_FOUND": "0", **dict.fromkeys(("ament_cmake_FOUND", "ament_cmak
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """An argument of a command: its text with known variables put in, its offsets in a file, and that file."""
+    """An argument of a command: its text with known variables substituted, its offsets, and its file."""
 
     text: str
     start: int
@@ -67,10 +68,10 @@ class Command:
     """A command that CMake would run.
 
     Attributes:
-        name: in lower case.
-        arguments: its arguments.
+        name: the name in lower case.
+        arguments: the arguments.
         folder: the folder of its ``CMakeLists.txt``, relative to the package; empty for the package's own.
-        is_conditional: whether it is in a branch of an ``if`` whose condition is not known.
+        is_conditional: whether the command is in a branch of an ``if`` whose condition is not known.
     """
 
     name: str
@@ -80,12 +81,12 @@ class Command:
 
     @property
     def words(self) -> list[str]:
-        """The texts of its arguments."""
+        """The texts of the arguments."""
         return [argument.text for argument in self.arguments]
 
 
 class _TooMuchError(Exception):
-    """A file that would keep CMake busy for long; it carries the name of a command."""
+    """Raised when a file would keep CMake busy for too long, with the name of a command."""
 
 
 @dataclass(slots=True)
@@ -97,10 +98,11 @@ class _Routine:
 
 @dataclass(slots=True)
 class CMakeProgram:
-    """Runs a ``CMakeLists.txt`` as far as possible.
+    """An interpreter that runs a ``CMakeLists.txt`` as far as possible.
 
     Args:
-        package: the folder of the package, for subdirectories, included files and patterns; None if there is none.
+        package: the folder of the package, to find subdirectories, included files and files that match patterns; None
+            if there is none.
 
     Attributes:
         variables: name -> value; items of a list are separated by semicolons.
@@ -127,14 +129,14 @@ class CMakeProgram:
     _routines: dict[str, _Routine] = field(default_factory=dict)
     _folder: str = ""
     _conditions: int = 0
-    _around: dict[str, int] = field(default_factory=dict)  # the conditions around the blocks that are left
+    _around: dict[str, int] = field(default_factory=dict)  # the condition depth around blocks that can be left
     _leaving: str = ""
     _for_parent: dict[str, str] = field(default_factory=dict)
     _depth: int = 0
     _count: int = 0
 
     def run(self, source: SourceText) -> Iterator[Command]:
-        """The commands of a file, with those of the functions that it calls and the files that it includes."""
+        """Yield the commands of a file, including those of called functions and included files."""
         try:
             yield from self._run_file(source)
         except _TooMuchError as error:
@@ -148,7 +150,7 @@ class CMakeProgram:
 
     @contextmanager
     def _leaves(self, *commands: str) -> Iterator[None]:
-        """A block that these commands leave."""
+        """Define a block that these commands leave."""
         before = self._around
         self._around = {**before, **dict.fromkeys(commands, self._conditions)}
         try:
@@ -182,7 +184,7 @@ class CMakeProgram:
             yield from self._run_foreach(words, body)
 
     def _run_branches(self, opening: Statement, body: Sequence[Statement]) -> Iterator[Command]:
-        """The commands of the branch that is taken; if that is not known, of all branches that may be."""
+        """Yield the commands of the branch that is taken or, if this is unknown, of all possible branches."""
         is_uncertain = False
         for condition, branch in branches(opening, body):
             answer = True if condition is None else self._holds(condition)
@@ -242,7 +244,7 @@ class CMakeProgram:
             yield from self._run_block(body)
 
     def _loop(self, words: list[str]) -> tuple[list[str], list[tuple[str, ...]]] | None:
-        """The names that a loop sets, and their values in each round."""
+        """Return the names that a loop sets, and their values in each iteration."""
         if "IN" in words[1:] and words[words.index("IN", 1) :][1:2] == ["ZIP_LISTS"]:
             at = words.index("IN", 1)
             names, lists = words[:at], [items_of(self.variables.get(word, UNKNOWN)) for word in words[at + 2 :]]
@@ -316,7 +318,7 @@ class CMakeProgram:
     def _read_other(self, command: str, word: str) -> Iterator[Command]:
         is_folder = command == "add_subdirectory"
         if not is_folder and "/" not in word and not word.endswith(".cmake"):
-            return  # a module of CMake, which installs nothing
+            return  # a module of CMake itself, which does not install anything
         place = within_package(word, self._folder)
         path = (
             None
@@ -401,12 +403,12 @@ class CMakeProgram:
     def _change_list(self, words: list[str]) -> None:
         for target, value in list_command(words[0], words[1:], self._value).items():
             if words[0] in ("APPEND", "PREPEND"):
-                self.variables[target] = value  # in a branch too: a possible item counts as an item
+                self.variables[target] = value  # in a branch, too: a possible item counts as an item
             else:
                 self._set(target, value)
 
     def _matching(self, words: list[str], *, recursive: bool) -> str:
-        """The files that ``file(GLOB...)`` matches."""
+        """Return the files that match ``file(GLOB...)``, as a CMake list."""
         base: str | None = None
         with_folders = not recursive
         patterns: list[str] = []
@@ -459,7 +461,7 @@ class CMakeProgram:
                 yield Argument(item, token.start, token.end, statement.source)
 
     def _filled(self, token: Token) -> str:
-        """The text of an argument with the values of known variables in it."""
+        """Return the text of an argument with the values of known variables substituted."""
         text, room = token.text, _LONGEST_TEXT
 
         def value(match: re.Match[str]) -> str:
@@ -470,7 +472,7 @@ class CMakeProgram:
                 raise _TooMuchError(token.text)
             return found
 
-        for _ in range(_DEEPEST if token.has_variables else 0):  # ${${NAME}_FILES}
+        for _ in range(_DEEPEST if token.has_variables else 0):  # nested references, such as ${${NAME}_FILES}
             filled = _ENVIRONMENT.sub(lambda match: _environment(match[1]) or match[0], text)
             filled = _VARIABLE.sub(value, filled)
             if filled == text:
@@ -480,12 +482,12 @@ class CMakeProgram:
 
 
 def _environment(name: str) -> str | None:
-    """An environment variable as CMake sees it; only those of ROS are visible."""
+    """Return an environment variable as CMake sees it; only ROS variables are visible."""
     return os.environ.get(name, ROS_VARIABLES[name]) if name in ROS_VARIABLES else None
 
 
 def _range(words: Sequence[str]) -> range:
-    """The numbers of ``foreach(i RANGE ...)``, the last one included; empty if the words are not integers."""
+    """Return the numbers of ``foreach(i RANGE ...)``, including the last; empty for non-integers."""
     try:
         numbers = [int(word) for word in words]
     except ValueError:
@@ -495,18 +497,18 @@ def _range(words: Sequence[str]) -> range:
 
 
 def _globbed(package: Path, pattern: str, *, recursive: bool) -> Iterable[Path]:
-    """The paths that a pattern of CMake, in which two stars are one, matches in a package."""
+    """Return the paths in a package that match a CMake pattern, in which two stars mean one."""
     folder, _, last = re.sub(r"\*+", "*", pattern).rpartition("/")
     if last in ("", "."):
-        return ()  # a folder itself, which no command needs
+        return ()  # the pattern names a folder itself, which no command needs
     return (package / folder).rglob(last) if recursive else package.glob(posixpath.join(folder, last))
 
 
 def within_package(text: str, folder: str) -> str:
-    """A path of a command relative to the package, ending with a slash where it did.
+    """Return the path in a command relative to the package, with its trailing slash if it has one.
 
     Args:
-        text: as the command has it.
+        text: the path as the command has it.
         folder: the folder of the command, relative to the package.
     """
     if text.startswith(("/", "$<", BUILD)):

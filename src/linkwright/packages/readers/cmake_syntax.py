@@ -1,4 +1,4 @@
-"""How CMake files are written: their commands with their arguments, and the blocks that commands make."""
+"""Parser for CMake files: commands with their arguments, and the blocks that commands form."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ ENDS = {
 
 
 def is_open(text: str) -> bool:
-    """Whether there is something in a text that only CMake could put in: a variable, or a generator expression."""
+    """Return whether a text contains a variable or generator expression that only CMake can evaluate."""
     return _OPEN.search(text) is not None
 
 
@@ -42,10 +42,10 @@ class Token:
     """An argument of a command.
 
     Attributes:
-        text: without quotes.
-        start: where it begins.
-        end: where it ends.
-        is_quoted: whether it is in quotes or brackets, so that it is one argument whatever its content.
+        text: the text without quotes.
+        start: the offset of its beginning.
+        end: the offset of its end.
+        is_quoted: whether it is in quotes or brackets, so that it is a single argument whatever its content.
         has_variables: whether ``${...}`` in it is replaced.
     """
 
@@ -66,7 +66,7 @@ class Statement:
 
 
 def statements(source: SourceText) -> Iterator[Statement]:
-    """The commands of a file in the order of the text; parentheses within arguments are arguments."""
+    """Yield the commands of a file in the order of the text; nested parentheses are arguments."""
     text = source.text
     at, name, depth = 0, "", 0
     tokens: list[Token] = []
@@ -100,7 +100,10 @@ def _argument(piece: re.Match[str]) -> Token:
 
 
 def end_of_block(commands: Sequence[Statement], at: int, name: str) -> int:
-    """Where the block ends whose first command precedes `at`; the end of all commands if it is not closed."""
+    """Return where the block ends whose opening command precedes `at`.
+
+    If it is not closed, this is the end of all commands.
+    """
     depth = 1
     for index in range(at, len(commands)):
         depth += (commands[index].name == name) - (commands[index].name == ENDS[name])
@@ -110,7 +113,7 @@ def end_of_block(commands: Sequence[Statement], at: int, name: str) -> int:
 
 
 def branches(opening: Statement, body: Sequence[Statement]) -> Iterator[tuple[Statement | None, Sequence[Statement]]]:
-    """The branches of an ``if``: the command with the condition (None for ``else``) and the commands of the branch."""
+    """Yield the branches of an ``if``: the command with the condition (None for ``else``) and the body."""
     condition: Statement | None = opening
     depth = start = 0
     for index, command in enumerate(body):

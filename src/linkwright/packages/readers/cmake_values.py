@@ -1,4 +1,4 @@
-"""The commands of CMake on texts and lists: ``list``, ``string``, ``math``, ``get_filename_component``."""
+"""CMake's commands on texts and lists: ``list``, ``string``, ``math``, ``get_filename_component``."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ _OPERATORS: dict[type[ast.operator], Callable[[int, int], int]] = {
 
 
 class _NotKnownError(Exception):
-    """The effect of a command is not known here."""
+    """Raised when the effect of a command is not known here."""
 
 
 def items_of(text: str) -> list[str]:
-    """The items of a list; empty ones are left out."""
+    """Return the items of a list without empty ones."""
     return [item for item in text.split(";") if item]
 
 
 def list_command(what: str, words: Sequence[str], value_of: Callable[[str], str]) -> dict[str, str]:
-    """The variable that a command ``list(WHAT ...)`` sets, and its value.
+    """Return the variable that a command ``list(WHAT ...)`` sets, with its value.
 
     Args:
-        what: its first word.
+        what: the first word of the command.
         words: the other words.
-        value_of: gives the value of a variable.
+        value_of: the function that returns the value of a variable.
     """
     if not words:
         return {}
@@ -107,11 +107,11 @@ def _transformed(item: str, words: Sequence[str]) -> str:
 
 
 def string_command(words: Sequence[str], value_of: Callable[[str], str]) -> dict[str, str]:
-    """The variables that a command ``string(...)`` sets, with their values.
+    """Return the variables that a command ``string(...)`` sets, with their values.
 
     Args:
-        words: its arguments.
-        value_of: gives the value of a variable.
+        words: the arguments of the command.
+        value_of: the function that returns the value of a variable.
     """
     what, *arguments = words
     try:
@@ -165,7 +165,7 @@ def _replaced(pattern: str, new: str, text: str) -> str:
 
 
 def calculated(expression: str) -> str:
-    """The value of ``math(EXPR ...)``, in decimal digits."""
+    """Return the value of ``math(EXPR ...)``, in decimal digits."""
     try:
         return str(_number(ast.parse(expression.strip().replace("/", "//"), mode="eval").body))
     except (SyntaxError, ValueError, ZeroDivisionError, RecursionError, MemoryError, _NotKnownError):
@@ -185,7 +185,7 @@ def _number(node: ast.expr) -> int:
 
 
 def part_of_name(path: str, part: str) -> str:
-    """The part of a path that ``get_filename_component`` returns."""
+    """Return the part of a path that ``get_filename_component`` returns."""
     name = posixpath.basename(path)
     parts = {
         "NAME": name,
@@ -202,7 +202,7 @@ def part_of_name(path: str, part: str) -> str:
 
 
 def version_variables(words: Sequence[str]) -> dict[str, str]:
-    """The version variables that ``project(...)`` sets; empty strings without a version."""
+    """Return the version variables that ``project(...)`` sets; empty strings without a version."""
     at = words.index("VERSION", 1) + 1 if "VERSION" in words[1:] else len(words)
     version = words[at] if at < len(words) else ""
     numbers = [*version.split("."), *[""] * 4]

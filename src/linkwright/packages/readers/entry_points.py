@@ -1,4 +1,4 @@
-"""Entry points as the files of a package's sources name them: lines ``name = module:attribute`` of a group."""
+"""Entry points in the files of a package's sources: lines ``name = module:attribute`` of a group."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ LINE = lazy_pattern(r"\s*([^\s=]+)\s*=\s*([\w.]+)\s*(?::\s*([\w.]+))?")
 
 
 class EntryPoint(NamedTuple):
-    """A function that is a program.
+    """A function that serves as a program.
 
     Attributes:
-        module: full name of its module.
-        function: its name there, perhaps with dots.
+        module: the full name of its module.
+        function: its name in the module, possibly with dots.
     """
 
     module: str
@@ -34,7 +34,7 @@ class EntryPoint(NamedTuple):
 
 
 def in_setup_py(text: str, group: str) -> list[str]:
-    """The lines of a group wherever a ``setup.py`` writes them into a dictionary, without running it."""
+    """Return the lines of a group in any dictionary of a ``setup.py``, without running it."""
     with suppress(SyntaxError):
         for node in ast.walk(ast.parse(text)):
             for key, value in zip(node.keys, node.values, strict=True) if isinstance(node, ast.Dict) else ():
@@ -46,12 +46,12 @@ def in_setup_py(text: str, group: str) -> list[str]:
 
 
 def in_setup_cfg(text: str, group: str) -> list[str]:
-    """The lines of a group in a ``setup.cfg``."""
+    """Return the lines of a group in a ``setup.cfg``."""
     return option_lines(text, "options.entry_points", group)
 
 
 def in_pyproject(text: str, group: str) -> list[str]:
-    """The lines of a group in a ``pyproject.toml``."""
+    """Return the lines of a group in a ``pyproject.toml``."""
     if sys.version_info >= (3, 11):
         import tomllib
     else:
@@ -65,7 +65,7 @@ def in_pyproject(text: str, group: str) -> list[str]:
 
 
 def in_metadata(text: str, group: str) -> list[str]:
-    """The lines of a group in the ``entry_points.txt`` that a build leaves behind."""
+    """Return the lines of a group in the ``entry_points.txt`` of a build."""
     from configparser import ConfigParser, Error
 
     parser = ConfigParser(interpolation=None, delimiters=("=",))
@@ -75,7 +75,7 @@ def in_metadata(text: str, group: str) -> list[str]:
 
 
 def option_lines(text: str, section: str, option: str) -> list[str]:
-    """The lines of an option of a ``setup.cfg``."""
+    """Return the lines of an option of a ``setup.cfg``."""
     from configparser import ConfigParser, Error
 
     parser = ConfigParser(interpolation=None)
@@ -85,7 +85,7 @@ def option_lines(text: str, section: str, option: str) -> list[str]:
 
 
 def text_of(path: Path) -> str:
-    """The text of a file; empty if it cannot be read."""
+    """Return the text of a file; empty if it cannot be read."""
     try:
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError:

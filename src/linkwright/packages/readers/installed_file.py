@@ -1,4 +1,4 @@
-"""A file that a package installs, whatever its build file is."""
+"""A file that a package installs, independent of its build file."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ class InstalledFile(NamedTuple):
     """A file that is installed.
 
     Attributes:
-        source: relative to the package.
-        destination: relative to the prefix.
-        values: of the placeholders in it, if ``configure_file`` fills them in; None if it is copied as it is.
-        content: its content, if the build writes it; None if it is made from its source.
+        source: the source path, relative to the package.
+        destination: the installed path, relative to the prefix.
+        values: the values of its placeholders, if ``configure_file`` fills them in; None if it is copied unchanged.
+        content: its content, if the build writes it; None if it is copied or generated from its source.
     """
 
     source: str
@@ -28,14 +28,14 @@ class InstalledFile(NamedTuple):
 
     @property
     def is_made(self) -> bool:
-        """Whether the build makes it instead of copying its source."""
+        """Whether the build generates the file instead of copying its source."""
         return self.values is not None or self.content is not None
 
     def text(self, package: Path) -> str:
-        """The content of a file that the build makes.
+        """Return the content of a file that the build generates.
 
         Raises:
-            OSError: its source cannot be read.
+            OSError: if its source cannot be read.
         """
         if self.content is not None:
             return self.content

@@ -1,4 +1,4 @@
-"""Reading a Python launch file from its syntax tree, without running it."""
+"""Reader for Python launch files, which uses the syntax tree without running it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _JOINING = frozenset({"join", "Path", "PurePath", "joinpath", "PathJoinSubstitut
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """An expression of a launch file: its text, its node and its place."""
+    """An expression of a launch file: its text, its node and its location."""
 
     text: str
     node: ast.expr
@@ -31,7 +31,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class StartedNode:
-    """A ``Node`` of a launch file: package and executable, each None if it is not known."""
+    """A ``Node`` of a launch file with its package and executable, each None if it is not known."""
 
     package: Place | None
     executable: Place | None
@@ -51,7 +51,7 @@ class LaunchFile:
     """A launch file.
 
     Attributes:
-        path: its path below the package.
+        path: the path relative to the package.
         error: the syntax error, if it is not valid Python.
         python: the parsed file, or None.
         has_function: whether it defines ``generate_launch_description``, or imports names that may include it.
@@ -60,7 +60,7 @@ class LaunchFile:
         shares: the packages whose share folder it looks up.
         paths: the complete paths in share folders that it composes.
         imports: the packages that it imports from, with their places.
-        made: the files that it writes itself: package and path.
+        made: the files that it writes itself, as package and path.
     """
 
     source: SourceText
@@ -77,7 +77,7 @@ class LaunchFile:
 
 
 def is_launch_file(path: str) -> bool:
-    """Whether a file is called as Python launch files are."""
+    """Return whether a file is named like a Python launch file."""
     return path.endswith(_ENDINGS)
 
 
@@ -112,7 +112,7 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
 def _may_define_function(node: ast.stmt) -> bool:
     if isinstance(node, ast.ImportFrom) and any(alias.name == "*" for alias in node.names):
         return True
-    return _defines_function(node, FUNCTION) or isinstance(node, (ast.If, ast.Try))  # it may be defined in there
+    return _defines_function(node, FUNCTION) or isinstance(node, (ast.If, ast.Try))  # it may be defined inside
 
 
 def _is_of_test(node: ast.stmt) -> bool:
@@ -143,7 +143,7 @@ def _read_imports(python: PythonFile, facts: LaunchFile) -> None:
 
 
 def _written(python: PythonFile) -> Iterator[ast.expr]:
-    """The paths of files that are written."""
+    """Yield the paths of files that are written."""
     for call in python.calls("open", owner=""):
         mode = call.args[1] if len(call.args) > 1 else argument_of(call, "mode")
         if call.args and _WRITING.intersection(python.text(mode) or ""):
@@ -163,7 +163,7 @@ def _place(python: PythonFile, node: ast.expr | None) -> Place | None:
 
 
 class _PathReader(ast.NodeVisitor):
-    """Finds the complete paths: expressions with a value in a share folder that no larger path contains."""
+    """The visitor that finds complete paths in share folders, which are not part of longer paths."""
 
     def __init__(self, python: PythonFile, facts: LaunchFile) -> None:
         self._python = python

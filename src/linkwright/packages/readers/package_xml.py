@@ -1,4 +1,4 @@
-"""Reading ``package.xml`` (REP 149), with the places of its values."""
+"""Reader for ``package.xml`` (REP 149), with the places of its values."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Manifest:
         return self.document.root
 
     def text(self, tag: str) -> str | None:
-        """The text of the first element of a tag, with blanks collapsed and none at the ends; or None."""
+        """Return the text of the first element of a tag with blanks collapsed and stripped; or None."""
         element = self.root.first(tag)
         return None if element is None else " ".join(element.text().split())
 
@@ -54,7 +54,7 @@ class Manifest:
 
     @cached_property
     def dependencies(self) -> tuple[Dependency, ...]:
-        """All dependencies in the order of the text, those in groups left out."""
+        """All dependencies in the order of the text, except those in groups."""
         return tuple(
             Dependency(element.text().strip(), element.tag, element)
             for element in self.root.elements()
@@ -63,9 +63,9 @@ class Manifest:
 
     @property
     def is_ros1(self) -> bool:
-        """Whether the package builds with catkin, in ROS 1 alone or in both."""
+        """Whether the package builds with catkin, for ROS 1 only or for ROS 1 and ROS 2."""
         return self.build_type == "catkin" or self.declares("catkin")
 
     def declares(self, package: str) -> bool:
-        """Whether the file names a package, as this one or as a dependency of any kind."""
+        """Return whether the file contains a package's name, as its own or in a dependency of any kind."""
         return package == self.name or any(dependency.name == package for dependency in self.dependencies)

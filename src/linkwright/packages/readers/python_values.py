@@ -1,6 +1,6 @@
-"""The values of expressions in a Python file that are strings and paths, without running it.
+"""Evaluation of expressions in a Python file that are strings and paths, without running it.
 
-Only an expression that needs no guessing gets a value: literals, names that are assigned once, joined paths, share
+Only an expression whose value is certain gets a value: literals, names that are assigned once, joined paths, share
 folders of packages, and patterns of file names. Every other value is `UNKNOWN`, and rules ignore it.
 """
 
@@ -18,7 +18,7 @@ from linkwright.loading.lean_typing import Union
 
 
 class Nothing(Enum):
-    """The value of an expression that cannot be evaluated."""
+    """The type of `UNKNOWN`, the value of an expression that cannot be evaluated."""
 
     UNKNOWN = "unknown"
 
@@ -28,10 +28,10 @@ UNKNOWN = Nothing.UNKNOWN
 
 @dataclass(frozen=True, slots=True)
 class SharePath:
-    """The share folder of a package with some text behind it.
+    """The share folder of a package, followed by further text.
 
     Attributes:
-        package: name of the package.
+        package: the name of the package.
         rest: the path below the folder, such as ``/urdf/robot.urdf``; empty for the folder itself.
     """
 
@@ -41,7 +41,7 @@ class SharePath:
 
 @dataclass(frozen=True, slots=True)
 class Pattern:
-    """The files that ``glob`` finds.
+    """The files that a ``glob`` pattern matches.
 
     Attributes:
         text: the pattern.
@@ -63,14 +63,14 @@ class PythonFile:
     """A parsed Python file.
 
     Args:
-        source: its text.
+        source: the text of the file.
 
     Attributes:
-        tree: its syntax tree.
+        tree: the syntax tree.
 
     Raises:
-        SyntaxError: it is not valid Python.
-        ValueError: it contains a null byte, or is nested too deeply.
+        SyntaxError: if the text is not valid Python.
+        ValueError: if the text contains a null byte, or is nested too deeply.
     """
 
     def __init__(self, source: SourceText) -> None:
@@ -79,18 +79,18 @@ class PythonFile:
 
     @cached_property
     def _assigned(self) -> dict[str, ast.expr | None]:
-        """Name -> the assigned expression; None if there are several, or if it is not a single expression."""
+        """The expression that is assigned to each name; None for several assignments or complex ones."""
         bindings: dict[str, ast.expr | None] = {}
         for node in ast.walk(self.tree):
             _note_bindings(node, bindings)
         return bindings
 
     def assigned(self, name: str) -> ast.expr | None:
-        """The expression that a name is assigned, when that happens exactly once in the file."""
+        """Return the expression assigned to a name, if the file assigns it exactly once."""
         return self._assigned.get(name)
 
     def resolved(self, node: ast.expr) -> ast.expr:
-        """An expression, or the expression that a name is assigned."""
+        """Return an expression or, for a name, the expression that is assigned to it."""
         for _ in range(_DEEPEST):
             if not isinstance(node, ast.Name):
                 break
@@ -101,10 +101,10 @@ class PythonFile:
         return node
 
     def calls(self, *names: str, owner: str | None = None) -> Iterator[ast.Call]:
-        """The calls of functions or classes, by the last part of their names, in the order of the text.
+        """Yield the calls of functions or classes, by the last part of their names, in text order.
 
         Args:
-            names: of the functions.
+            names: the names of the functions.
             owner: the part of the name before the last; None for any.
         """
         found = [
@@ -117,20 +117,20 @@ class PythonFile:
         yield from sorted(found, key=lambda node: (node.lineno, node.col_offset))
 
     def offset(self, line: int, column: int) -> int:
-        """Character offset of a line, from 1, and a column in bytes, from 0, as the syntax tree has them."""
+        """Return the character offset of a line (from 1) and a byte column (from 0) of the syntax tree."""
         text = self.source.line(line)
         characters = column if text.isascii() else len(text.encode()[:column].decode("utf-8", "replace"))
         return self.source.offset(line, characters + 1)
 
     def range(self, node: ast.expr | ast.stmt | ast.keyword | ast.alias) -> tuple[int, int]:
-        """Character offsets of a node, the end exclusive."""
+        """Return the character offsets of a node, with the end exclusive."""
         start = self.offset(node.lineno, node.col_offset)
         if node.end_lineno is None or node.end_col_offset is None:
             return start, start + 1
         return start, self.offset(node.end_lineno, node.end_col_offset)
 
     def span(self, node: ast.expr | ast.stmt | ast.keyword | ast.alias) -> Span:
-        """The place of a node; of one over several lines, its first line."""
+        """Return the place of a node or, if it has several lines, of its first line."""
         start, end = self.range(node)
         line_end = self.source.text.find("\n", start)
         if 0 <= line_end < end:
@@ -140,7 +140,7 @@ class PythonFile:
     # values
 
     def value(self, node: ast.expr | None, depth: int = 0) -> Value:
-        """The value of an expression."""
+        """Return the value of an expression."""
         if node is None or depth > _DEEPEST:
             return UNKNOWN
         if isinstance(node, ast.Constant):
@@ -158,7 +158,7 @@ class PythonFile:
         return UNKNOWN
 
     def text(self, node: ast.expr | None) -> str | None:
-        """The string that an expression evaluates to, or None."""
+        """Return the string that an expression evaluates to, or None."""
         value = self.value(node)
         return value if isinstance(value, str) else None
 
@@ -243,14 +243,14 @@ def _bind(target: ast.expr, value: ast.expr | None, bindings: dict[str, ast.expr
 def _parsed(text: str) -> ast.Module:
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # about the user's text, such as an escape that is none
+            warnings.simplefilter("ignore")  # warnings about the user's text, such as an invalid escape
             return ast.parse(text)
     except (RecursionError, MemoryError):
         raise ValueError(phrase("it is nested too deeply")) from None
 
 
 def called_name(node: ast.Call) -> str:
-    """The dotted name of the called function; a part that is not a name is empty."""
+    """Return the dotted name of the called function; a part that is not a name is empty."""
     parts: list[str] = []
     function: ast.expr = node.func
     while isinstance(function, ast.Attribute):
@@ -261,12 +261,12 @@ def called_name(node: ast.Call) -> str:
 
 
 def argument_of(node: ast.Call, name: str) -> ast.expr | None:
-    """The value of a named argument of a call, or None."""
+    """Return the value of a named argument of a call, or None."""
     return next((keyword.value for keyword in node.keywords if keyword.arg == name), None)
 
 
 def concatenated(values: Sequence[Value]) -> Value:
-    """The values written one behind another."""
+    """Return the concatenation of the values."""
     if not values:
         return ""
     first = values[0]
@@ -280,7 +280,7 @@ def concatenated(values: Sequence[Value]) -> Value:
 
 
 def joined(values: Sequence[Value]) -> Value:
-    """The path that the values make as its parts."""
+    """Return the path that has the values as its components."""
     if not values:
         return UNKNOWN
     path = values[0]

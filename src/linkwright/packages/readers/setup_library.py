@@ -1,6 +1,6 @@
-"""The library that a followed ``setup.py`` may call: functions that compose paths or list files of its package.
+"""Functions that an interpreted ``setup.py`` may call to compose paths or list its package's files.
 
-They look at nothing outside of the package, open no file, and return no large results.
+They do not access anything outside the package, open no file, and return no large results.
 """
 
 from __future__ import annotations
@@ -40,14 +40,14 @@ ATTRIBUTES = frozenset(("name", "stem", "suffix", "suffixes", "parent", "parents
 
 
 class NotKnownError(Exception):
-    """The value of an expression is not known."""
+    """Raised when the value of an expression is not known."""
 
 
 def bounded(value: Any) -> Any:
     """Return a value that is not too large.
 
     Raises:
-        NotKnownError: it is.
+        NotKnownError: if it is too large.
     """
     if isinstance(value, str) and len(value) > _LONGEST_TEXT:
         raise NotKnownError
@@ -57,9 +57,9 @@ def bounded(value: Any) -> Any:
 
 
 def weight(value: Any, most: int) -> int:
-    """How many items a value has, with those in its items and a share for the length of texts, up to a bound.
+    """Return the size of a value up to a bound: its nested items, and a share for the length of texts.
 
-    A list that contains another one twice, which contains another one twice and so on, is small in memory but endless
+    A list that contains another list twice, which contains another list twice and so on, is small in memory but endless
     to print or compare.
     """
     count, pending = 0, [value]
@@ -77,10 +77,10 @@ def weight(value: Any, most: int) -> int:
 
 
 def formatted(template: str, *arguments: Any, **named: Any) -> str:
-    """``template.format(...)``, where it makes nothing wide and reaches into no object.
+    """Return ``template.format(...)`` if it produces no wide text and accesses no attributes.
 
     Raises:
-        NotKnownError: it does.
+        NotKnownError: if it does.
     """
     if _WIDE.search(template) or "." in "".join(re.findall(r"\{[^}]*\}", template)):
         raise NotKnownError
@@ -88,10 +88,10 @@ def formatted(template: str, *arguments: Any, **named: Any) -> str:
 
 
 def percent(template: str, arguments: Any) -> str:
-    """``template % given``, where it makes nothing wide.
+    """Return ``template % arguments`` if it produces no wide text.
 
     Raises:
-        NotKnownError: it does.
+        NotKnownError: if it does.
     """
     if _WIDE.search(template):
         raise NotKnownError
@@ -142,10 +142,10 @@ class PackageLibrary:
         }
 
     def relative(self, path: Any) -> str:
-        """A path of the package, relative to its folder, with slashes.
+        """Return the path of a file in the package, relative to its folder, with slashes.
 
         Raises:
-            NotKnownError: it is outside.
+            NotKnownError: if the path is outside the package.
         """
         return self._real(path).relative_to(self._folder).as_posix()
 

@@ -1,7 +1,7 @@
-"""Reading the files that a ``setup.py`` installs from its syntax tree, without running it.
+"""Reader for the files that a ``setup.py`` installs, which uses the syntax tree without running it.
 
-Each ``$(find PACKAGE)`` of sources reads one. So a record of facts is a named tuple or a plain class, here and in the
-modules that this loads: Python makes such a class in a sixth of the time that a data class takes.
+Each ``$(find PACKAGE)`` in sources reads one. For this reason, records of facts are named tuples or plain classes,
+here and in the modules that this one loads: Python creates such a class in a sixth of the time of a data class.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from linkwright.packages.readers.python_values import Pattern, PythonFile, argum
 
 
 class SyntaxMistake(NamedTuple):
-    """The reason why a file is not valid Python, and the place."""
+    """The reason why a file is not valid Python, with the place."""
 
     message: str
     span: Span
@@ -32,8 +32,8 @@ class Installed(NamedTuple):
         text: the file or pattern, relative to the package.
         is_pattern: whether it is passed to ``glob``.
         recursive: whether ``**`` in it matches any number of folders.
-        destination: the folder below the prefix that receives it, or None if that is not known.
-        span: where it is written.
+        destination: the folder below the prefix to which it is installed, or None if that is not known.
+        span: the place where it is written.
     """
 
     text: str
@@ -43,16 +43,16 @@ class Installed(NamedTuple):
     span: Span
 
     def files(self, package: Path) -> list[str]:
-        """The files of a package that are meant, as paths below it with slashes."""
+        """Return the matching files of a package, as paths relative to it with slashes."""
         if not self.is_pattern:
             return [self.text] if (package / self.text).exists() else []
-        # Not Path.glob, whose rules for hidden files and "**" are others than those of the glob that setup.py calls.
+        # Path.glob is not used: its rules for hidden files and "**" differ from those of glob, which setup.py calls.
         found = glob(self.text, root_dir=package, recursive=self.recursive)  # noqa: PTH207
         return [name.replace("\\", "/") for name in found if (package / name).is_file()]
 
 
 class Program(NamedTuple):
-    """An executable: its name, the module and function it runs, and where that is written."""
+    """An executable: its name, the module and function that it runs, and the place of its definition."""
 
     executable: str
     module: str
@@ -64,16 +64,16 @@ class SetupFile:
     """A ``setup.py``.
 
     Attributes:
-        tree: its syntax tree, if it is valid Python.
-        error: the syntax error, if it is not.
+        tree: the syntax tree, if the file is valid Python.
+        error: the syntax error, if the file is not valid Python.
         call: whether it calls ``setup``.
-        name: the name that it gives the package, with its place; None if that is not known.
-        installed: the files of ``data_files``.
-        data_files_span: where ``data_files`` is written, or the call of ``setup``.
-        is_complete: whether it installs no other data files than these.
+        name: the name of the package, with its place; None if it is not known.
+        installed: the files in ``data_files``.
+        data_files_span: the place of ``data_files``, or else of the call of ``setup``.
+        is_complete: whether these are all data files that it installs.
         packages: the Python packages that it names, with their places; None if it searches for them.
         entry_points: the executables.
-        entry_points_complete: whether these are all.
+        entry_points_complete: whether these are all executables.
     """
 
     def __init__(self, source: SourceText) -> None:
@@ -90,7 +90,7 @@ class SetupFile:
         self.entry_points_complete = True
 
     def installed_files(self, package: Path) -> Iterator[InstalledFile]:
-        """The files that ``data_files`` installs, one by one, as far as they are known.
+        """Yield each known file that ``data_files`` installs.
 
         Args:
             package: the package's folder.
@@ -137,7 +137,7 @@ def read_setup(source: SourceText) -> SetupFile:
 
 
 def syntax_mistake(source: SourceText, error: SyntaxError | ValueError) -> SyntaxMistake:
-    """The reason why a text is not valid Python, and the place."""
+    """Return the reason why a text is not valid Python, with the place."""
     if not isinstance(error, SyntaxError):
         return SyntaxMistake(str(error), source.span(0))
     start = source.offset(error.lineno or 1, max(error.offset or 1, 1))
@@ -145,12 +145,12 @@ def syntax_mistake(source: SourceText, error: SyntaxError | ValueError) -> Synta
 
 
 class _Installing:
-    """Reads ``data_files``."""
+    """The reader of ``data_files``."""
 
     def __init__(self, python: PythonFile, facts: SetupFile) -> None:
         self._python = python
         self._facts = facts
-        self._names: set[str] = set()  # the lists whose entries are known
+        self._names: set[str] = set()  # the names of lists whose entries are known
 
     def read(self, node: ast.expr | None, call: ast.Call) -> None:
         self._facts.data_files_span = self._python.span(node if node is not None else call.func)
@@ -215,7 +215,7 @@ class _Installing:
         self._facts.installed.append(Installed(text, pattern is not None, recursive, destination, span))
 
     def _added_to(self, name: str) -> None:
-        """The entries that ``name.append(...)``, ``name.extend(...)`` and ``name += ...`` add."""
+        """Record the entries that ``name.append(...)``, ``name.extend(...)`` and ``name += ...`` add."""
         for node in ast.walk(self._python.tree):
             if isinstance(node, ast.Call) and called_name(node) in (f"{name}.append", f"{name}.extend"):
                 if len(node.args) != 1:

@@ -1,7 +1,8 @@
-"""Follows a ``setup.py`` that computes its ``data_files`` with loops and functions, without running it in Python.
+"""An interpreter for a ``setup.py`` that computes its ``data_files`` with loops and functions.
 
-It knows enough of the language for that: assignments, loops, conditions, functions, and the library's functions in
-`linkwright.packages.readers.setup_library`. An unknown value is `_UNKNOWN`, and nothing depends on it.
+The file is not run in Python. The interpreter knows the necessary part of the language: assignments, loops,
+conditions, functions, and the library's functions in `linkwright.packages.readers.setup_library`. An unknown value
+is `_UNKNOWN`, and no decision may depend on it.
 """
 
 from __future__ import annotations
@@ -50,25 +51,25 @@ _BUILTINS: dict[str, Callable[..., Any]] = {
 
 
 class _Unknown:
-    """The value of an expression that cannot be evaluated."""
+    """The type of `_UNKNOWN`, the value of an expression that cannot be evaluated."""
 
 
 _UNKNOWN = _Unknown()
 
 
 class _Named:
-    """A member of a module, by its full name."""
+    """A member of a module, identified by its full name."""
 
     def __init__(self, name: str) -> None:
         self.name = name
 
 
 class _CannotFollowError(Exception):
-    """A value that is unknown, or takes long to compute, decides how the file continues."""
+    """Raised when a value that is unknown or slow to compute decides how the file continues."""
 
 
 class _LeaveError(Exception):
-    """``break``, ``continue`` or ``return`` with a value."""
+    """Raised to execute ``break``, ``continue``, or ``return`` with a value."""
 
     def __init__(self, kind: str, value: Any = None) -> None:
         super().__init__(kind)
@@ -77,7 +78,7 @@ class _LeaveError(Exception):
 
 
 class _SetupCalledError(Exception):
-    """``setup`` was called; it carries the data files."""
+    """Raised when ``setup`` is called, with the data files."""
 
     def __init__(self, data_files: Any) -> None:
         super().__init__()
@@ -85,10 +86,10 @@ class _SetupCalledError(Exception):
 
 
 def run_setup(tree: ast.Module, folder: Path) -> list[InstalledFile] | None:
-    """The files that the ``data_files`` of a ``setup.py`` install, or None if it could not be followed.
+    """Return the files that a ``setup.py`` installs as ``data_files``, or None if it cannot be followed.
 
     Args:
-        tree: the file.
+        tree: the syntax tree of the file.
         folder: the folder of its package.
     """
     library = PackageLibrary(folder)
@@ -118,7 +119,7 @@ class _Run:
     def __init__(self, library: PackageLibrary) -> None:
         self._library = library
         self._scopes: list[dict[str, Any]] = [{"__file__": "setup.py", "__name__": "__main__"}]
-        self._own: set[Any] = set()  # the functions of the file
+        self._own: set[Any] = set()  # the functions defined in the file
         self._steps = self._depth = 0
 
     # --- statements --------------------------------------------------------------------------------------------------
@@ -180,7 +181,7 @@ class _Run:
         value = self._value(ast.BinOp(_loaded(node.target), node.op, node.value))
         before = self._value(_loaded(node.target))
         if isinstance(before, list) and isinstance(value, list):
-            before[:] = value  # the same list, for all its other holders
+            before[:] = value  # change the list in place, for all other references to it
         else:
             self._bind(node.target, value)
 
@@ -214,7 +215,7 @@ class _Run:
     # --- expressions -------------------------------------------------------------------------------------------------
 
     def _value(self, node: ast.expr) -> Any:
-        """The value of an expression; _UNKNOWN if it cannot be evaluated."""
+        """Return the value of an expression; `_UNKNOWN` if it cannot be evaluated."""
         self._tick()
         try:
             value = bounded(self._evaluated(node))
@@ -453,7 +454,7 @@ class _Run:
 
 
 def _loaded(target: ast.expr) -> ast.expr:
-    """The expression that reads the target of an assignment."""
+    """Return the expression that reads the target of an assignment."""
     return ast.Name(target.id, ast.Load()) if isinstance(target, ast.Name) else target
 
 

@@ -1,1 +1,1 @@
-"""Calls of xacro in launch files, tests and build files, read without running any of them."""
+"""Calls of xacro in launch files, tests and build files, found without running them."""

@@ -1,4 +1,4 @@
-"""The facts of a file about xacro: its calls, the launch files that it includes, and the values of its open places."""
+"""Records of a file's xacro calls, included launch files, and the possible values of open places."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ _LAUNCH = "launch:"
 
 @dataclass(frozen=True, slots=True)
 class XacroCall:
-    """A description that is expanded.
+    """A call that expands a description.
 
     Attributes:
-        path: the file.
+        path: the path of the description.
         arguments: name -> value.
-        span: where it is written.
-        is_command: whether it is a command line, whose quotes are removed.
+        span: the place of the call.
+        is_command: whether the call is a command line, whose quotes are removed.
     """
 
     path: Text
@@ -35,7 +35,7 @@ class Inclusion:
 
     Attributes:
         path: the file.
-        arguments: name -> value of the launch arguments that it is given.
+        arguments: name -> value of the launch arguments that are passed to it.
     """
 
     path: Text
@@ -48,7 +48,7 @@ class CallingFile:
 
     Attributes:
         path: the file.
-        calls: the calls of xacro in it.
+        calls: the xacro calls in the file.
         inclusions: the launch files that it includes.
         choices: name -> the possible values of open places.
     """
@@ -60,7 +60,7 @@ class CallingFile:
 
     @cached_property
     def included(self) -> list[tuple[str | None, str, Inclusion]]:
-        """Each inclusion behind the package that its path begins with, or None, and the name of its file."""
+        """Each inclusion, preceded by the package that its path begins with, or None, and the file name."""
         found: list[tuple[str | None, str, Inclusion]] = []
         for inclusion in self.inclusions:
             last = inclusion.path[-1] if inclusion.path and isinstance(inclusion.path[-1], str) else ""
@@ -69,7 +69,7 @@ class CallingFile:
         return found
 
     def declare(self, name: str, default: Text | None, others: tuple[Text, ...] = ()) -> None:
-        """Take a launch argument with its default and the other values that it may have."""
+        """Record a launch argument with its default and its other possible values."""
         values = dict.fromkeys((*(() if default is None else (default,)), *others))
         known = self.choices.get(_LAUNCH + name)
         if values and (known is None or len(known.rows) < len(values)):
@@ -77,15 +77,15 @@ class CallingFile:
 
 
 def launch_argument(name: str) -> Open:
-    """The open place of a launch argument."""
+    """Return the open place of a launch argument."""
     return Open(_LAUNCH + name)
 
 
 def launch_choice(name: str) -> str:
-    """The name of the choice that a launch argument is."""
+    """Return the name of the choice that represents a launch argument."""
     return _LAUNCH + name
 
 
 def launch_names(choices: Mapping[str, Choice]) -> dict[str, str]:
-    """The launch arguments among choices: name of the choice -> name of the argument."""
+    """Return the launch arguments among choices: name of the choice -> name of the argument."""
     return {name: name.removeprefix(_LAUNCH) for name in choices if name.startswith(_LAUNCH)}

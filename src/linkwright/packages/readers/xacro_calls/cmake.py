@@ -1,4 +1,4 @@
-"""Calls of xacro in ``CMakeLists.txt``: the macros of the package xacro, and commands that run the program."""
+"""Calls of xacro in ``CMakeLists.txt``: macros of the package xacro, and commands that run it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def read_cmake_calls(source: SourceText, package: Path) -> CallingFile:
     """Read the calls of xacro in a ``CMakeLists.txt``.
 
     Args:
-        source: its text.
+        source: the text of the file.
         package: the folder of the package.
     """
     file = CallingFile(source.name)
@@ -57,7 +57,7 @@ def _calls(command: Command, package: Path) -> Iterator[tuple[Text, dict[str, Te
 
 
 def _path(word: str, command: Command, package: Path) -> str:
-    """The path of a robot file that a word names, within the package's folder; any other word as it is."""
+    """Return the path of a robot file in the package's folder that a word names; other words unchanged."""
     if not word.endswith((".xacro", ".urdf")):
         return word
     return str(package / within_package(word, command.folder))

@@ -14,7 +14,7 @@ _WITH_VALUE = frozenset({"-o", "--output"})
 
 
 def xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
-    """The file and the arguments of a command line that calls xacro; None for any other command line.
+    """Return the file and arguments of a command line that calls xacro; None for other command lines.
 
     Unknown words become an argument without a name.
     """
@@ -42,12 +42,12 @@ def xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
 
 
 def _is_program(word: Text) -> bool:
-    """Whether a word is the program: ``xacro``, or a path to it."""
+    """Return whether a word is the program: ``xacro``, or a path to it."""
     return bool(word) and isinstance(word[-1], str) and _PROGRAM.search(word[-1]) is not None and len(word) <= 2
 
 
 def _words(line: Text) -> Iterator[Text]:
-    """The words of a command line; quotes protect blanks, and remain."""
+    """Yield the words of a command line; quotes protect blanks and are kept."""
     word: list[Text] = []
     quote = ""
     for piece in line:
@@ -72,7 +72,7 @@ def _words(line: Text) -> Iterator[Text]:
 
 
 def _joined(parts: Iterable[Text]) -> Text:
-    """Texts one behind another, in which strings that touch are one."""
+    """Concatenate texts, merging adjacent strings."""
     found: list[str | Share | Open] = []
     for piece in joined(parts):
         last = found[-1] if found else None
@@ -84,7 +84,7 @@ def _joined(parts: Iterable[Text]) -> Text:
 
 
 def _unquoted(word: Text) -> Text:
-    """A word without the quotes around it, or around the whole of a part, which a shell takes away."""
+    """Return a word without the quotes around it or around a whole part, which a shell removes."""
     if not word:
         return word
     first, last = word[0], word[-1]

@@ -1,4 +1,4 @@
-"""Calls of xacro in launch files in XML, of ROS 2 and ROS 1, and in YAML."""
+"""Calls of xacro in XML launch files, of ROS 2 and ROS 1, and in YAML launch files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SHARES = frozenset({"find-pkg-share", "find"})
 
 
 def read_xml(source: SourceText) -> CallingFile:
-    """Read the calls of xacro in an XML launch file; nothing if it is not XML, or not a launch file."""
+    """Read the calls of xacro in an XML launch file; empty if it is not XML or not a launch file."""
     file = CallingFile(source.name)
     try:
         root = parse(source.text, source.name).root
@@ -54,7 +54,7 @@ def _offered(element: Element) -> Iterator[Text]:
 
 
 def read_yaml(source: SourceText) -> CallingFile:
-    """Read the calls of xacro in a YAML launch file; nothing if it is not YAML, or not a launch file."""
+    """Read the calls of xacro in a YAML launch file; empty if it is not YAML or not a launch file."""
     import yaml
 
     file = CallingFile(source.name)
@@ -69,7 +69,7 @@ def read_yaml(source: SourceText) -> CallingFile:
 
 
 def _read_entity(entity: Any, source: SourceText, file: CallingFile) -> None:
-    """An action of a YAML launch file: a mapping from its tag to its attributes, or to the actions in it."""
+    """Read an action of a YAML launch file: a mapping from its tag to attributes or nested actions."""
     for tag, value in entity.items() if isinstance(entity, dict) else ():
         attributes = value if isinstance(value, dict) else {}
         if tag in ("arg", "let") and "name" in attributes:
@@ -89,7 +89,7 @@ def _read_entity(entity: Any, source: SourceText, file: CallingFile) -> None:
 
 
 def _mappings(value: Any, key: str) -> list[dict[Any, Any]]:
-    """The mappings of a list that have a key."""
+    """Return the mappings in a list that have a key."""
     return [item for item in value if isinstance(item, dict) and key in item] if isinstance(value, list) else []
 
 
@@ -108,7 +108,7 @@ def _note(file: CallingFile, lines: list[Text], span: Span | None) -> None:
 
 
 def markup_text(text: str, file: str) -> Text:
-    """A text of a launch file with its ``$(...)`` as open places.
+    """Return a text of a launch file with each ``$(...)`` as an open place.
 
     Args:
         text: the text.
@@ -124,7 +124,7 @@ def markup_text(text: str, file: str) -> Text:
 
 
 def _substitutions(text: str) -> Iterator[tuple[int, int]]:
-    """Where the outermost ``$(...)`` of a text begin and end."""
+    """Yield the start and end of the outermost ``$(...)`` in a text."""
     at = text.find("$(")
     while at >= 0:
         depth, end = 1, at + 2
@@ -157,7 +157,7 @@ def _substituted(inside: str, file: str) -> Text:
 
 
 def _commands(text: str, file: str) -> Iterator[Text]:
-    """The command lines in the ``$(command ...)`` of a text."""
+    """Yield the command lines in the ``$(command ...)`` of a text."""
     for start, end in _substitutions(text):
         match = _WORD.match(text[start + 2 : end - 1])
         if match is not None and match[1] == "command":
@@ -165,7 +165,7 @@ def _commands(text: str, file: str) -> Iterator[Text]:
 
 
 def _line(written: str, file: str) -> Text:
-    """The first argument of ``$(command ...)``, which is quoted unless it is one word."""
+    """Return the first argument of ``$(command ...)``, which is quoted unless it is one word."""
     quote = written[:1]
     if quote in ("'", '"'):
         end = written.rfind(quote)

@@ -19,7 +19,7 @@ _BUILDER = "MoveItConfigsBuilder"
 
 
 def read_python(source: SourceText) -> CallingFile:
-    """Read the calls of xacro in a Python file; nothing if it is not valid Python."""
+    """Read the calls of xacro in a Python file; empty if it is not valid Python."""
     file = CallingFile(source.name)
     try:
         python = PythonFile(source)
@@ -48,7 +48,7 @@ class _Reader:
             if isinstance(node, ast.Call) and called_name(node).endswith("DeclareLaunchArgument"):
                 self._declaration(node, scope)
             elif isinstance(node, ast.Call) and called_name(node).endswith("Command") and node.args:
-                self._handled.update(_lists_of(node.args[0], scope))  # whose items may be parts of words
+                self._handled.update(_lists_of(node.args[0], scope))  # its items may be parts of words
         for node, scope in self._nodes:
             if node in self._handled:
                 self._handled.update(ast.iter_child_nodes(node))
@@ -83,7 +83,7 @@ class _Reader:
             self._expansion(node, name, scope)
 
     def _command(self, node: ast.JoinedStr | ast.BinOp | ast.Constant | ast.List, scope: Scope) -> None:
-        """A text, or the words of a list, that may be a command line."""
+        """Record a text, or the words of a list, that may be a command line."""
         value = self._texts.value(node, scope)
         if isinstance(value, Items):
             words = [item for item in value.values if isinstance(item, tuple)]
@@ -96,7 +96,7 @@ class _Reader:
             self._handled.update(ast.iter_child_nodes(node))
 
     def _expansion(self, node: ast.Call, name: str, scope: Scope) -> None:
-        """Any function that is given a description and a mapping expands the one with the other."""
+        """Record an expansion by any function that receives a description and a mapping."""
         paths: list[Text] = []
         mapping: Mapping[str, Value] | None = None
         for written in (*node.args, *(keyword.value for keyword in node.keywords)):
@@ -109,11 +109,11 @@ class _Reader:
             is_given = len(node.args) > 1 or argument_of(node, "mappings") is not None
             mapping = UNKNOWN_ENTRIES if is_given else {}
         if paths and mapping is not None:
-            is_command = name == "Xacro" or name not in _WITHOUT_ARGUMENTS  # a helper may make a command line of them
+            is_command = name == "Xacro" or name not in _WITHOUT_ARGUMENTS  # a helper may build a command line
             self._note((paths[0], dict(_texts_of(mapping))), node, is_command=is_command)
 
     def _of_builder(self, node: ast.Call, scope: Scope) -> None:
-        """``MoveItConfigsBuilder(...).robot_description(...)``."""
+        """Record a call of ``MoveItConfigsBuilder(...).robot_description(...)``."""
         builder = next((inner for inner in ast.walk(node.func) if _is_builder(inner)), None)
         if not isinstance(builder, ast.Call):
             return
@@ -128,7 +128,7 @@ class _Reader:
             argument_of(node, "mappings") or (node.args[1] if len(node.args) > 1 else None), scope
         )
         arguments = dict(_texts_of(mappings.values)) if isinstance(mappings, Entries) else {}
-        self._note((_below_share(folder, file), arguments), node, is_command=True)  # a command, as from substitutions
+        self._note((_below_share(folder, file), arguments), node, is_command=True)  # as from substitutions
 
     def _inclusion(self, node: ast.Call, scope: Scope) -> None:
         source = node.args[0] if node.args else argument_of(node, "launch_description_source")
@@ -159,7 +159,7 @@ class _Reader:
 
 
 def _lists_of(node: ast.expr, scope: Scope) -> Iterator[ast.AST]:
-    """The list that is the value of a name."""
+    """Yield the list that is assigned to a name."""
     found = scope.find(node.id) if isinstance(node, ast.Name) else None
     yield from (binding.value for binding in (found[1] if found else ()) if binding.value is not None)
 

@@ -1,4 +1,4 @@
-"""The bindings of the names of a Python file, by function."""
+"""The bindings of names in a Python file, by function."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """One place where a name gets a value.
+    """One place that gives a name a value.
 
     Attributes:
         value: the expression; None if there is none, or it cannot be read.
-        path: which item of the value it is, for ``a, (b, c) = value``.
-        is_item: whether the name gets the items of the value one after another, as in a loop.
-        is_added: whether the value is added to the one before, as by ``+=``, ``append``, ``extend`` and ``update``.
+        path: the position of the name's item in the value, for ``a, (b, c) = value``.
+        is_item: whether the name is bound to each item of the value in turn, as in a loop.
+        is_added: whether the value is added to the previous one, as by ``+=``, ``append``, ``extend`` and ``update``.
     """
 
     value: ast.expr | None
@@ -32,10 +32,10 @@ class Scope:
     """The names of a function, or of the module.
 
     Attributes:
-        around: the enclosing scope; None for that of the module.
+        around: the enclosing scope; None for the module.
         function: the function; None for the module.
-        names: name -> where it gets a value.
-        entries: name -> the items that it gets by ``name[key] = value``, as key and value.
+        names: name -> the bindings that give it a value.
+        entries: name -> the keys and values of its ``name[key] = value``.
     """
 
     around: Scope | None = None
@@ -44,7 +44,7 @@ class Scope:
     entries: dict[str, list[tuple[ast.expr, ast.expr]]] = field(default_factory=dict)
 
     def find(self, name: str) -> tuple[Scope, list[Binding]] | None:
-        """The innermost scope that binds a name, and where; None for a name from elsewhere."""
+        """Return the innermost scope that binds a name, with the bindings; None if no scope binds it."""
         scope: Scope | None = self
         while scope is not None:
             if name in scope.names:
@@ -54,7 +54,7 @@ class Scope:
 
 
 def walk(tree: ast.Module) -> list[tuple[ast.AST, Scope]]:
-    """The nodes of a file, outer ones first, each with its scope; all scopes are filled."""
+    """Return the nodes of a file, outer ones first, each with its scope, and fill all scopes."""
     found: list[tuple[ast.AST, Scope]] = []
     waiting: list[tuple[ast.AST, Scope]] = [(tree, Scope())]
     while waiting:
@@ -88,7 +88,7 @@ def _bind(node: ast.AST, scope: Scope) -> None:
 
 
 def _bind_added(method: ast.Attribute, args: list[ast.expr], scope: Scope) -> None:
-    """Record the items that a list or mapping of this scope gets by ``append``, ``extend`` or ``update``."""
+    """Record items added to a list or mapping of this scope by ``append``, ``extend`` or ``update``."""
     bindings = scope.names.get(method.value.id) if isinstance(method.value, ast.Name) else None
     if bindings and len(args) == 1 and method.attr in ("append", "extend", "update"):
         added = ast.copy_location(ast.List(args, ast.Load()), args[0]) if method.attr == "append" else args[0]
@@ -107,12 +107,12 @@ def _bind_target(target: ast.expr, binding: Binding, scope: Scope) -> None:
 
 
 def parameters(function: Function) -> list[str]:
-    """The names of a function's parameters that can be given by position."""
+    """Return the names of a function's parameters that can be passed by position."""
     return [argument.arg for argument in (*function.args.posonlyargs, *function.args.args)]
 
 
 def defaults(function: Function) -> Iterator[tuple[str, ast.expr]]:
-    """The parameters of a function that have a default, with it."""
+    """Yield the parameters of a function that have a default, with the default."""
     names = parameters(function)
     values = function.args.defaults
     yield from zip(names[len(names) - len(values) :], values, strict=True)

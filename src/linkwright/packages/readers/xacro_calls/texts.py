@@ -1,4 +1,4 @@
-"""Texts with open places, as launch files compose them, and the possible values of these places."""
+"""Texts with open places, as in launch files, and the possible values of these places."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Share:
     """The share folder of a package.
 
     Attributes:
-        package: its name, which may have open places itself.
+        package: the name of the package, which may itself contain open places.
     """
 
     package: Text
@@ -32,8 +32,8 @@ class Open:
 
     Attributes:
         choice: the name of the `Choice` that decides.
-        column: which item of the row that is chosen.
-        is_part: whether it begins a part of a path, and an absolute path in it takes the place of all before.
+        column: the index of the item in the chosen row.
+        is_part: whether it begins a component of a path, where an absolute path replaces everything before it.
     """
 
     choice: str
@@ -52,7 +52,8 @@ class Choice:
 
     Attributes:
         rows: the alternatives; the first is the default.
-        is_certain: whether each row occurs with any other rows. The branches of an `if` may belong together.
+        is_certain: whether each row can occur with any rows of other choices. The branches of an `if` may depend on
+            each other.
     """
 
     rows: tuple[tuple[Text, ...], ...]
@@ -61,7 +62,7 @@ class Choice:
 
 @dataclass(slots=True)
 class Selection:
-    """Which rows are taken.
+    """The selected rows of choices.
 
     Attributes:
         rows: choice -> index of its row; the first row if it is missing.
@@ -73,17 +74,17 @@ class Selection:
 
 
 def literal(text: str) -> Text:
-    """A text without open places."""
+    """Return a text without open places."""
     return (text,) if text else ()
 
 
 def joined(parts: Iterable[Text]) -> Text:
-    """Texts one behind another."""
+    """Concatenate texts."""
     return tuple(piece for part in parts for piece in part)
 
 
 def joined_path(parts: Sequence[Text]) -> Text:
-    """Texts joined as the parts of a path; an absolute part starts a new path, as in ``os.path.join``."""
+    """Join texts as components of a path; an absolute one starts a new path, as in ``os.path.join``."""
     path: Text = ()
     for part in parts:
         first = part[0] if part else ""
@@ -99,7 +100,10 @@ def joined_path(parts: Sequence[Text]) -> Text:
 
 
 def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, depth: int = 0) -> str | None:
-    """The text with its places filled, or None where one stays open; a share folder is written `share_mark`."""
+    """Return the text with its places filled, or None if one stays open.
+
+    A share folder is written as its `share_mark`.
+    """
     if depth > _DEEPEST:
         return None
     found: list[str] = []
@@ -119,12 +123,12 @@ def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, dep
 
 
 def share_mark(package: str) -> str:
-    """The mark of a share folder in a text that `resolve` returns."""
+    """Return the mark for a share folder in a text that `resolve` returns."""
     return f"{_MARK}{package}{_MARK}"
 
 
 def split_mark(path: str) -> tuple[str | None, str]:
-    """The package whose share folder a resolved path begins with, or None, and the rest of the path."""
+    """Return the package of the share folder that a resolved path begins with, or None, and the rest."""
     if not path.startswith(_MARK):
         return None, path
     package, _, rest = path[1:].partition(_MARK)
@@ -142,7 +146,7 @@ def _chosen(place: Open, choices: Mapping[str, Choice], selection: Selection) ->
 
 
 def choices_in(text: Text, choices: Mapping[str, Choice], given: Mapping[str, str]) -> list[str]:
-    """The choices that a text depends on and that are not given, each once."""
+    """Return the choices that a text depends on, each once, without those that are given."""
     found: dict[str, None] = {}
     waiting: list[Text] = [text]
     while waiting:
@@ -158,7 +162,7 @@ def choices_in(text: Text, choices: Mapping[str, Choice], given: Mapping[str, st
 
 
 def selections(text: Text, choices: Mapping[str, Choice], given: Mapping[str, str]) -> Iterator[Selection]:
-    """Every way to fill the places of a text."""
+    """Yield every way to fill the places of a text."""
     combined: list[dict[str, int]] = [{}]
     for name in choices_in(text, choices, given):
         rows = range(len(choices[name].rows) or 1)
@@ -169,10 +173,10 @@ def selections(text: Text, choices: Mapping[str, Choice], given: Mapping[str, st
 def variations(
     texts: Iterable[Text], choices: Mapping[str, Choice], start: Selection
 ) -> Iterator[tuple[Selection, bool]]:
-    """Ways to fill the places of several texts, and whether each is known to occur.
+    """Yield ways to fill the places of several texts, each with whether it is known to occur.
 
-    First every row of every choice occurs, one choice at a time, then pairs of rows, which may not belong
-    together. Every combination would be too many.
+    First, every row of every choice occurs, one choice at a time. Then pairs of rows follow, which may not belong
+    together. There would be too many combinations otherwise.
     """
     names = dict.fromkeys(name for text in texts for name in choices_in(text, choices, start.given))
     free = [name for name in names if name not in start.rows and len(choices[name].rows) > 1]
