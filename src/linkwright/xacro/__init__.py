@@ -1,4 +1,4 @@
-"""The macro language xacro, as ros/xacro 2.1 understands it, with positions and without its holes."""
+"""The xacro macro language as in ros/xacro 2.1, with positions and without its security holes."""
 
 from linkwright.loading.deferred import deferred
 from linkwright.loading.lean_typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""Caches with a bound on their size: of computed values, and of compiled texts."""
+"""Caches with limited size, for computed values and for compiled texts."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ _STRIDE = 16
 
 
 class BoundedCache(Generic[_Key, _Value]):
-    """A cache of values with a bound on their total size.
+    """A cache of values with a limit on their total size.
 
-    When it is full, it drops every sixteenth value, each time starting at another one. So a user that cycles through
-    more values than fit, as through a collection of robots, finds most of them again. If the oldest were dropped
-    first, none would be found.
+    When it is full, it drops every sixteenth value, each time starting at a different position. A user that cycles
+    through more values than fit, such as a collection of robots, therefore finds most of them again. If the oldest were
+    dropped first, none would be found.
 
     Args:
-        most: how large they may be together.
-        size_of: the size of one.
+        most: the maximum total size.
+        size_of: the function that returns the size of a value.
 
     Attributes:
         values: a plain dict, because it is read for each text of a description.
@@ -35,11 +35,11 @@ class BoundedCache(Generic[_Key, _Value]):
         self._start = 0
 
     def store(self, key: _Key, value: _Value) -> None:
-        """Store a value, instead of the old one with the same key."""
+        """Store a value, replacing an old value with the same key."""
         values, size_of = self.values, self._size_of
         values.pop(key, None)
         own = size_of(key, value)
-        self._size += own  # too much if the key was known; the count below corrects it
+        self._size += own  # too much if the key existed; the count below corrects it
         while self._size > self._most and values:
             self._size = own + sum(size_of(*item) for item in list(values.items()))
             if self._size > self._most:
@@ -57,10 +57,10 @@ _AROUND = 8
 
 
 class TextCompiler(Generic[_Form]):
-    """Compiles texts and caches the results.
+    """A compiler for texts that caches the results.
 
     Args:
-        compile_text: compiles a text.
+        compile_text: the function that compiles a text.
 
     Attributes:
         forms: text -> its compiled form.
@@ -75,7 +75,7 @@ class TextCompiler(Generic[_Form]):
         """Compile a text and cache the result.
 
         Raises:
-            Fault: the text is malformed.
+            Fault: if the text is malformed.
         """
         form = self._compile(text)
         self._cache.store(text, form)

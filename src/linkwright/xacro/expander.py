@@ -1,16 +1,16 @@
-"""The expansion proper: one walk over the tree, in reading order, that writes a new tree.
+"""The expansion: a single walk over the tree, in reading order, that writes a new tree.
 
-Trees that were read are never changed, so each file is parsed once; texts and comments without expressions are shared
-with them. Every element of the result keeps the place where it was written and knows the macro calls and includes
-around it.
+Source trees are never changed, so each file is parsed once. Texts and comments without expressions are shared with
+them. Every element of the result keeps the place where it was written, and the macro calls and includes that
+contain it.
 
-Comments that belong to tags that disappear in the expansion.
+Comments that belong to tags disappear with them during the expansion.
 
-A comment just above a property, macro, argument, include, condition or macro call describes that tag, and disappears
-with it. Which comments disappear follows ros/xacro to the letter: of a run of comments upwards those that are separated
-by blank text with at most one newline; and a marker is left behind at which the next such run stops. There is one
-marker in a document: it moves. It is blank text, so its only visible effect is that an element with text and a marker
-is no longer written on one line.
+A comment directly above a property, macro, argument, include, condition or macro call describes that tag, and
+disappears with it. The choice of comments follows ros/xacro exactly. In a run of comments above the tag, those
+separated by blank text with at most one newline disappear. A marker is left behind, at which the next such run
+stops. A document has only one marker, which moves. It is blank text, so its only visible effect is that an element
+with text and a marker is no longer written on one line.
 """
 
 from __future__ import annotations
@@ -42,21 +42,21 @@ from linkwright.xmltree.nodes import LazyCopy
 
 
 class CommentSweeper:
-    """Takes away the comments above tags that are expanded, in one document."""
+    """Removes the comments above expanded tags in one document."""
 
     def __init__(self) -> None:
         self._marker = Text("\n\n")
         self._home: list[Node] | None = None
 
     def sweep(self, siblings: list[Node], *, followed: bool) -> bool:
-        """Remove the comments above the tag: those at the end of a list of siblings.
+        """Remove the comments above a tag, which are at the end of a list of siblings.
 
         Args:
             siblings: the expanded nodes above the tag.
-            followed: whether the tag has nodes below it.
+            followed: whether further nodes follow the tag.
 
         Returns:
-            Whether the caller is to `mark` the place below the tag.
+            Whether the caller must `mark` the place below the tag.
         """
         at = len(siblings) - 1
         while at >= 0:
@@ -82,7 +82,7 @@ class CommentSweeper:
         self._home = siblings
 
     def moved(self, old: list[Node], new: list[Node]) -> None:
-        """The nodes of a list have become the end of another one."""
+        """Adjust the marker after the nodes of a list have been moved to the end of another list."""
         if self._home is old:
             self._home = new
 
@@ -91,20 +91,20 @@ _MOST_ERRORS = 20
 
 
 class Container(Element):
-    """Holds the expansion of a tag that itself disappears; the tag is that of the language."""
+    """An element for the expansion of a tag that itself disappears; it has the tag of the language."""
 
     __slots__ = ()
 
 
 class Site(NamedTuple):
-    """A tag of the language and its surroundings.
+    """A xacro tag and its context.
 
     Attributes:
         node: the tag.
         parent: the element that receives its expansion.
-        scope: the properties that it sees.
-        macros: the macros that it sees.
-        followed: whether the tag has nodes below it.
+        scope: the properties that are visible to it.
+        macros: the macros that are visible to it.
+        followed: whether further nodes follow the tag.
     """
 
     node: Element
@@ -119,16 +119,16 @@ Directive = Callable[["Expander", Site], None]
 
 
 class Expander:
-    """Expands one document.
+    """The expander of one document.
 
     Args:
         session: the state of the expansion.
         directives: tag -> the function that expands it.
-        call: expands any other tag with the prefix of the language, which is a macro call.
+        call: the function that expands any other tag with the xacro prefix, which is a macro call.
 
     Attributes:
         session: the state of the expansion.
-        sweeper: takes away comments above tags of the language.
+        sweeper: the remover of comments above xacro tags.
     """
 
     def __init__(self, session: Session, directives: Mapping[str, Directive], call: Directive) -> None:
@@ -144,7 +144,7 @@ class Expander:
         self._root: Element | None = None
 
     def document(self, document: Document) -> Document:
-        """The expansion of a document.
+        """Return the expansion of a document.
 
         Raises:
             LinkwrightError: the mistakes found, each with its place.
@@ -156,11 +156,11 @@ class Expander:
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
-        """The mistakes found, each once."""
+        """The errors found, each once."""
         return tuple(_without_repeats(self._errors))
 
     def walk(self, document: Document) -> Document | None:
-        """Expand a document in spite of the mistakes in `errors`; None where the walk had to stop."""
+        """Expand a document despite the mistakes in `errors`; None if the walk had to stop."""
         root = document.root
         container = Container("")
         target = root.attributes.get("xacro:targetNamespace")
@@ -189,7 +189,7 @@ class Expander:
         """Expand the children of an element, and append the result to a parent.
 
         Raises:
-            LinkwrightError: a mistake after which continuing makes no sense.
+            LinkwrightError: a mistake after which the walk cannot continue.
         """
         output, session, directives = parent.children, self.session, self._directives
         evaluate_comments = False
@@ -222,7 +222,7 @@ class Expander:
         self._nesting -= 1
 
     def _copy(self, run: Run, output: list[Node]) -> None:
-        """Append neighbours that stay as they are to a parent."""
+        """Append adjacent nodes that need no expansion to a parent."""
         budget, frame = self.session.budget, self.session.frame
         if run.size > budget.elements or self._nesting + run.height > self._deepest:
             self._copy_singly(run, output)
@@ -231,7 +231,7 @@ class Expander:
         output += [LazyCopy(node, frame) if isinstance(node, Element) else node for node in run.nodes]
 
     def _copy_singly(self, run: Run, output: list[Node]) -> None:
-        """Find the element at which a limit is reached."""
+        """Copy the nodes one by one, to find the element that reaches a limit."""
         elements, scope, macros = self.session.budget, Scope(None, self.session), MacroTable()
         between = 0
         for node in run.nodes:
@@ -245,7 +245,7 @@ class Expander:
         elements.elements -= between >> 3
 
     def element(self, node: Element, output: list[Node], scope: Scope, macros: MacroTable) -> None:
-        """Expand an ordinary element: its attributes, then its content."""
+        """Expand an ordinary element: first its attributes, then its content."""
         session = self.session
         plan = node.plan
         if not isinstance(plan, Plan):
@@ -265,14 +265,14 @@ class Expander:
             self.children(node, element, scope, macros)
 
     def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
-        """Expand the elements inside of a macro call, into a container."""
+        """Expand the elements inside a macro call into a container."""
         container = Container(node.tag)
         if node.children:
             self.children(node, container, scope, macros)
         return container
 
     def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
-        """The attributes of an element, evaluated; those of the language are left out."""
+        """Return the evaluated attributes of an element, without those of xacro."""
         session, plan = self.session, plan_of(node)
         result = plan.attributes.copy()
         for name in plan.evaluated:
@@ -296,7 +296,7 @@ class Expander:
         return result
 
     def directive(self, site: Site) -> None:
-        """Expand a tag of the language or a macro call."""
+        """Expand a xacro tag or a macro call."""
         self.session.place, self.session.attribute = site.node, None
         self._directives.get(site.node.tag, self._call)(self, site)
 
@@ -334,7 +334,7 @@ class Expander:
     # helpers of the tags
 
     def value(self, node: Element, name: str, scope: Scope) -> object:
-        """The typed value of an attribute that the element has."""
+        """Return the typed value of an attribute that the element has."""
         text = node.attributes[name]
         if "$" not in text:
             return text
@@ -346,11 +346,11 @@ class Expander:
             self.fail(fault)
 
     def text_value(self, node: Element, name: str, scope: Scope) -> str:
-        """The value of an attribute that the element has, as it would be written."""
+        """Return the value of an attribute that the element has, as the text that would be written."""
         return self.written(node, name, self.value(node, name, scope))
 
     def written(self, node: Element, name: str, value: object) -> str:
-        """The text that is written for the value of an attribute."""
+        """Return the text that is written for the value of an attribute."""
         try:
             return self.session.written(node.attributes[name], value)
         except Fault as fault:
@@ -358,13 +358,13 @@ class Expander:
             self.fail(fault)
 
     def sweep(self, site: Site) -> None:
-        """Take away the comments above a tag that leaves nothing behind."""
+        """Remove the comments above a tag that leaves nothing in the result."""
         output = site.parent.children
         if self.sweeper.sweep(output, followed=site.followed):
             self.sweeper.mark(output)
 
     def splice(self, container: Element, site: Site) -> None:
-        """Replace a tag by the content of a container; `xacro:attribute` in it sets the parent's attributes."""
+        """Replace a tag with the content of a container; `xacro:attribute` in it sets the parent's attributes."""
         output = site.parent.children
         output.extend(container.children)
         self.sweeper.moved(container.children, output)
@@ -373,7 +373,7 @@ class Expander:
                 site.parent.attributes[name] = value
 
     def lift_namespaces(self, container: Element, site: Site) -> None:
-        """Declare on the parent the prefixes that the root of an include or the tag of a macro declares."""
+        """Declare the namespace prefixes of an include's root or a macro's tag on the parent."""
         attributes = site.parent.attributes
         for name, value in container.attributes.items():
             if not name.startswith("xmlns:"):
@@ -388,10 +388,10 @@ class Expander:
                 self.session.warn("XAC504", message, site.node.span())
 
     def enter(self, frame: Frame) -> None:
-        """Begin a macro call or an include.
+        """Enter a macro call or an include.
 
         Raises:
-            LinkwrightError: XAC601 when there are too many around it.
+            LinkwrightError: XAC601 if too many others enclose it.
         """
         limit = self.session.limits.depth
         if frame.depth > limit:
@@ -437,14 +437,14 @@ class Expander:
         )
 
     def note(self, fault: Fault) -> None:
-        """Record a mistake after which the walk can continue, unless it is one too many."""
+        """Record a mistake after which the walk can continue, unless there are too many mistakes."""
         self.keep(self._diagnostic(fault))
 
     def keep(self, diagnostic: Diagnostic) -> None:
         """Record a mistake after which the walk can continue.
 
         Raises:
-            LinkwrightError: it is one too many, or one that ends every walk.
+            LinkwrightError: if there are too many mistakes, or this one ends every walk.
         """
         if is_final(diagnostic):
             raise LinkwrightError(diagnostic)
@@ -454,11 +454,11 @@ class Expander:
 
     @property
     def has_too_many_errors(self) -> bool:
-        """Whether more mistakes would be of no use to the reader."""
+        """Whether further errors would no longer be useful to the reader."""
         return len(_without_repeats(self._errors)) >= _MOST_ERRORS
 
     def fail(self, fault: Fault) -> NoReturn:
-        """Stop because of a mistake that has its place."""
+        """Stop because of a mistake whose place is known."""
         raise LinkwrightError(self._diagnostic(fault)) from None
 
     def fail_at(
@@ -480,7 +480,7 @@ class Expander:
 
 
 def is_final(diagnostic: Diagnostic) -> bool:
-    """Whether a mistake ends every walk: a limit of the expansion, or a fatal error that the description raises."""
+    """Return whether a mistake ends every walk: an expansion limit, or a fatal error of the description."""
     return diagnostic.code.startswith("XAC6") or diagnostic.code == "XAC701"
 
 
@@ -496,7 +496,7 @@ def _with_attribute(element: Element, name: str, value: str) -> Element:
 
 
 def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
-    """The diagnostics, each mistake once: a macro that is called often makes the same one as often."""
+    """Return the diagnostics without repetitions, which a macro that is called often produces."""
     seen: dict[tuple[str, str, Span | None], Diagnostic] = {}
     for diagnostic in diagnostics:
         seen.setdefault((diagnostic.code, diagnostic.message, diagnostic.span), diagnostic)
@@ -504,10 +504,10 @@ def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
 
 
 def check_attributes(expander: Expander, node: Element, required: tuple[str, ...], optional: tuple[str, ...]) -> None:
-    """Check that a tag has the attributes it needs, and warn of those that mean nothing on it.
+    """Check that a tag has its required attributes, and warn about attributes that have no meaning.
 
     Raises:
-        LinkwrightError: XAC301 when one is missing.
+        LinkwrightError: XAC301 if one is missing.
     """
     attributes = node.attributes
     for name in required:
@@ -538,7 +538,7 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
 
 
 def warn_of_global(expander: Expander, node: Element, name: str, attribute: str) -> None:
-    """Warn that a name which the language provides gets another meaning."""
+    """Warn that a name that the language provides is redefined."""
     if name in expander.session.globals.values:
         message = phrase("'{name}' is a name that xacro provides, and is redefined here", name=name)
         span = node.attribute_span(attribute) if attribute == "name" else attribute_name(node, attribute)

@@ -1,4 +1,4 @@
-"""Expanding a file: the document that results, its arguments, dependencies and diagnostics."""
+"""Expansion of a file: the resulting document, its arguments, dependencies and diagnostics."""
 
 from __future__ import annotations
 
@@ -27,10 +27,11 @@ class Expansion:
 
     Attributes:
         document: the expanded document. Every element has the source and offset where it was written.
-        arguments: name -> final value of every argument that was given or declared.
-        diagnostics: warnings, and the description's messages through ``xacro.message`` and the like.
-        inputs: its inputs, or None.
-        problems: the mistakes for which parts are missing; see `linkwright.xacro.parts`.
+        arguments: name -> final value of every argument that was passed or declared.
+        diagnostics: warnings, and the messages that the description writes with ``xacro.message`` and similar
+            functions.
+        inputs: the inputs of the expansion, or None.
+        problems: the mistakes because of which parts are missing; see `linkwright.xacro.parts`.
     """
 
     def __init__(
@@ -53,27 +54,29 @@ class Expansion:
     @property
     def dependencies(self) -> tuple[Path, ...]:
         """The files that were read, the main file first."""
-        from pathlib import Path  # which is imported late because it takes long
+        from pathlib import Path  # imported here because pathlib takes long to import
 
         return tuple(Path(file) for file in self._dependencies)
 
     def __str__(self) -> str:
-        """The text that ros/xacro writes."""
+        """Return the text that ros/xacro writes."""
         if self._text is None:
             self._text = write(self.document)
         return self._text
 
     def origin(self, element: Element) -> Origin:
-        """Where an element of the document was written, and the calls and includes that brought it there."""
+        """Return where an element of the document was written, and the calls and includes that produced it."""
         return origin_of(element)
 
     def provenance(self, element: Element) -> Provenance:
-        """The provenance of an element of the document: `origin`, its parameters, and each attribute's provenance.
+        """Return the provenance of an element of the document.
 
-        This expands the file again, so it needs the files unchanged.
+        It contains the `origin`, its parameters, and the provenance of each attribute.
+
+        This expands the file again, so the files must be unchanged.
 
         Raises:
-            LinkwrightError: XAC802 if the files have changed, or the element is not one of the document's.
+            LinkwrightError: XAC802 if the files have changed, or the element does not belong to the document.
         """
         if self.inputs is None:
             raise LinkwrightError(Diagnostic("XAC802", phrase("the document has no record of its expansion")))
@@ -92,15 +95,15 @@ def expand(
     root_dir: str | Path | None = None,
     overlay: Overlay | None = None,
 ) -> Expansion:
-    """Expand a xacro file as ros/xacro 2.1 does; a plain URDF file stays as it is.
+    """Expand a xacro file as ros/xacro 2.1 does; a plain URDF file stays unchanged.
 
     Args:
-        path_or_text: the file, or a text, which is known by its ``<``. Relative paths in a file are relative to its
-            folder, those in a text to `root_dir`. The banner has the path as given here.
-        arguments: name -> value of the arguments (``name:=value``); they win over the defaults in the file.
-        packages: where ``$(find name)`` looks: an object with ``share(name)``, such as a `PackageFinder`, or a mapping
-            from package to share folder that takes precedence over the surroundings of the file.
-        text: the text to expand instead of the file's, such as one that is not saved yet.
+        path_or_text: the file, or a text, which is recognized by its ``<``. Relative paths in a file are relative to
+            its folder, those in a text to `root_dir`. The banner contains the path as given here.
+        arguments: name -> value of the arguments (``name:=value``); they take precedence over the defaults in the file.
+        packages: the packages for ``$(find name)``: an object with ``share(name)``, such as a `PackageFinder`, or a
+            mapping from package to share folder that takes precedence over the surroundings of the file.
+        text: the text to expand instead of the file's, such as one that is not yet saved.
         limits: bounds for the expansion.
         root_dir: the folder that relative paths start from; the current one if None.
         overlay: texts that replace those of files, included files and YAML files among them.
@@ -134,9 +137,9 @@ _BANNER = (
 
 
 def banner(name: str) -> list[Comment]:
-    """The comments that name the file from which a text was made."""
+    """Return the comments that name the file from which a text was generated."""
     shown = name
-    while "--" in shown:  # which XML does not allow in a comment
+    while "--" in shown:  # XML does not allow two dashes in a comment
         shown = shown.replace("--", "-")
     return [
         Comment(_BANNER[0]),

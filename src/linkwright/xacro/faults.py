@@ -1,7 +1,8 @@
-"""A mistake found while evaluating a text, on its way to a diagnostic; and the origin of an element.
+"""Mistakes found while a text is evaluated, before they are reported, and the origin of an element.
 
-The code that finds a mistake knows the text and the offsets in it, but not the element that holds the text. So a
-`Fault` starts with offsets, gets its place from the evaluation of an element's text, and a note for each property.
+The code that finds a mistake knows the text and the offsets in it, but not the element that contains the text.
+Therefore, a `Fault` starts with offsets. It gets its place from the evaluation of an element's text, and a note for
+each property.
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ _SHOWN = 10
 
 
 class Frame:
-    """A macro call or an include, and the one that it happened in.
+    """A macro call or an include, and the enclosing one.
 
     Attributes:
         macro: the macro's name, or None for an include.
-        site: the element that calls or includes.
-        around: the frame that the call or include happened in, or None.
-        depth: how many frames there are, this one included.
+        site: the element that makes the call or includes the file.
+        around: the frame of the enclosing call or include, or None.
+        depth: the number of frames up to and including this one.
     """
 
     __slots__ = ("around", "depth", "macro", "site")
@@ -36,7 +37,7 @@ class Frame:
         self.depth: int = 1 if around is None else around.depth + 1
 
     def note(self) -> Note:
-        """Its note in a message."""
+        """Return the note for this frame in a message."""
         what = (
             phrase("included from here")
             if self.macro is None
@@ -46,11 +47,11 @@ class Frame:
 
 
 class Origin(NamedTuple):
-    """Where an element of an expansion comes from.
+    """The origin of an element of an expansion.
 
     Attributes:
-        span: where it is written; None for an element made by a program.
-        trail: the macro calls and includes around it, innermost first.
+        span: the place where it is written; None for an element created by a program.
+        trail: notes on the enclosing macro calls and includes, innermost first.
     """
 
     span: Span | None
@@ -58,7 +59,7 @@ class Origin(NamedTuple):
 
 
 def frames(innermost: Frame | None) -> Iterator[Frame]:
-    """The frames from the innermost one outwards."""
+    """Yield the frames from the innermost to the outermost."""
     frame = innermost
     while frame is not None:
         yield frame
@@ -66,7 +67,7 @@ def frames(innermost: Frame | None) -> Iterator[Frame]:
 
 
 def trail(innermost: Frame | None) -> tuple[Note, ...]:
-    """The notes of all frames, innermost first; of very many, the outermost are counted only."""
+    """Return the notes of all frames, innermost first; the outermost of very many are only counted."""
     notes: list[Note] = []
     for site, group in groupby(frames(innermost), key=lambda frame: frame.site):
         repeated = list(group)
@@ -81,7 +82,7 @@ def trail(innermost: Frame | None) -> tuple[Note, ...]:
 
 
 def origin_of(element: Element) -> Origin:
-    """Where an element of an expansion comes from."""
+    """Return the origin of an element of an expansion."""
     frame = element.origin
     return Origin(element.span(), trail(frame if isinstance(frame, Frame) else None))
 
@@ -93,11 +94,11 @@ _BLOCK = r"""<(/?)xacro:(if|unless|macro)\b(?:[^>"'/]|"[^"]*"|'[^']*'|/(?!>))*(/
 
 
 class Elsewhere(NamedTuple):
-    """Where a file defines a name that is not in effect where it is used.
+    """A definition of a name that is not in effect where the name is used.
 
     Attributes:
         note: the message and the place of the definition.
-        hint: how to fix it, if that depends on why it is not in effect.
+        hint: how to fix this, if the fix depends on why the definition is not in effect.
     """
 
     note: Note
@@ -105,17 +106,17 @@ class Elsewhere(NamedTuple):
 
 
 class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part of the public errors
-    """A user's mistake.
+    """Raised when a text that is evaluated contains a mistake.
 
     Attributes:
         code: the diagnostic's code.
         message: the diagnostic's message.
-        start: offset of the mistake in the text being evaluated, or None for all of it.
-        end: where it ends (exclusive), or None.
-        hint: how to fix it.
+        start: the offset of the mistake in the text being evaluated, or None for the whole text.
+        end: the offset of its end (exclusive), or None.
+        hint: how to fix the mistake.
         span: the place of the mistake, once it is known.
         source: the text that the span is in.
-        notes: how the evaluation reached that place, innermost first.
+        notes: notes on how the evaluation reached that place, innermost first.
         passing: the text of the note for the next place on the way out, such as "property 'a' is used here".
         missing: the name of the property that is missing, if that is the mistake.
     """
@@ -136,28 +137,31 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         self.missing: str | None = None
 
     def within(self, start: int, end: int, shift: int | None = None) -> None:
-        """Seen from the text around: the mistake is inside its `start` to `end`, or at `shift` plus its offsets."""
+        """Convert the offsets to the enclosing text.
+
+        There, the mistake is inside `start` to `end`, or at its own offsets plus `shift`.
+        """
         if self.start is None or self.end is None or shift is None:
             self.start, self.end = start, end
         else:
             self.start, self.end = self.start + shift, self.end + shift
 
     def place_in_attribute(self, element: Element, name: str, shift: int = 0) -> None:
-        """The text is the value of an attribute, or the part of it that begins at `shift`."""
+        """Set the place: the text is the value of an attribute, or the part of it from `shift`."""
         start = None if self.start is None else self.start + shift
         end = None if self.end is None else self.end + shift
         self._place(element.source, attribute_part(element, name, start, end))
 
     def place_in_text(self, text: Text) -> None:
-        """The text is character data."""
+        """Set the place: the text is character data."""
         self._place(text.source, text_part(text, self.start, self.end))
 
     def place_at(self, element: Element) -> None:
-        """Place it at an element that represents a text without a source."""
+        """Set the place to an element that represents a text without a source."""
         self._place(element.source, element.span())
 
     def elsewhere(self) -> Elsewhere | None:
-        """Where the missing property is defined in the same file, in vain for this place."""
+        """Return a definition of the missing property in the same file that is not in effect here, or None."""
         if self.missing is None or self.source is None:
             return None
         if self.hint is not None and self.hint.startswith(f"'{self.missing}' is defined"):
@@ -180,9 +184,9 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
 def definition_elsewhere(
     source: SourceText, tag: str, name: str, prefix: str = "xacro:", used_at: int | None = None
 ) -> Elsewhere | None:
-    """Return where a file defines a name, if that is not in effect at an offset where it is used."""
+    """Return a definition of a name in a file that is not in effect at an offset, or None."""
     if f"<{prefix}{tag}" not in source.text:
-        return None  # without compiling the patterns below
+        return None  # avoids compiling the patterns below
     text = re.sub(_COMMENT, lambda comment: " " * len(comment[0]), source.text)
     pattern = rf"""<{prefix}{tag}\s(?:[^>"']|"[^"]*"|'[^']*')*?\bname\s*=\s*["']{re.escape(name)}["']"""
     match = re.search(pattern, text)
@@ -202,7 +206,7 @@ def definition_elsewhere(
 
 
 def _is_conditional(before: str) -> bool:
-    """Whether the end of a text is inside a condition, and not inside a macro, whose definitions are its own."""
+    """Return whether a text ends inside a condition, but not inside a macro, whose definitions are local."""
     open_tags: list[str] = []
     for closing, tag, single in re.findall(_BLOCK, before):
         if closing:
@@ -214,7 +218,7 @@ def _is_conditional(before: str) -> bool:
 
 
 def attribute_part(element: Element, name: str, start: int | None, end: int | None) -> Span | None:
-    """The place of a part of an attribute's value, as exactly as possible."""
+    """Return the place of a part of an attribute's value, as exactly as possible."""
     from linkwright.xmltree.positions import attribute_value_range, raw_offset
 
     source = element.source
@@ -228,12 +232,12 @@ def attribute_part(element: Element, name: str, start: int | None, end: int | No
     if raw == value:
         return source.span(written[0] + start, written[0] + end)
     if "&" not in raw and "\n" not in raw and "\t" not in raw and value is not None:
-        return source.span(*written)  # a block that was evaluated: the value differs from the source
+        return source.span(*written)  # a block that was evaluated: its value differs from the source
     return source.span(raw_offset(source.text, *written, start), raw_offset(source.text, *written, end))
 
 
 def attribute_name(element: Element, name: str) -> Span | None:
-    """The place of an attribute's name; that of the element where it has no such attribute."""
+    """Return the place of an attribute's name, or of the element if it lacks the attribute."""
     from linkwright.xmltree.positions import attribute_name_range
 
     source = element.source
@@ -244,7 +248,7 @@ def attribute_name(element: Element, name: str) -> Span | None:
 
 
 def text_part(text: Text, start: int | None, end: int | None) -> Span | None:
-    """The place of a part of some character data, as exactly as possible."""
+    """Return the place of a part of some character data, as exactly as possible."""
     from linkwright.xmltree.positions import raw_offset
 
     source = text.source

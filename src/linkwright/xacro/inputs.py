@@ -25,15 +25,15 @@ class Inputs(NamedTuple):
     overlay: Overlay | None = None
 
     def session(self) -> Session:
-        """A session in its initial state."""
+        """Return a session in its initial state."""
         return Session(self.name, self.arguments, self.packages, self.limits, self.root_dir, self.overlay)
 
 
 def main_document(session: Session, text: str | None = None) -> Document:
-    """The document that a session begins with: that of its file, or of a text that replaces it.
+    """Return the document of a session's file, or of a text that replaces it.
 
     Raises:
-        LinkwrightError: it cannot be read, or is not XML.
+        LinkwrightError: if it cannot be read, or is not XML.
     """
     try:
         document = session.read(session.file) if text is None else parse(text, session.file)

@@ -1,6 +1,6 @@
-"""Questions about a description beyond its expansion: the arguments that it takes, and the provenance of its elements.
+"""Inspection of a description beyond its expansion: its arguments, and the provenance of its elements.
 
-The modules that answer them are imported on demand.
+The modules for this are imported on demand.
 """
 
 from __future__ import annotations
@@ -33,20 +33,20 @@ def arguments_of(
     limits: Limits | None = None,
     root_dir: str | Path | None = None,
 ) -> tuple[Argument, ...]:
-    """The arguments of a file and of those that it includes, in the order of the files.
+    """Return the arguments of a file and of the files that it includes, in the order of the files.
 
-    The file need not be one that can be expanded without arguments.
+    The file need not be expandable without arguments.
 
     Args:
-        path: the file; for this and the rest see `linkwright.xacro.expand`.
+        path: the file; see `linkwright.xacro.expand` for all arguments.
         arguments: name -> value of arguments that may decide which files are included.
-        packages: where ``$(find name)`` looks.
-        text: the text to take for that of the file.
+        packages: the packages for ``$(find name)``.
+        text: the text to use instead of the file's.
         limits: bounds for the expansion.
-        root_dir: the folder that relative paths are in.
+        root_dir: the folder that relative paths start from.
 
     Raises:
-        LinkwrightError: the file cannot be read or is not XML.
+        LinkwrightError: if the file cannot be read or is not XML.
     """
     from linkwright.xacro.tracing.arguments import examine_arguments
 
@@ -64,19 +64,19 @@ def explain(
     limits: Limits | None = None,
     root_dir: str | Path | None = None,
 ) -> tuple[Provenance, ...]:
-    """The provenance of the elements of an expansion that have a name: links, joints, or any other.
+    """Return the provenance of the elements with a name in an expansion: links, joints, or others.
 
     Args:
-        path: the file; for this and the rest see `linkwright.xacro.expand`.
+        path: the file; see `linkwright.xacro.expand` for all other arguments.
         name: the value of the attribute ``name``.
         arguments: name -> value of the arguments.
-        packages: where ``$(find name)`` looks.
-        text: the text to take for that of the file.
+        packages: the packages for ``$(find name)``.
+        text: the text to use instead of the file's.
         limits: bounds for the expansion.
-        root_dir: the folder that relative paths are in.
+        root_dir: the folder that relative paths start from.
 
     Returns:
-        That of at least one element: of those directly inside the root or, when there are none, of those deeper down.
+        The provenance of at least one element: of elements directly in the root or, if there are none, of deeper ones.
 
     Raises:
         LinkwrightError: the mistakes of the file, or XAC801 if no element has the name.
@@ -86,7 +86,7 @@ def explain(
 
 
 def provenance_of_named(inputs: Inputs, name: str) -> tuple[Provenance, ...]:
-    """The provenance of the elements of an expansion that have a name; see `explain`."""
+    """Return the provenance of the elements with a name in an expansion; see `explain`."""
     from linkwright.xacro.tracing.provenance import Tracer
 
     path, arguments, packages, text, limits, root_dir, overlay = inputs

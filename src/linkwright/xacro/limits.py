@@ -1,12 +1,12 @@
-"""How far an expansion may go before it is stopped.
+"""Limits at which an expansion is stopped.
 
-A description comes from an unknown source as often as from a colleague: opening any one must end, and soon.
+Descriptions often come from unknown sources. Opening any description must end, and soon.
 """
 
 from __future__ import annotations
 
 import sys
-from _thread import allocate_lock  # threading.Lock without the rest of threading
+from _thread import allocate_lock  # threading.Lock, without importing the rest of threading
 from time import thread_time
 
 from linkwright.diagnostics import phrase
@@ -16,16 +16,16 @@ from linkwright.xmltree.nodes import seldom_collected
 
 
 class Limits(NamedTuple):
-    """Bounds of one expansion; the defaults are far above what any real robot needs.
+    """Limits of one expansion; the defaults are far above the needs of any real robot.
 
     Attributes:
-        depth: how many macro calls and includes may be active at once.
-        nesting: how deep elements may nest, counting those of the macro calls around them.
-        elements: how many elements may be produced; a macro call counts as ten, any other tag of the language as two.
-        steps: how much all expressions may do, together: a turn of a comprehension or a call of a function counts as
-            two, of a lambda as eight, and running through two items or 32 characters of a value as one.
-        characters: how many characters all long texts and attributes of the result may have, together.
-        seconds: how much time of the processor it may take.
+        depth: the maximum number of simultaneously active macro calls and includes.
+        nesting: the maximum nesting depth of elements, including the elements of enclosing macro calls.
+        elements: the maximum number of produced elements; a macro call counts as ten, any other xacro tag as two.
+        steps: the maximum number of steps of all expressions. An iteration of a comprehension or a call of a function
+            counts as two, a call of a lambda as eight, and a pass over two items or 32 characters of a value as one.
+        characters: the maximum total length of all long texts and attributes of the result.
+        seconds: the maximum processor time.
     """
 
     depth: int = 200
@@ -43,7 +43,7 @@ _before = 0
 
 
 class room_for:  # noqa: N801 - it is called in a ``with`` statement, as a function is
-    """Raise Python's recursion limit so that our own limits are met first; restore it after the last use."""
+    """Raise Python's recursion limit so that our own limits apply first; restore it after the last use."""
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
@@ -82,10 +82,10 @@ LONG = 1_000
 
 
 class Budget:
-    """The budget of one expansion: the elements, steps, characters, calls and seconds that its limits leave.
+    """The budget of one expansion: the remaining elements, steps, characters, calls and seconds.
 
     Attributes:
-        elements: how many elements may still be produced; the producer counts it down, and calls
+        elements: the number of elements that may still be produced; the producer decrements it, and calls
             `too_many_elements` below zero.
     """
 
@@ -98,11 +98,11 @@ class Budget:
         self._characters = limits.characters
         self._call_depth = 0
         self._macros = 0
-        self._look_at = limits.steps  # when so many steps are left, the clock is read
+        self._look_at = limits.steps  # the number of remaining steps at which the clock is read next
         self._ends = thread_time() + limits.seconds
 
     def too_many_elements(self) -> Fault:
-        """The error when no elements are left: XAC602."""
+        """Return the error for exhausted elements, XAC602."""
         message = phrase(
             "the expansion creates more than {limit:,} elements; a macro call counts as {macro}",
             limit=self._limits.elements,
@@ -111,10 +111,10 @@ class Budget:
         return Fault("XAC602", message, hint=phrase("look for macros that call each other without end"))
 
     def text(self, length: int) -> None:
-        """Pay for a long text of the result.
+        """Charge a long text of the result.
 
         Raises:
-            Fault: XAC605 when they are too long together.
+            Fault: XAC605 if the total length is too large.
         """
         self._characters -= length
         if self._characters < 0:
@@ -124,10 +124,10 @@ class Budget:
             )
 
     def macro(self) -> None:
-        """Pay for a call of a macro or an include.
+        """Charge a macro call or an include.
 
         Raises:
-            Fault: XAC602 or XAC606 when there were too many or they took too long.
+            Fault: XAC602 or XAC606 if there were too many or they took too long.
         """
         self.elements -= _MACRO
         if self.elements < 0:
@@ -137,10 +137,10 @@ class Budget:
             self._look_at_clock()
 
     def step(self, count: int = 2) -> None:
-        """Pay for the work of an expression, by default one more turn of a comprehension.
+        """Charge the work of an expression, by default one more iteration of a comprehension.
 
         Raises:
-            Fault: XAC603 or XAC606 when it was too much or took too long.
+            Fault: XAC603 or XAC606 if it was too much or took too long.
         """
         self._steps -= count
         if self._steps < self._look_at:
@@ -153,10 +153,10 @@ class Budget:
             self._look_at_clock()
 
     def enter_lambda(self) -> None:
-        """Pay for a call of a lambda, which may call itself.
+        """Charge a call of a lambda, which may be recursive.
 
         Raises:
-            Fault: XAC604 when lambdas call each other too deeply, XAC603 when there were too many calls.
+            Fault: XAC604 if lambda calls are nested too deeply, XAC603 if there were too many calls.
         """
         self.step(_LAMBDA)
         self._call_depth += 1
@@ -164,7 +164,7 @@ class Budget:
             raise Fault("XAC604", phrase("lambdas call each other more than {call_depth} deep", call_depth=_CALL_DEPTH))
 
     def leave_lambda(self) -> None:
-        """The call that was entered last is over."""
+        """End the innermost lambda call."""
         self._call_depth -= 1
 
     def _look_at_clock(self) -> None:

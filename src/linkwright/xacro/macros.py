@@ -1,4 +1,4 @@
-"""Macros: their parameters, and the tables they are found in."""
+"""Macros: their parameters, and the tables in which they are found."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class Parameter(NamedTuple):
     """A parameter of a macro.
 
     Attributes:
-        name: its name; that of a block begins with one or two asterisks.
-        default: the text of its default, or None.
-        forward: whether it takes the caller's property of the same name if it has no argument.
-        start: offset of its name in the list of parameters.
-        default_start: offset of its default there.
+        name: the name of the parameter; the name of a block begins with one or two asterisks.
+        default: the text of the default, or None.
+        forward: whether it uses the caller's property with the same name if it gets no argument.
+        start: the offset of its name in the list of parameters.
+        default_start: the offset of its default in the list of parameters.
     """
 
     name: str
@@ -35,13 +35,13 @@ class Parameter(NamedTuple):
 
     @property
     def is_block(self) -> bool:
-        """Whether it takes an element of the call rather than an attribute."""
+        """Whether the parameter receives an element of the call rather than an attribute."""
         return self.name.startswith("*")
 
 
 @lru_cache(maxsize=2000)
 def parse_parameters(text: str) -> tuple[Parameter, ...]:
-    """The parameters that the ``params`` of a macro declare.
+    """Return the parameters that the ``params`` of a macro declare.
 
     Raises:
         Fault: XAC412 for a default whose quotes do not match.
@@ -70,18 +70,18 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
             at = match.end()
             parameter = Parameter(match["name"], None, False, match.start("name"), match.end("name"))
         parameters.append(parameter)
-    # Of parameters declared twice the default that is written last holds for all, as in ros/xacro.
+    # As in ros/xacro, the last default applies to all parameters with the same name.
     return tuple(with_sign.get(parameter.name, parameter) for parameter in parameters)
 
 
 def _ends_of_words(text: str) -> list[int]:
     """Return where the word that begins at each offset ends, or -1 where a quote in it is never closed.
 
-    A word ends at a blank, and in quotes there may be blanks. As in ros/xacro, a quote is closed by the first one of
-    its kind behind which the word can end: ``'''`` is one word, a quote in quotes.
+    A word ends at a blank, but may contain blanks in quotes. As in ros/xacro, a quote is closed by the first quote of
+    its kind after which the word can end: ``'''`` is one word, a quote in quotes.
     """
     ends = [len(text)] * (len(text) + 1)
-    behind = {"'": -1, '"': -1}  # where a word ends that continues behind the nearest closing quote
+    behind = {"'": -1, '"': -1}  # the end of a word that continues after the nearest closing quote
     for at in range(len(text) - 1, -1, -1):
         letter, following = text[at], ends[at + 1]
         if letter.isspace():
@@ -101,10 +101,10 @@ class Macro:
     """A macro.
 
     Attributes:
-        name: its name.
+        name: the name of the macro.
         parameters: its parameters, in the order of their declaration.
-        known: their names.
-        body: the element that holds its body.
+        known: the names of the parameters.
+        body: the element that contains the body.
     """
 
     __slots__ = ("body", "known", "name", "parameters")
@@ -117,7 +117,7 @@ class Macro:
 
 
 class MacroTable:
-    """The macros of a scope, and the table around it; a namespace's table has none around it."""
+    """The macros of a scope, with the enclosing table; the table of a namespace has none."""
 
     __slots__ = ("_entries", "_parent")
 
@@ -126,11 +126,11 @@ class MacroTable:
         self._entries: dict[str, Macro | MacroTable] = {}
 
     def define(self, name: str, entry: Macro | MacroTable) -> None:
-        """Give a name to a macro or to the table of a namespace; an earlier one of that name is forgotten."""
+        """Bind a name to a macro or to the table of a namespace, replacing an earlier one."""
         self._entries[name] = entry
 
     def find(self, name: str) -> Macro | MacroTable | None:
-        """Look a name up, here and then in the tables around."""
+        """Return the entry of a name in this table or the enclosing ones; None if there is none."""
         table: MacroTable | None = self
         while table is not None:
             entry = table._entries.get(name)
@@ -140,7 +140,7 @@ class MacroTable:
         return None
 
     def names(self) -> Iterator[str]:
-        """The full names of all macros that can be called from here."""
+        """Yield the full names of all macros that can be called from this scope."""
         table: MacroTable | None = self
         while table is not None:
             for name, entry in table._entries.items():

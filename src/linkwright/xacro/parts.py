@@ -1,12 +1,13 @@
-"""Expanding the valid parts of a description that has mistakes.
+"""Expansion of the valid parts of a description that has mistakes.
 
-`linkwright.xacro.expand` stops at the first mistake after which nothing is reliable. An editor needs more: here a tag
-that fails is left out, and the walk continues. Two rules keep the result true:
+`linkwright.xacro.expand` stops at the first mistake after which nothing is reliable. An editor needs more: here, a
+tag that fails is left out, and the walk continues. Two rules keep the result correct:
 
-- **Gaps are known.** An element whose attribute or text failed, or inside which a tag was left out, is not part of the
-  result; neither is the element around it.
-- **Consequences are not reported.** A part that is left out may have defined names. From then on a missing name is not
-  a mistake, and a value may differ from the intended one: each part that depends on one is left out in silence, too.
+- **Gaps are known.** An element whose attribute or text failed, or in which a tag was left out, is not part of the
+  result; neither is the enclosing element.
+- **Consequences are not reported.** A part that is left out may have defined names. From there on, a missing name
+  is not a mistake, and a value may differ from the intended one: each part that depends on one is silently left
+  out, too.
 """
 
 from __future__ import annotations
@@ -46,14 +47,14 @@ def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
 
     Args:
         inputs: the inputs of the expansion.
-        error: why the complete expansion failed.
+        error: the error of the complete expansion.
 
     Returns:
-        An expansion whose `problems` describe the mistakes. Its document has those elements of the root that
-        are the same as in the complete expansion.
+        An expansion whose `problems` describe the mistakes. Its document contains those elements of the root that would
+        be the same in the complete expansion.
 
     Raises:
-        LinkwrightError: `error`; there is no result: the file is not XML, or the expansion has to be stopped.
+        LinkwrightError: `error`, if there is no result because the file is not XML or the expansion must be stopped.
     """
     if any(map(is_final, error.diagnostics)):
         raise error
@@ -75,15 +76,15 @@ def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
 
 
 class _LeftOutError(Exception):
-    """A tag depends on a part that was left out before."""
+    """Raised when a tag depends on a part that was left out before."""
 
 
 class _PartsExpander(Expander):
-    """Leaves out the parts that fail.
+    """An expander that leaves out the parts that fail.
 
     Attributes:
         trusted: whether all names still have the values of the complete expansion.
-        remarks_to_trust: how many of the session's warnings were given while they did; None for all.
+        remarks_to_trust: the number of the session's warnings that were recorded while they did; None for all.
     """
 
     def __init__(self, session: Session) -> None:
@@ -97,7 +98,7 @@ class _PartsExpander(Expander):
         self._reported_definitions: set[tuple[str, str]] = set()
 
     def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
-        """The attributes that could be evaluated, and a mark where others could not."""
+        """Return the attributes that could be evaluated, with a gap mark if others could not."""
         before = self._failures
         result = super().attributes(node, scope)
         if self._failures > before or not self.trusted:
@@ -109,14 +110,14 @@ class _PartsExpander(Expander):
         return result
 
     def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
-        """Expand the elements inside of a call; a call that lacks some of them is left out."""
+        """Expand the elements inside a call; a call that lacks some of them is left out."""
         container = super().blocks(node, scope, macros)
         if _GAP in container.attributes:
             raise _LeftOutError
         return container
 
     def note(self, fault: Fault) -> None:
-        """Keep a mistake in an attribute or text."""
+        """Record a mistake in an attribute or text."""
         self._failures += 1
         diagnostic = self._diagnostic(fault)
         if self.trusted or diagnostic.code in _TRUE_BY_THEMSELVES or is_final(diagnostic):
@@ -130,7 +131,7 @@ class _PartsExpander(Expander):
         return Text(_GAP, node.source, node.offset)
 
     def _leaving_out(self, directive: Directive) -> Directive:
-        """A directive that marks a gap where it fails."""
+        """Return a directive that marks a gap if it fails."""
 
         def expand(expander: Expander, site: Site) -> None:
             session, nesting = self.session, self._nesting
@@ -173,7 +174,7 @@ class _PartsExpander(Expander):
             self.remarks_to_trust = len(self.session.diagnostics)
 
     def _may_define_names(self, node: Element) -> bool:
-        """Whether a tag that is left out might have defined a name for the tags after it."""
+        """Return whether a tag that is left out might have defined a name for later tags."""
         tags = {element.tag for element in node.walk()}
         if tags & _DECLARATIONS:
             return True
@@ -181,7 +182,7 @@ class _PartsExpander(Expander):
         return (calls or "xacro:call" in tags) and self._macros_define_outside()
 
     def _macros_define_outside(self) -> bool:
-        """Whether a macro of the files read so far defines properties of its callers."""
+        """Return whether a macro in the files read so far defines properties of its callers."""
         for path in self.session.dependencies:
             try:
                 source = self.session.read(path).source
@@ -193,14 +194,14 @@ class _PartsExpander(Expander):
 
 
 def _depends_on_values(node: Element) -> bool:
-    """Whether the effect of a tag depends on properties or arguments; for macro calls, whether their content does."""
+    """Return whether a tag's effect, or a macro call's content, depends on properties or arguments."""
     if node.tag not in DIRECTIVES or node.tag in _DEFINITIONS:
         return False
     return any("$" in _FIXED.sub("", value) for value in node.attributes.values())
 
 
 def _without_gaps(document: Document) -> Document:
-    """The document with those elements of the root that have no gap."""
+    """Return the document with only those elements of the root that have no gap."""
     root = document.root
     root.attributes.pop(_GAP, None)
     root.children = [child for child in root.children if not (isinstance(child, Element) and _has_gap(child))]

@@ -1,11 +1,11 @@
-"""Plans: the steps of expanding an element, worked out once for each element that was read.
+"""Plans: the steps of expanding an element, computed once for each source element.
 
-Most of a description does not depend on anything: an element without a dollar sign and without tags of the language
-stays as it is, with its content. Its plan marks it so, and the walk copies it. Of any other element the plan
-lists the attributes to evaluate and, in reading order, the steps for its children; neighbours that stay as they
-are make one step.
+Most of a description does not depend on anything: an element without a dollar sign and without xacro tags is
+unchanged with all its content. Its plan marks it as such, and the walk copies it. For any other element, the plan
+lists the attributes to evaluate and, in reading order, the steps for its children. Adjacent unchanged nodes form
+one step.
 
-Whether an element stays as it is shows in its text: if the text has no sign of the language, the element is not
+The text of an element shows whether it is unchanged: if the text has no sign of the language, the element is not
 searched.
 """
 
@@ -35,12 +35,12 @@ Step: TypeAlias = tuple[int, Any, bool]
 
 
 class Run:
-    """Neighbours that stay as they are.
+    """Adjacent nodes that the expansion leaves unchanged.
 
     Attributes:
-        nodes: the elements, and the texts and comments between them.
+        nodes: the elements, with the texts and comments between them.
         size: the number of elements that they count as.
-        height: how deep they nest at most.
+        height: their maximum nesting depth.
     """
 
     __slots__ = ("height", "nodes", "size")
@@ -55,12 +55,13 @@ class Plan(CachedText):
     """The plan of one element.
 
     Attributes:
-        attributes: the attributes of the result, as they are written.
-        evaluated: the names of those that are to be evaluated or counted.
-        size: how many elements it has, itself included, if it stays as it is, else 0.
-        height: how deep they nest at most.
-        steps: for the children, in order: the kind, its object, and a flag: for TAG whether any node follows it,
-            for SWITCH whether comments are to be evaluated from here. None before the first request; see `steps_of`.
+        attributes: the attributes of the result as they are written.
+        evaluated: the names of the attributes to be evaluated or counted.
+        size: the number of elements, including this one, if it is unchanged, else 0.
+        height: the maximum nesting depth.
+        steps: the steps for the children, in order, each with its kind, its object and a flag. For TAG, the flag is
+            whether any node follows; for SWITCH, whether comments must be evaluated from here. None before the first
+            request; see `steps_of`.
     """
 
     __slots__ = ("attributes", "evaluated", "height", "size", "steps")
@@ -74,14 +75,14 @@ class Plan(CachedText):
 
 
 def plan_document(document: Document) -> None:
-    """Record where the root of an unchanged document ends, so that its plan can be read off the text."""
+    """Record where the root of an unchanged document ends, so that its plan can be derived from its text."""
     root = document.root
     if root.plan is None and document.doctype is None and document.source is not None:
         root.plan = len(document.source.text)
 
 
 def plan_of(node: Element) -> Plan:
-    """The plan of an element."""
+    """Return the plan of an element."""
     plan = node.plan
     if not isinstance(plan, Plan):
         plan = node.plan = _worked_out(node, plan if isinstance(plan, int) else _UNKNOWN, 0)
@@ -89,7 +90,7 @@ def plan_of(node: Element) -> Plan:
 
 
 def steps_of(node: Element) -> list[Step]:
-    """The steps for the children of an element."""
+    """Return the steps for the children of an element."""
     plan = plan_of(node)
     if plan.steps is None:
         plan.steps = _Children(node.children, _UNKNOWN, 0).steps
@@ -97,7 +98,7 @@ def steps_of(node: Element) -> list[Step]:
 
 
 def _worked_out(node: Element, end: int, depth: int) -> Plan:
-    """The plan of an element whose text ends at an offset, if that is known."""
+    """Return the plan of an element, given the offset where its text ends, if it is known."""
     plan = Plan(node.attributes)
     children = _Children(node.children, end, depth)
     plan.steps = children.steps
@@ -126,20 +127,20 @@ def _plan_attributes(plan: Plan, attributes: dict[str, str]) -> None:
 
 
 class _Children:
-    """Works out the steps for the children of an element.
+    """A builder of the steps for the children of an element.
 
     Attributes:
         steps: the steps.
-        come_out: whether all stay as they are.
-        size: how many elements they are together then.
-        height: how deep they nest at most.
+        come_out: whether all children are unchanged.
+        size: their total number of elements in that case.
+        height: their maximum nesting depth.
     """
 
     def __init__(self, children: list[Node], end: int, depth: int) -> None:
         self.steps: list[Step] = []
         self.come_out = True
         self.size = self.height = 0
-        self._kept: list[Node] = []  # since the last step
+        self._kept: list[Node] = []  # the unchanged nodes since the last step
         self._since_element = 0  # how many of them follow the last element
         self._run_size = self._run_height = 0
         self._plan(children, end, depth)
@@ -214,7 +215,7 @@ class _Children:
 
 
 def _inner_plan(node: Element, stop: int, depth: int) -> Plan | None:
-    """The plan of an ordinary child whose text ends at an offset; None if it is too deep to be planned yet."""
+    """Return the plan of an ordinary child whose text ends at an offset; None if it is too deep for now."""
     inner = node.plan
     if isinstance(inner, Plan):
         return inner
@@ -233,9 +234,10 @@ def _inner_plan(node: Element, stop: int, depth: int) -> Plan | None:
 
 
 def _size_of_plain(text: str) -> int:
-    """How many elements an element with this text is, if the text has no sign of the language, else 0.
+    """Return the number of elements in an element's text without signs of the language, else 0.
 
-    What may have one is refused: references to characters, comments, and what is so long that it is to be paid for.
+    Texts that may contain such signs are refused: those with character references or comments, and those that are long
+    enough to be charged.
     """
     if any(sign in text for sign in _SIGNS):
         return 0

@@ -39,10 +39,10 @@ if TYPE_CHECKING:
 
 
 class Packages(Protocol):
-    """Finds the share folders of packages, as `linkwright.packages.PackageFinder` does."""
+    """The interface for finding share folders, which `linkwright.packages.PackageFinder` implements."""
 
     def share(self, name: str) -> Path:
-        """The share folder of a package; raises `LinkwrightError` when there is no such package."""
+        """Return the share folder of a package; raises `LinkwrightError` if there is no such package."""
         ...
 
 
@@ -53,17 +53,17 @@ class Session:
     """The state of one expansion, apart from the tree.
 
     Attributes:
-        arguments: name -> value of every argument given or declared so far.
-        known_arguments: the names of those that the files declare or use.
+        arguments: name -> value of every argument passed or declared so far.
+        known_arguments: the names of the arguments that the files declare or use.
         limits: the bounds of the expansion.
         budget: the remaining budget.
-        file: the file being processed, to whose folder relative paths refer.
+        file: the file being processed; relative paths start from its folder.
         frame: the innermost macro call or include being processed, or None.
         place: the element or text being processed, which warnings point to.
-        attribute: the attribute of that element which is being evaluated, or None.
-        resolving: the properties being evaluated because of one another, outermost first.
+        attribute: the attribute of `place` that is being evaluated, or None.
+        resolving: the nested properties being evaluated, outermost first.
         dependencies: the files read so far, the main file first.
-        root_dir: the folder that relative paths are in; empty for the current one.
+        root_dir: the folder that relative paths start from; empty for the current folder.
         diagnostics: the warnings so far.
     """
 
@@ -96,26 +96,26 @@ class Session:
         self.globals = Scope(None, self, symbols.global_names(self))
 
     def close(self) -> None:
-        """Release all scopes, which refer to the session, so that unused objects are freed at once."""
+        """Release all scopes, which refer to the session, so that unused objects are freed immediately."""
         self.globals.values.clear()
         del self.globals
 
     # texts
 
     def evaluate(self, text: str, scope: Scope) -> Any:
-        """The value of a text in a scope.
+        """Return the value of a text in a scope.
 
         Raises:
-            Fault: it has none.
+            Fault: if it has none.
         """
         template = templates.get(text) or compile_template(text)
         return template.evaluate(scope)
 
     def evaluate_text(self, text: str, scope: Scope) -> str:
-        """The text that is written for one with expressions, in a scope.
+        """Return the text that is written for a text with expressions in a scope.
 
         Raises:
-            Fault: it has no value.
+            Fault: if it has no value.
         """
         template = templates.get(text) or compile_template(text)
         value = template.evaluate(scope)
@@ -126,10 +126,10 @@ class Session:
         return self.written(text, value)
 
     def written(self, text: str, value: Any) -> str:
-        """The text that is written for the value of an expression.
+        """Return the text that is written for the value of an expression.
 
         Raises:
-            Fault: XML cannot hold it, or it is too long.
+            Fault: if XML cannot represent it, or it is too long.
         """
         if value.__class__ is str:
             if not value.isprintable():
@@ -143,13 +143,13 @@ class Session:
             ) from None
 
     def changes(self, text: str) -> bool:
-        """Whether evaluating a text may change a value, as ``${items.pop(0)}`` does."""
+        """Return whether evaluating a text may change a value, as ``${items.pop(0)}`` does."""
         return compile_template(text).changes
 
     # names
 
     def undefined(self, name: str, environment: Environment, start: int, end: int) -> Fault:
-        """The fault for a name that no scope has."""
+        """Return the fault for a name that no scope defines."""
         provided = self.globals.values
         python = provided["python"].values
         if name in ("true", "false"):
@@ -173,7 +173,7 @@ class Session:
         return fault
 
     def nearest_attribute(self, owner: Any, name: str) -> Phrase | None:
-        """A hint for a name that a value does not have."""
+        """Return a hint for an attribute name that a value does not have, or None."""
         candidates: Iterable[Any] = ()
         if isinstance(owner, Module):
             candidates = owner.values
@@ -184,10 +184,10 @@ class Session:
         return did_you_mean(name, [candidate for candidate in candidates if isinstance(candidate, str)])
 
     def argument(self, name: str) -> str:
-        """The value of an argument.
+        """Return the value of an argument.
 
         Raises:
-            Fault: XAC211 when it is neither declared nor given.
+            Fault: XAC211 if it is neither declared nor passed.
         """
         value = self.arguments.get(name) if isinstance(name, str) else None
         if value is None:
@@ -199,10 +199,10 @@ class Session:
         return value
 
     def package(self, name: str) -> str:
-        """The share folder of a package.
+        """Return the share folder of a package.
 
         Raises:
-            Fault: no such package is found.
+            Fault: if no such package is found.
         """
         known = self._known_packages.get(name)
         if known is None:
@@ -233,11 +233,11 @@ class Session:
         return os.path.abspath(self.root_dir)  # noqa: PTH100 - a string is needed
 
     def on_disk(self, path: str) -> str:
-        """The path of a file on the disk, for its path in the description."""
+        """Return the path on disk for a path in the description."""
         return os.path.join(self.root_dir, path)  # noqa: PTH118 - kept as it is written
 
     def read(self, path: str) -> Document:
-        """The document of a file; see `sources.read`."""
+        """Return the document of a file; see `sources.read`."""
         document = sources.read(self.on_disk(path), self._overlay)
         plan_document(document)
         if document.encoding != UTF_8 and document.source is not None:
@@ -245,18 +245,18 @@ class Session:
         return document
 
     def absolute(self, name: str) -> str:
-        """A file name relative to the file being processed, with that file's folder before it."""
+        """Return a file name relative to the file being processed, with that file's folder prepended."""
         return os.path.join(os.path.dirname(self.file), name)  # noqa: PTH118, PTH120 - kept as it is written
 
     def depends_on(self, file: str) -> None:
-        """Remember that a file was read."""
+        """Record that a file was read."""
         self.dependencies.setdefault(file, None)
 
     def load_yaml(self, name: str) -> Any:
-        """The value of a YAML file, whose name is relative to the file being processed.
+        """Return the value of a YAML file whose name is relative to the file being processed.
 
         Raises:
-            Fault: XAC506 when there is no such file or it is not YAML.
+            Fault: XAC506 if there is no such file or it is not YAML.
         """
         from linkwright.xacro.expressions import yamldata
 
@@ -284,13 +284,13 @@ class Session:
         return compile_expression(expression).evaluate(self.globals)
 
     def dotify(self, mapping: Any = (), **items: Any) -> YamlDict:
-        """A mapping whose items are reached with a dot too."""
+        """Return a mapping whose items are also accessible with a dot."""
         return YamlDict(keys(mapping), **items)
 
     # findings
 
     def warn_of_unused_arguments(self) -> None:
-        """Warn of arguments that were given and that no file declares or uses; they are probably misspelt."""
+        """Warn about arguments that were passed but that no file declares or uses; they are probably misspelt."""
         self.place = self.frame = None
         for name in self.arguments:
             if name not in self.known_arguments:
@@ -311,15 +311,15 @@ class Session:
         severity: Severity = Severity.WARNING,
         called: str | None = None,
     ) -> Diagnostic | None:
-        """Record a finding that does not stop the expansion; the same one at the same place only once.
+        """Record a finding that does not stop the expansion, at most once for each place.
 
         Args:
             code: the diagnostic's code.
             message: its message.
             span: its place; None for the text that is being evaluated.
-            hint: how to fix it.
-            severity: how bad it is.
-            called: the function whose call in the text being evaluated the finding is about.
+            hint: how to fix the problem.
+            severity: its severity.
+            called: the function that the finding is about, which the text being evaluated calls.
 
         Returns:
             The finding; None if it was recorded before.
@@ -336,7 +336,7 @@ class Session:
         return diagnostic
 
     def withdraw(self, diagnostic: Diagnostic) -> None:
-        """Drop a finding that a later definition resolved."""
+        """Remove a finding that a later definition resolved."""
         self.diagnostics.remove(diagnostic)
         self._reported.discard((diagnostic.code, diagnostic.message, diagnostic.span))
 
@@ -366,7 +366,7 @@ class Session:
         self.diagnostics.append(Diagnostic("XAC905", message, source.span(0), Severity.WARNING, notes, hint, source))
 
     def deprecated(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
-        """A function that still has a bare name and warns when it is called by it."""
+        """Return a function that warns when it is called by its deprecated bare name."""
         bare = better.partition(".")[2]
 
         def warning(*arguments: Any, **named: Any) -> Any:
@@ -381,7 +381,7 @@ class Session:
         return warning
 
     def reporter(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
-        """Make ``xacro.message``, ``xacro.warning`` or ``xacro.error``, by which a description addresses its user."""
+        """Create ``xacro.message``, ``xacro.warning`` or ``xacro.error``, which show a message to the user."""
 
         def report(*words: Any, **_options: Any) -> str:
             text = foreign(" ".join(map(sandbox.as_text, words))) or phrase("here")
@@ -391,7 +391,7 @@ class Session:
         return report
 
 
-# Not compiled here: a printable text, as nearly every value is, has none of these.
+# Not compiled here: nearly every value is printable, and has none of these.
 _NOT_XML = "[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]"
 
 

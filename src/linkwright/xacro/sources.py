@@ -1,4 +1,4 @@
-"""The files of descriptions, each parsed once in a process for as long as it does not change."""
+"""The files of descriptions, each parsed once in a process until it changes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ cache: BoundedCache[tuple[str, str], tuple[int, int, Document]] = BoundedCache(_
 
 
 def read(path: str, overlay: Overlay | None = None) -> Document:
-    """The document of a file, which must not be changed: others read the same one.
+    """Return the document of a file, which is shared and must not be changed.
 
     Args:
         path: the file.
@@ -25,8 +25,8 @@ def read(path: str, overlay: Overlay | None = None) -> Document:
     Raises:
         LinkwrightError: see `linkwright.xmltree.parse_file`.
     """
-    if _LINKS in path:  # a package that is not built
-        from linkwright.packages.share_layout import source_of  # few robots need the room of packages for it
+    if _LINKS in path:  # a link folder of an unbuilt package
+        from linkwright.packages.share_layout import source_of  # few robots need the packages room for this
 
         path = source_of(path)
     unsaved = None if overlay is None else overlay.document(path)
@@ -36,7 +36,7 @@ def read(path: str, overlay: Overlay | None = None) -> Document:
     try:
         status = os.stat(path)  # noqa: PTH116
     except (OSError, ValueError):
-        return parse_file(path)  # its error gives the reason
+        return parse_file(path)  # raises the error with the reason
     known = cache.values.get(key)
     if known is not None and known[:2] == (status.st_mtime_ns, status.st_size):
         return known[2]

@@ -1,1 +1,1 @@
-"""The language of ``${...}`` and ``$(...)``: its reader, its compiler, and the sandbox for its evaluation."""
+"""The language of ``${...}`` and ``$(...)``: parser, compiler, and sandbox for evaluation."""

@@ -1,8 +1,9 @@
-"""Python's own functions where a single call of them could take hours.
+"""Limited versions of Python functions, a single call of which could take hours.
 
-An expression pays for its work step by step, and the clock is read between two steps; nothing can end one
-call of a function that is written in C. So each function that some arguments make slow is listed here with a bound:
-keys that have one hash, searches from the right, texts stripped of many characters, codecs, numbers of many bits.
+An expression pays for its work step by step, and the clock is read between two steps. However, nothing can end a
+single call of a function that is written in C. Therefore, each function that can be slow for some arguments is
+listed here with a limit: keys with equal hashes, searches from the right, texts stripped of many characters,
+codecs, and numbers with many bits.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from linkwright.loading.lean_typing import Any
 
 
 class RefusalError(Exception):
-    """An expression tried something that expressions may not do."""
+    """Raised when an expression attempts something that expressions are not allowed to do."""
 
 
 _MOST_ALIKE = 1_000
@@ -42,10 +43,12 @@ HASHING = frozenset(
 
 
 def keys(value: Any) -> Any:
-    """The value that a set or dict is to be made of: the given one, or a list of its items if it is an iterator.
+    """Return the value from which a set or dict can be built.
+
+    This is the given value, or a list of its items if it is an iterator.
 
     Raises:
-        RefusalError: too many of its items, or of the first of its pairs, have the same hash.
+        RefusalError: if too many of its items, or of the first items of its pairs, have the same hash.
     """
     if isinstance(value, (str, bytes, dict, set, frozenset, range)) or not hasattr(value, "__iter__"):
         return value
@@ -57,10 +60,10 @@ def keys(value: Any) -> Any:
 
 
 def check_keys(items: Collection[Any]) -> None:
-    """Refuse keys of which too many have the same hash.
+    """Check that keys do not include too many with the same hash.
 
     Raises:
-        RefusalError: more than a thousand of them that differ.
+        RefusalError: if more than a thousand different keys have the same hash.
     """
     for alike, count in Counter(map(_hash_of, items)).items():
         if count > _MOST_ALIKE and len({repr(item) for item in items if _hash_of(item) == alike}) > _MOST_ALIKE:
@@ -74,7 +77,7 @@ def check_keys(items: Collection[Any]) -> None:
 def _hash_of(item: Any) -> int:
     try:
         return hash(item)
-    except TypeError:  # a list is not a key; it is refused in a moment
+    except TypeError:  # a list is not a valid key, and is refused later
         return id(item)
 
 
@@ -103,11 +106,11 @@ def _stripped(name: str) -> Callable[..., Any]:
 
 
 def check_codec(value: Any, encoding: str) -> None:
-    """Refuse to encode or decode a long value with a codec whose time grows with the square of the length.
+    """Check that a long value is not encoded or decoded with a codec of quadratic running time.
 
     Raises:
-        RefusalError: it is too long.
-        LookupError: there is no such codec; none has a name beyond ASCII, at which Python 3.15 complains.
+        RefusalError: if it is too long.
+        LookupError: if there is no such codec; this includes non-ASCII names, for which Python 3.15 warns.
     """
     if isinstance(encoding, str) and not encoding.isascii():
         raise LookupError(f"unknown encoding: {encoding}")
@@ -167,16 +170,16 @@ _WRITTEN = r"(?s)\\.|\]"
 
 
 def split(pattern: str, text: str) -> list[str]:
-    """The parts of a text between the matches of a class of characters.
+    """Return the parts of a text between the matches of a character class.
 
     Args:
-        pattern: begins with ``[`` and ends with ``]``, as ros/xacro composes it; if another ``]`` ends the
-            class before that, it is any expression at all.
+        pattern: the regular expression, which begins with ``[`` and ends with ``]``, as ros/xacro composes it. If
+            another ``]`` ends the class earlier, it can be any expression.
         text: the text to split.
 
     Raises:
-        re.error: it is not a regular expression.
-        RefusalError: it takes too long.
+        re.error: if the pattern is not a regular expression.
+        RefusalError: if it takes too long.
     """
     begins = re.match(_CLASS_BEGINS, pattern)
     written = re.compile(_WRITTEN).finditer(pattern, begins.end() if begins else 0)
@@ -185,7 +188,7 @@ def split(pattern: str, text: str) -> list[str]:
         return re.split(pattern, text)
     import regex
 
-    re.compile(pattern)  # its error has the words of ros/xacro
+    re.compile(pattern)  # raises the same error message as ros/xacro
     try:
         return regex.split(pattern, text, timeout=_SECONDS)
     except regex.error as error:

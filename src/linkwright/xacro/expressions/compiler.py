@@ -1,13 +1,13 @@
-"""Compiles the syntax tree of an expression to nested closures.
+"""Compiler from the syntax tree of an expression to nested closures.
 
-There is one method for each kind of node that expressions may use; a node of any other kind is refused. A closure
-takes the environment and returns the value of its node; its operations on values go through the sandbox. Every closure
-that can fail knows its place in the text, which makes the columns in messages exact.
+There is one method for each kind of node that expressions may use. Nodes of any other kind are refused. A closure
+takes the environment and returns the value of its node. Its operations on values are performed by the sandbox.
+Every closure that can fail knows its place in the text, which makes the columns in messages exact.
 """
 
 from __future__ import annotations
 
-import _ast as ast  # the nodes alone: the rest of ast takes long to import
+import _ast as ast  # only the nodes: the rest of ast takes long to import
 import operator
 import re
 from collections.abc import Callable, Iterator
@@ -72,7 +72,7 @@ _COMPARISONS: dict[str, Callable[[Any, Any], Any]] = {
 
 
 def failure(error: Exception, segment: str, start: int, end: int) -> Fault:
-    """The fault for an exception that Python raised at a part of an expression."""
+    """Return the fault for a Python exception that was raised in a part of an expression."""
     segment = " ".join(segment.split())
     if len(segment) > 60:
         segment = f"{segment[:57]}..."
@@ -89,7 +89,7 @@ def failure(error: Exception, segment: str, start: int, end: int) -> Fault:
     elif isinstance(error, RecursionError):
         words = phrase("it is nested too deeply")
     elif isinstance(error, ZeroDivisionError):
-        words = "division by zero"  # before Python 3.14 the words depend on the kind of number
+        words = "division by zero"  # before Python 3.14, the message depends on the kind of number
     return Fault(
         "XAC202",
         phrase("cannot evaluate '{segment}': {words}", segment=segment, words=foreign(words)),
@@ -100,11 +100,11 @@ def failure(error: Exception, segment: str, start: int, end: int) -> Fault:
 
 
 class Compiler:
-    """Compiles the nodes of one expression.
+    """A compiler for the nodes of one expression.
 
     Args:
         source: the text that was parsed.
-        shift: how many characters precede it in the text that it was taken from.
+        shift: the number of characters before it in the text that contains it.
 
     Attributes:
         changes: whether a compiled node may change a value.
@@ -118,10 +118,10 @@ class Compiler:
         self.changes = False
 
     def compile(self, node: ast.AST) -> Closure:
-        """The closure of a node.
+        """Return the closure for a node.
 
         Raises:
-            Fault: XAC204 when expressions may not use such a node.
+            Fault: XAC204 if expressions may not use such a node.
         """
         method = _METHODS.get(node.__class__)
         if method is None:
@@ -158,7 +158,10 @@ class Compiler:
         return Fault("XAC204", message, start, end)
 
     def _operand_hint(self, error: Exception, *operands: tuple[ast.expr, Any]) -> Phrase | None:
-        """A hint on the operand that does not fit, unless it is a constant: zero, a text, a number with its unit."""
+        """Return a hint on the unsuitable operand, such as a zero, a text, or a number with a unit.
+
+        Constants get no hint.
+        """
         for node, value in operands:
             written = self._segment(*self._place(node))
             if isinstance(node, ast.Constant) or len(written) > 40:
@@ -184,7 +187,7 @@ class Compiler:
     # names and constants
 
     def name(self, name: str, start: int) -> Closure:
-        """The closure of a name at an offset of the source."""
+        """Return the closure for a name at an offset of the source."""
         place = (start + self._shift, start + self._shift + len(name))
         if name.startswith("__"):
             raise Fault("XAC204", phrase("the name '{name}' may not be used in an expression", name=name), *place)
@@ -207,7 +210,7 @@ class Compiler:
     def _joinedstr(self, node: ast.JoinedStr) -> Closure:
         from ast import copy_location, walk
 
-        for part in walk(node):  # before Python 3.12 the places inside of an f-string are not those in the text
+        for part in walk(node):  # before Python 3.12, the positions inside an f-string are not those in the text
             if isinstance(part, ast.expr):
                 copy_location(part, node)
         parts = [self.compile(part) for part in node.values]
@@ -318,7 +321,7 @@ class Compiler:
         test, then, otherwise = self.compile(node.test), self.compile(node.body), self.compile(node.orelse)
         return lambda env: then(env) if test(env) else otherwise(env)
 
-    # reaching into values
+    # access to members of values
 
     def _attribute(self, node: ast.Attribute) -> Closure:
         value, name = self.compile(node.value), node.attr
@@ -498,7 +501,7 @@ class Compiler:
         return generator
 
     def _turns(self, generators: list[ast.comprehension]) -> Callable[[Environment], Iterator[Environment]]:
-        """The loops of a comprehension: a generator of the environment of each turn."""
+        """Return the loops of a comprehension, as a function that yields the environment of each iteration."""
         loops = []
         for generator in generators:
             if generator.is_async:

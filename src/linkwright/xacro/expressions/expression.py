@@ -1,12 +1,12 @@
 """Expressions: the part of Python that ``${...}`` may contain.
 
 An expression is parsed by Python itself and turned, once for each text, into nested closures (see `compiler`), so
-nothing is ever handed to Python's own ``eval``.
+nothing is ever passed to Python's own ``eval``.
 """
 
 from __future__ import annotations
 
-import _ast as ast  # the nodes alone: the rest of ast takes long to import
+import _ast as ast  # only the nodes: the rest of ast takes long to import
 import re
 from types import GeneratorType
 
@@ -36,8 +36,9 @@ class Expression:
     """A compiled expression.
 
     Attributes:
-        source: its text.
-        evaluate: gives its value in a scope, or raises a `Fault`, whose offsets count from the beginning of the source.
+        source: the text of the expression.
+        evaluate: the function that returns its value in a scope, or raises a `Fault`, whose offsets are relative to the
+            source.
         changes: whether evaluating it may change a value, as ``items.pop(0)`` does.
     """
 
@@ -69,31 +70,31 @@ expressions = _compiler.forms
 
 
 def compile_expression(source: str) -> Expression:
-    """The compiled form of an expression; the same source gives the same one.
+    """Return the compiled form of an expression, which is cached by source.
 
     Raises:
-        Fault: XAC102 or XAC204 when it is malformed or forbidden.
+        Fault: XAC102 or XAC204 if it is malformed or forbidden.
     """
     return expressions.get(source) or _compiler.make(source)
 
 
 def _run_through(closure: Closure, source: str) -> Closure:
-    """A closure whose value is nothing that is still to be run through."""
+    """Return a closure that evaluates the items of an iterator immediately, not on demand."""
 
     def evaluate(scope: Scope) -> Any:
         try:
             value = closure(scope)
             return iter(list(value)) if value.__class__ in _ITERATORS else value
-        except FAILURES as error:  # raised by the iteration, such as by a generator
+        except FAILURES as error:  # an error during iteration, such as in a generator
             raise failure(error, source.strip(), 0, len(source)) from None
 
     return evaluate
 
 
 def is_identifier(name: str) -> bool:
-    """Whether a name can be that of a property: a Python identifier that is not a keyword.
+    """Return whether a name is valid for a property: a Python identifier that is not a keyword.
 
-    Of letters that Python treats as equal, such as a ligature and its letters, only the plain form is a name.
+    If Python treats letters as equal, such as a ligature and its letters, only the plain form is valid.
     """
     if not name.isascii():
         from unicodedata import normalize

@@ -1,14 +1,12 @@
 """Functions of expressions: lambdas, calls, and the steps that a call costs.
 
-Functions that expressions call: calling them, and the steps that they cost.
-
-A function costs as much as the items that it visits: Python's own run through a long list much faster than an
-expression could, but not for free, and an expression may call them as often as it likes.
+A function costs as much as the number of items that it visits. Python's own functions process a long list much
+faster than an expression could, but not for free, and an expression may call them without limit.
 """
 
 from __future__ import annotations
 
-import _ast as ast  # the nodes alone: the rest of ast takes long to import
+import _ast as ast  # only the nodes: the rest of ast takes long to import
 from collections.abc import Callable
 
 from linkwright.diagnostics import phrase
@@ -27,12 +25,12 @@ class Parameters(NamedTuple):
     """The parameters of a lambda, with the values of their defaults.
 
     Attributes:
-        positional: names that take positional arguments.
-        positional_only: how many of them take nothing else.
-        keyword_only: names that take keyword arguments only.
-        rest: the name that takes all further positional arguments, or None.
-        keywords: the name that takes all further keyword arguments, or None.
-        defaults: the values of those that need not be given.
+        positional: the names of the positional parameters.
+        positional_only: how many of these are positional-only.
+        keyword_only: the names of the keyword-only parameters.
+        rest: the name of the parameter for all further positional arguments, or None.
+        keywords: the name of the parameter for all further keyword arguments, or None.
+        defaults: the values of optional parameters.
     """
 
     positional: tuple[str, ...]
@@ -43,10 +41,10 @@ class Parameters(NamedTuple):
     defaults: dict[str, Any]
 
     def bound(self, arguments: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:
-        """Parameter -> value for a call.
+        """Return the value of each parameter for a call.
 
         Raises:
-            TypeError: the arguments do not fit.
+            TypeError: if the arguments do not match the parameters.
         """
         values: dict[str, Any] = dict(zip(self.positional, arguments, strict=False))
         further = arguments[len(self.positional) :]
@@ -82,7 +80,7 @@ class Parameters(NamedTuple):
 
 
 class Function:
-    """A lambda."""
+    """A lambda of an expression."""
 
     __slots__ = ("_around", "_body", "_parameters")
 
@@ -95,7 +93,7 @@ class Function:
         return "<lambda>"
 
     def __call__(self, *arguments: Any, **named: Any) -> Any:
-        """The value of the body for some arguments."""
+        """Return the value of the body for the given arguments."""
         budget = self._around.session.budget
         budget.enter_lambda()
         try:
@@ -107,7 +105,7 @@ class Function:
 def bind_parameters(
     arguments: ast.arguments, compile_node: Callable[[ast.AST], _Closure]
 ) -> Callable[[Environment], Parameters]:
-    """Compile the parameters of a lambda; their defaults are evaluated when the lambda is."""
+    """Compile the parameters of a lambda; the defaults are evaluated together with the lambda."""
     positional = tuple(argument.arg for argument in (*arguments.posonlyargs, *arguments.args))
     keyword_only = tuple(argument.arg for argument in arguments.kwonlyargs)
     defaults = {
@@ -146,17 +144,17 @@ _QUICK = frozenset(
 
 
 def cost(value: Any) -> int:
-    """The steps that one pass over a value costs; the contents of its items do not count."""
+    """Return the number of steps that one pass over a value costs; the contents of its items do not count."""
     share = _SHARES.get(value.__class__)
     return len(value) // share if share else 0
 
 
 def call(budget: Budget, function: Any, arguments: list[Any], keywords: dict[str, Any]) -> Any:
-    """The value that a function gives for some arguments.
+    """Return the value of a function for some arguments.
 
     Raises:
-        RefusalError: the function may not be called, or its value is too large.
-        Fault: XAC603 when there were too many steps.
+        RefusalError: if the function may not be called, or its value is too large.
+        Fault: XAC603 if there were too many steps.
     """
     sandbox.check_call(function)
     steps = _CALL
@@ -181,11 +179,11 @@ def call(budget: Budget, function: Any, arguments: list[Any], keywords: dict[str
 
 
 def charged(budget: Budget, value: Any) -> Any:
-    """Charge the budget for a new value with all its items, and give it back.
+    """Charge the budget for a new value with all its items, and return the value.
 
     Raises:
-        RefusalError: it is too large.
-        Fault: XAC603 when there were too many steps.
+        RefusalError: if it is too large.
+        Fault: XAC603 if there were too many steps.
     """
     weight = sandbox.weight(value)
     if weight:
@@ -194,7 +192,7 @@ def charged(budget: Budget, value: Any) -> Any:
 
 
 def _metered(budget: Budget, function: Any) -> Any:
-    """A function that charges the budget when Python's own functions call it; lambdas of expressions do so anyway."""
+    """Return a function that charges the budget when Python functions call it, as lambdas already do."""
     if not callable(function) or isinstance(function, Function):
         return function
 

@@ -1,8 +1,8 @@
 """The sandbox of expressions: the operations that they may apply to values.
 
-Expressions come from untrusted files, so nothing here is forbidden by name: allowed names are listed, and everything
-else is refused. An attribute is reached only on a type listed here and only if it is listed for that type; a type is
-called only if it is listed; and nothing may grow beyond the bounds below.
+Expressions come from untrusted files. Therefore, the sandbox does not list forbidden names but allowed ones, and
+everything else is refused. An attribute is accessible only if it is listed for its type. A type can be called only
+if it is listed. No value may exceed the limits below.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ MAX_DIGITS = 1_000
 
 
 class Module:
-    """A named group of functions and constants, such as ``math``; expressions reach them with a dot."""
+    """A named group of functions and constants, such as ``math``, whose members are accessed with a dot."""
 
     __slots__ = ("name", "values")
 
@@ -81,11 +81,11 @@ CALLABLE_TYPES = frozenset(
 
 
 def attribute(value: Any, name: str) -> Any:
-    """``value.name``, if it is allowed.
+    """Return ``value.name`` if it is allowed.
 
     Raises:
-        AttributeError: there is no such attribute.
-        RefusalError: there is one, but expressions may not have it.
+        AttributeError: if there is no such attribute.
+        RefusalError: if there is one that expressions may not access.
     """
     kind = value.__class__
     if kind is Module:
@@ -117,7 +117,7 @@ def attribute(value: Any, name: str) -> Any:
 
 
 def subscript(value: Any, key: Any) -> Any:
-    """``value[key]``."""
+    """Return ``value[key]``."""
     if isinstance(value, Namespace):
         return value.lookup(key)
     if value.__class__ is Module:
@@ -130,35 +130,37 @@ def subscript(value: Any, key: Any) -> Any:
 
 
 def contains(container: Any, item: Any) -> bool:
-    """``item in container``."""
+    """Return ``item in container``."""
     return item in (container.values if container.__class__ is Module else container)
 
 
 def check_call(function: Any) -> None:
-    """Refuse to call a type that is not listed.
+    """Check that a function is not a type that expressions may not call.
 
     Raises:
-        RefusalError: it is a type that expressions may not make values of.
+        RefusalError: if expressions may not create values of this type.
     """
     if isinstance(function, type) and function not in CALLABLE_TYPES:
         raise RefusalError(phrase("'{name}' may not be called in expressions", name=function.__name__))
 
 
 def check_size(value: Any) -> Any:
-    """The value itself, unless it is too large.
+    """Return a value if it is not too large.
 
     Raises:
-        RefusalError: a string, list or number is larger than the bounds; for nested lists everything in them counts.
+        RefusalError: if a string, list or number exceeds the limits; nested lists count with their whole content.
     """
     weight(value)
     return value
 
 
 def weight(value: Any) -> int:
-    """How many items or characters a value has, nested ones included; for a number, how many machine words.
+    """Return the number of items or characters in a value, nested ones included.
+
+    For a number, this is the number of machine words.
 
     Raises:
-        RefusalError: a string, list or number is larger than the bounds.
+        RefusalError: if a string, list or number exceeds the limits.
     """
     kind = value.__class__
     if kind is float or kind is bool:
@@ -177,10 +179,10 @@ def weight(value: Any) -> int:
 
 
 def joined(parts: list[str]) -> str:
-    """The parts as one string.
+    """Return the concatenation of the parts.
 
     Raises:
-        RefusalError: it would be too long.
+        RefusalError: if it would be too long.
     """
     length = sum(map(len, parts))
     if length > MAX_LENGTH:
@@ -189,10 +191,10 @@ def joined(parts: list[str]) -> str:
 
 
 def as_text(value: Any) -> str:
-    """``str(value)``, the text that the expansion writes.
+    """Return ``str(value)``, the text that the expansion writes.
 
     Raises:
-        RefusalError: it would be too long.
+        RefusalError: if it would be too long.
     """
     if value.__class__ is str:
         return value
@@ -231,18 +233,18 @@ def _weigh(value: Any) -> int:
     return total
 
 
-# operators that can make something large out of something small
+# operators whose results can be much larger than their operands
 
 
 def add(left: Any, right: Any) -> Any:
-    """``left + right``."""
+    """Return ``left + right``."""
     if isinstance(left, (str, list, tuple, bytes)) and isinstance(right, (str, list, tuple, bytes)):
         _check_length(len(left) + len(right))
     return left + right
 
 
 def multiply(left: Any, right: Any) -> Any:
-    """``left * right``."""
+    """Return ``left * right``."""
     if left.__class__ is float or right.__class__ is float:
         return left * right
     for sequence, times in ((left, right), (right, left)):
@@ -252,7 +254,7 @@ def multiply(left: Any, right: Any) -> Any:
 
 
 def power(base: Any, exponent: Any) -> Any:
-    """``base ** exponent``."""
+    """Return ``base ** exponent``."""
     if (
         isinstance(base, int)
         and isinstance(exponent, int)
@@ -264,7 +266,7 @@ def power(base: Any, exponent: Any) -> Any:
 
 
 def shift_left(value: Any, by: Any) -> Any:
-    """``value << by``."""
+    """Return ``value << by``."""
     if isinstance(value, int) and isinstance(by, int) and value.bit_length() + by > MAX_BITS:
         raise RefusalError(phrase("the number has more than {max_bits:,} bits", max_bits=MAX_BITS))
     return value << by
@@ -274,7 +276,7 @@ _FORMAT = r"%(?:\([^)]*\))?[-+ #0]*(\*|\d+)?(?:\.(\*|\d+))?"  # not compiled her
 
 
 def modulo(left: Any, right: Any) -> Any:
-    """``left % right``, which for a string is formatting."""
+    """Return ``left % right``, which formats a string."""
     if isinstance(left, (str, bytes)):
         pattern = left if isinstance(left, str) else left.decode("latin-1")
         for digits in (part for found in re.findall(_FORMAT, pattern) for part in found):
@@ -295,16 +297,16 @@ _PLAIN: frozenset[type] = frozenset({bool, complex, float, int, str})
 
 
 def formatted(value: Any, conversion: int, specification: str) -> str:
-    """The text of a field of an f-string, such as ``{value!r:>8}``.
+    """Return the text of a field of an f-string, such as ``{value!r:>8}``.
 
     Args:
-        value: its value.
-        conversion: the letter after its exclamation mark, as a number; -1 if there is none.
-        specification: the text after its colon.
+        value: the value of the field.
+        conversion: the code of the letter after the exclamation mark; -1 if there is none.
+        specification: the format specification after the colon.
 
     Raises:
-        RefusalError: it would be too long.
-        TypeError: values of this kind have no form that can be specified.
+        RefusalError: if the text would be too long.
+        TypeError: if values of this kind do not support a format specification.
     """
     check_size(value)
     if conversion in _CONVERSIONS:
@@ -338,7 +340,7 @@ OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
 }
 
 
-# methods that can make something large out of something small
+# methods whose results can be much larger than their arguments
 
 
 class _Bound:

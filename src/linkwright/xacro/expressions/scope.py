@@ -1,12 +1,12 @@
-"""Where the names in expressions are looked up, and the values that their texts become.
+"""The lookup of names in expressions, and the conversion of their texts to values.
 
 Scopes form a chain. A macro call opens one whose parent is the caller's (dynamic scoping, as in ros/xacro), an
-include with a namespace opens a `Namespace`, and the outermost one holds the names that the language provides.
+include with a namespace opens a `Namespace`, and the outermost one contains the names that the language provides.
 
-Values of literals: numbers and booleans out of strings, and the texts that count as true.
+Strings that look like numbers or booleans are converted to such values, and some texts count as true.
 
-Both are ros/xacro's, on which real robots rely: ``007`` is 7, ``true`` is True, but ``TRUE``, ``0x10`` and ``1_000``
-are strings.
+Both rules are those of ros/xacro, on which real robots rely: ``007`` is 7 and ``true`` is True, but ``TRUE``,
+``0x10`` and ``1_000`` are strings.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ _BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 
 
 def literal(value: Any) -> Any:
-    """The value of a string that may be a number or a boolean; anything else as it is.
+    """Return the value of a string that may be a number or a boolean; any other value unchanged.
 
-    Single quotes around a string are taken off and keep it a string.
+    Single quotes around a string are removed, and prevent its conversion.
     """
     if not isinstance(value, str) or not value:
         return value
@@ -41,7 +41,7 @@ def literal(value: Any) -> Any:
 
 @lru_cache(maxsize=4096)
 def number_or_boolean(text: str) -> Any:
-    """The value of a text that is a number or a boolean, else the text."""
+    """Return the value of a text that is a number or a boolean, or else the text."""
     if "." not in text:
         try:
             return int(text)
@@ -54,10 +54,12 @@ def number_or_boolean(text: str) -> Any:
 
 
 def truth(value: Any) -> bool:
-    """Whether a condition holds: ``true``, ``True``, ``false``, ``False`` or an integer; else Python's truth.
+    """Return the truth value of a condition.
+
+    A string must be ``true``, ``True``, ``false``, ``False`` or an integer; other values have Python's truth value.
 
     Raises:
-        ValueError: the value is a string that is none of these.
+        ValueError: if the value is any other string.
     """
     if not isinstance(value, str):
         return bool(value)
@@ -66,16 +68,16 @@ def truth(value: Any) -> bool:
 
 
 class Context(Protocol):
-    """The expansion in which a text is evaluated, as far as evaluation needs to know it; a `Session` is one.
+    """The interface of an expansion that evaluation needs; a `Session` implements it.
 
     Attributes:
-        arguments: name -> value of every argument given or declared so far.
+        arguments: name -> value of every argument passed or declared so far.
         limits: the bounds of the expansion.
         budget: the remaining budget.
         file: the file being processed.
         place: the element or text being processed.
-        attribute: the attribute of that element which is being evaluated, or None.
-        resolving: the properties being evaluated because of one another, outermost first.
+        attribute: the attribute of `place` that is being evaluated, or None.
+        resolving: the nested properties being evaluated, outermost first.
     """
 
     arguments: dict[str, str]
@@ -92,32 +94,32 @@ class Context(Protocol):
         ...
 
     def evaluate(self, text: str, scope: Scope) -> Any:
-        """The value of a text in a scope; raises a `Fault` when it has none."""
+        """Return the value of a text in a scope; raises a `Fault` if it has none."""
         ...
 
     def warn(self, code: str, message: Phrase, span: Span | None = None, hint: Phrase | None = None) -> object:
-        """Note a finding that does not stop the expansion; without a span, at what is being evaluated."""
+        """Record a finding that does not stop the expansion; without a span, at the text being evaluated."""
         ...
 
     def argument(self, name: str) -> str:
-        """The value of an argument; raises a `Fault` when it is neither declared nor given."""
+        """Return the value of an argument; raises a `Fault` if it is neither declared nor passed."""
         ...
 
     def package(self, name: str) -> str:
-        """The share folder of a package; raises a `Fault` when there is no such package."""
+        """Return the share folder of a package; raises a `Fault` if there is no such package."""
         ...
 
     def undefined(self, name: str, environment: Environment, start: int, end: int) -> Fault:
-        """The fault for a name that no scope has."""
+        """Return the fault for a name that no scope defines."""
         ...
 
     def nearest_attribute(self, owner: Any, name: str) -> Phrase | None:
-        """A hint for a name that a value does not have."""
+        """Return a hint for an attribute name that a value does not have, or None."""
         ...
 
 
 class Lazy:
-    """A property that is not evaluated yet: its text, and the place of the text."""
+    """A property that is not yet evaluated: its text, and the place of the text."""
 
     __slots__ = ("attribute", "element", "resolving", "text")
 
@@ -129,7 +131,7 @@ class Lazy:
 
 
 class Scope:
-    """A table of names and the scope around it."""
+    """A table of names, with its parent scope."""
 
     __slots__ = ("parent", "session", "values")
 
@@ -139,11 +141,11 @@ class Scope:
         self.values: dict[str, Any] = {} if values is None else values
 
     def lookup(self, name: str) -> Any:
-        """The value of a name, evaluated at the first lookup.
+        """Return the value of a name, which is evaluated at the first lookup.
 
         Raises:
-            KeyError: no scope of the chain has it.
-            Fault: evaluating it failed.
+            KeyError: if no scope of the chain defines the name.
+            Fault: if its evaluation fails.
         """
         scope: Scope | None = self
         while scope is not None:
@@ -165,14 +167,14 @@ class Scope:
     def define(
         self, name: str, value: Any, *, lazy: bool = False, element: Element | None = None, attribute: str = "value"
     ) -> None:
-        """Give a name a value in this scope, after the literal rule.
+        """Assign a value to a name in this scope, applying the literal rule.
 
         Args:
             name: the name.
             value: the value; a string is subject to the literal rule.
             lazy: whether a string is evaluated only at its first lookup.
-            element: the element that the text is written in, for messages.
-            attribute: its attribute that contains the text.
+            element: the element that contains the text, for messages.
+            attribute: the attribute of this element that contains the text.
         """
         plain = literal(value)
         if lazy and isinstance(plain, str):
@@ -183,40 +185,40 @@ class Scope:
         self.values[name] = plain
 
     def assign(self, name: str, value: Any) -> None:
-        """Define a property here, for ``name := value`` in an expression."""
+        """Define a property in this scope, for ``name := value`` in an expression."""
         self.define(name, value, lazy=True)
 
     def bind(self, name: str, value: Any) -> None:
-        """Give a name a value as it is."""
+        """Assign a value to a name without converting it."""
         self.values[name] = value
 
     def inner(self) -> Local:
-        """The environment of a lambda or comprehension in an expression that is evaluated here."""
+        """Return the environment of a lambda or comprehension in an expression that is evaluated here."""
         return Local(self, {})
 
     def remove(self, name: str) -> None:
-        """Take a name out of every scope of the chain but the outermost."""
+        """Remove a name from every scope of the chain except the outermost."""
         scope = self
         while scope.parent is not None:
             scope.values.pop(name, None)
             scope = scope.parent
 
     def document_scope(self) -> Scope:
-        """The scope of the document, which is just inside the outermost one."""
+        """Return the scope of the document, which is just inside the outermost scope."""
         scope = self
         while scope.parent is not None and scope.parent.parent is not None:
             scope = scope.parent
         return scope
 
     def names(self) -> Iterator[str]:
-        """All names that can be seen from here, for suggestions; blocks left out."""
+        """Yield all names that are visible here, except blocks, for suggestions."""
         scope: Scope | None = self
         while scope is not None:
             yield from (name for name in scope.values if not name.startswith("*"))
             scope = scope.parent
 
     def blocks(self) -> Iterator[str]:
-        """The names of all blocks that can be seen from here, with their asterisks."""
+        """Yield the names of all blocks that are visible here, with their asterisks."""
         scope: Scope | None = self
         while scope is not None:
             yield from (name for name in scope.values if name.startswith("*"))
@@ -256,13 +258,13 @@ class Scope:
 
 
 class Namespace(Scope):
-    """The scope of an include with a namespace; expressions reach its properties with a dot."""
+    """The scope of an include with a namespace, whose properties are accessed with a dot."""
 
     __slots__ = ()
 
 
 class Local:
-    """The variables of a lambda or comprehension, and the environment around it."""
+    """The variables of a lambda or comprehension, with the enclosing environment."""
 
     __slots__ = ("_around", "_values", "session")
 
@@ -272,29 +274,29 @@ class Local:
         self.session: Context = around.session
 
     def lookup(self, name: str) -> Any:
-        """The value of a name; see `Scope.lookup`."""
+        """Return the value of a name; see `Scope.lookup`."""
         if name in self._values:
             return self._values[name]
         return self._around.lookup(name)
 
     def bind(self, name: str, value: Any) -> None:
-        """Give a variable its value."""
+        """Assign a value to a variable."""
         self._values[name] = value
 
     def assign(self, name: str, value: Any) -> None:
-        """Define a property in the scope around, for ``name := value``."""
+        """Define a property in the enclosing scope, for ``name := value``."""
         self._around.assign(name, value)
 
     def inner(self) -> Local:
-        """The environment of a lambda or comprehension inside this one."""
+        """Return the environment of a lambda or comprehension inside this one."""
         return Local(self, {})
 
     def blocks(self) -> Iterator[str]:
-        """The names of all blocks that can be seen from here; see `Scope.blocks`."""
+        """Yield the names of all blocks that are visible here; see `Scope.blocks`."""
         return self._around.blocks()
 
     def names(self) -> Iterator[str]:
-        """All names that can be seen from here."""
+        """Yield all names that are visible here."""
         yield from self._values
         yield from self._around.names()
 

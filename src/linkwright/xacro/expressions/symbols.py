@@ -1,7 +1,8 @@
 """The names that the language provides to expressions.
 
-They are those of ros/xacro: a few of Python's functions, all of ``math``, and the groups ``math``, ``python`` and
-``xacro``. Functions that could make very large values, or reach objects that expressions may not see, are guarded.
+They are the same as in ros/xacro: a few of Python's functions, all of ``math``, and the groups ``math``, ``python``
+and ``xacro``. Functions that could create very large values, or reach objects that expressions may not see, are
+guarded.
 """
 
 from __future__ import annotations
@@ -125,7 +126,7 @@ _PYTHON_NAMES: dict[str, Any] = {name: _GUARDED.get(name, getattr(builtins, name
 
 
 def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
-    """The parts of a text between any of some characters."""
+    """Split a text at any of some separator characters."""
     inside = re.sub(r"(?<!\\)([\[\]])", r"\\\1", sep)
     try:
         parts = bounded.split(f"[{inside}]", text)
@@ -141,35 +142,35 @@ def _fatal(*words: Any) -> None:
 
 
 class Provider(Protocol):
-    """The interface of a `Session` for the functions of ``xacro``."""
+    """The part of a `Session` that the functions of ``xacro`` need."""
 
     def load_yaml(self, name: str) -> Any:
-        """The value of a YAML file."""
+        """Return the value of a YAML file."""
         ...
 
     def absolute(self, name: str) -> str:
-        """A file name relative to the file being processed, with that file's folder before it."""
+        """Return a file name relative to the file being processed, with that file's folder prepended."""
         ...
 
     def dotify(self, mapping: Any = (), **items: Any) -> Any:
-        """A mapping whose items are reached with a dot too."""
+        """Return a mapping whose items are also accessible with a dot."""
         ...
 
     def argument(self, name: str) -> str:
-        """The value of an argument."""
+        """Return the value of an argument."""
         ...
 
     def reporter(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
-        """Make ``xacro.message``, ``xacro.warning`` or ``xacro.error``, by which a description addresses its user."""
+        """Create ``xacro.message``, ``xacro.warning`` or ``xacro.error``, which show a message to the user."""
         ...
 
     def deprecated(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
-        """A function that still has a bare name and warns when it is called by it."""
+        """Return a function that warns when it is called by its deprecated bare name."""
         ...
 
 
 def global_names(session: Provider) -> dict[str, Any]:
-    """The names of the outermost scope of one expansion."""
+    """Return the names in the outermost scope of one expansion."""
     functions: dict[str, Any] = {
         "load_yaml": session.load_yaml,
         "abs_filename": session.absolute,

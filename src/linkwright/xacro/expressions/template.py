@@ -1,18 +1,18 @@
-"""Texts with ``${...}`` and ``$(...)`` in them, compiled once for each text and evaluated in any scope.
+"""Texts with ``${...}`` and ``$(...)``, compiled once for each text and evaluated in any scope.
 
-A text that is exactly one token keeps the type of its value, such as a float or a list; any other result is joined to a
-string. The result is not evaluated again.
+A text that is exactly one token keeps the type of its value, such as a float or a list. Any other result is joined
+to a string. The result is not evaluated again.
 
-The lexer for text with ``${expressions}`` and ``$(substitutions)`` in it.
+The lexer splits a text with ``${expressions}`` and ``$(substitutions)``.
 
 The rules are those of ros/xacro, tried in this order at each place: two or more dollars before a brace or
-parenthesis lose one of them and make it literal; ``${`` runs to the first ``}``; ``$(`` runs to the first ``)``;
-anything else is text, in which a dollar may stand alone.
+parenthesis lose one of them and make it literal; ``${`` extends to the first ``}``; ``$(`` extends to the first
+``)``; anything else is text, which may contain single dollars.
 
-Substitution arguments: ``$(arg name)``, ``$(find package)`` and their like.
+Substitution arguments are ``$(arg name)``, ``$(find package)`` and similar commands.
 
-The text between the parentheses is split at blanks into a command and its arguments. Each ``$(find ...)`` in the result
-is evaluated too, so that the value of an argument may contain one.
+The text between the parentheses is split at blanks into a command and its arguments. Each ``$(find ...)`` in the
+result is evaluated, too, so that the value of an argument may contain one.
 """
 
 from __future__ import annotations
@@ -44,11 +44,10 @@ _REFERENCE = r"\$\(([^()$]+)\)"  # not compiled here: few files need it
 
 
 def substitute(body: str, session: Context) -> str:
-    """The value of ``$(body)``.
+    """Return the value of ``$(body)``.
 
     Raises:
-        Fault: the command is unknown, lacks its arguments, or finds nothing; the offsets count from the beginning of
-            the body.
+        Fault: if the command is unknown, lacks its arguments, or finds nothing; the offsets are relative to the body.
     """
     if not body:
         return "$()"
@@ -139,11 +138,11 @@ def _optional_variable(words: list[str], _session: Context) -> str:
 
 
 def _environment(name: str) -> str | None:
-    """A variable of the environment; those that each ROS installation sets are there without one, too."""
+    """Return an environment variable; those that every ROS installation sets are always available."""
     value = os.environ.get(name)
     if value is not None:
         return value
-    from linkwright.packages.ament import ROS_VARIABLES  # few robots need the room of packages for it
+    from linkwright.packages.ament import ROS_VARIABLES  # few robots need the packages room for this
 
     return ROS_VARIABLES.get(name)
 
@@ -194,7 +193,7 @@ def _typed(value: str) -> Any:
 
 
 def package_fault(error: LinkwrightError) -> Fault:
-    """The fault for a package that is not found, with the message of the package finder."""
+    """Return the fault for a package that is not found, with the message of the package finder."""
     diagnostic = error.diagnostics[0]
     fault = Fault(diagnostic.code, diagnostic.message, hint=diagnostic.hint)
     fault.notes.extend(diagnostic.notes)
@@ -210,13 +209,13 @@ class TokenKind(Enum):
 
 
 class Token(NamedTuple):
-    """A piece of a text.
+    """A token of a text.
 
     Attributes:
-        kind: its kind.
-        text: the text that a TEXT token yields; for other kinds the text between the brackets.
-        start: offset of its first character.
-        end: offset after its last character.
+        kind: the kind of the token.
+        text: the text that a TEXT token yields; for other kinds, the text between the brackets.
+        start: the offset of its first character.
+        end: the offset after its last character.
     """
 
     kind: TokenKind
@@ -241,13 +240,13 @@ _KINDS = {
 
 
 def tokenize(text: str) -> list[Token]:
-    """The tokens of a text, which together cover all of it.
+    """Return the tokens of a text, which together cover the whole text.
 
     Raises:
-        Fault: XAC101 for a bracket that is never closed or a dollar sign that means nothing.
+        Fault: XAC101 for a bracket that is never closed or a dollar sign without a meaning.
     """
     if text.startswith("${") and text.find("}") == len(text) - 1:
-        return [Token(TokenKind.EXPRESSION, text[2:-1], 0, len(text))]  # most texts with a dollar
+        return [Token(TokenKind.EXPRESSION, text[2:-1], 0, len(text))]  # the form of most texts with a dollar
     pattern = re.compile(_PIECE)
     tokens: list[Token] = []
     at = 0
@@ -286,8 +285,8 @@ class Template:
     """A compiled text.
 
     Attributes:
-        evaluate: gives the value of the text in a scope, or raises a `Fault`, whose offsets count from the beginning
-            of the text.
+        evaluate: the function that returns the value of the text in a scope, or raises a `Fault`, whose offsets are
+            relative to the text.
         changes: whether evaluating it may change a value, as ``${items.pop(0)}`` does.
     """
 
@@ -315,10 +314,13 @@ class Template:
         return _placed(expression.evaluate, start, end)
 
     def _nested(self, token: Token) -> _Part:
-        """A token whose inside is itself a text: that text is evaluated first, and its value is the source."""
+        """Return the part for a token whose content is itself a text.
+
+        That text is evaluated first, and its value is the source of the token.
+        """
         kind, text, start, end = token
         inner = _placed(compile_template(text).evaluate, start, end)
-        self.changes = True  # not known before it is evaluated
+        self.changes = True  # unknown before it is evaluated
 
         def part(scope: Scope) -> Any:
             source = _as_text(inner(scope))
@@ -339,10 +341,10 @@ templates = _compiler.forms
 
 
 def compile_template(text: str) -> Template:
-    """The template of a text; the same text gives the same template.
+    """Return the template of a text; templates are cached by text.
 
     Raises:
-        Fault: XAC101 or XAC102 when the text is malformed.
+        Fault: XAC101 or XAC102 if the text is malformed.
     """
     return templates.get(text) or _compiler.make(text)
 
@@ -359,7 +361,10 @@ def _placed(evaluate: _Part, start: int, end: int) -> _Part:
 
 
 def _joined(texts: list[str], parts: list[_Part | None]) -> _Part:
-    """A function that evaluates the parts of a text and joins them; without a part, the text itself is used."""
+    """Return a function that evaluates the parts of a text and joins them.
+
+    Where there is no part, it uses the text itself.
+    """
     evaluated = [(place, part) for place, part in enumerate(parts) if part is not None]
 
     def join(scope: Scope) -> str:

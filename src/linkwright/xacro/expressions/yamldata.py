@@ -25,17 +25,16 @@ UNITS = {
 
 
 class YamlMapping(dict[Any, Any]):
-    """A mapping inside YAML data: a plain dict in ros/xacro, without access by a dot."""
+    """A mapping inside YAML data, which is a plain dict in ros/xacro, without access by a dot."""
 
     __slots__ = ()
 
 
 class YamlDict(dict[Any, Any]):
-    """A mapping whose items can also be reached with a dot.
+    """A mapping whose items are also accessible with a dot.
 
-    As in ros/xacro, a mapping or list inside gets this access when it is read, as a copy: a loop that empties
-    ``data.joints`` leaves ``data`` as it is. Methods such as ``get`` or ``values`` return the original
-    items.
+    As in ros/xacro, a nested mapping or list gets this access when it is read, as a copy: a loop that empties
+    ``data.joints`` leaves ``data`` unchanged. Methods such as ``get`` or ``values`` return the original items.
     """
 
     __slots__ = ()
@@ -49,7 +48,7 @@ class YamlDict(dict[Any, Any]):
 
 
 class YamlList(list[Any]):
-    """A sequence read from YAML; its items are as those of a `YamlDict`."""
+    """A sequence read from YAML, whose items behave like those of a `YamlDict`."""
 
     __slots__ = ()
 
@@ -68,14 +67,14 @@ COPIED: frozenset[type] = frozenset({YamlDict, YamlList})
 
 
 def wrapped(value: Any) -> Any:
-    """A value of YAML data as expressions reach it."""
+    """Return a value of YAML data in the form that expressions access."""
     if isinstance(value, dict):
         return YamlDict(value)
     return YamlList(value) if isinstance(value, list) else value
 
 
 class YamlError(Exception):
-    """A file that is not YAML; line and column count from 1 and are 0 if they are not known."""
+    """Raised for a file that is not YAML; line and column start at 1 and are 0 if they are not known."""
 
     def __init__(self, message: str, line: int = 0, column: int = 0) -> None:
         super().__init__(message)
@@ -85,14 +84,14 @@ class YamlError(Exception):
 
 
 def load(text: str, evaluate: Callable[[str], Any]) -> Any:
-    """The value of a YAML text.
+    """Return the value of a YAML text.
 
     Args:
-        text: the YAML.
-        evaluate: gives the value of the expression that follows a unit tag.
+        text: the YAML text.
+        evaluate: the function that evaluates the expression after a unit tag.
 
     Raises:
-        YamlError: the text is not YAML, or has a tag that is not known.
+        YamlError: if the text is not YAML, or has an unknown tag.
     """
     if "!" in text:
         return dotted(_load(text, evaluate))
@@ -129,7 +128,7 @@ def _load(text: str, evaluate: Callable[[str], Any] | None) -> Any:
 
 
 def dotted(value: Any) -> Any:
-    """A copy of a value, all of it, as expressions reach it."""
+    """Return a deep copy of a value in the form that expressions access."""
     return wrapped(_copied(value, {}))
 
 
@@ -153,10 +152,10 @@ def _copied(value: Any, seen: dict[int, Any]) -> Any:
 
 
 def _unit_loader(base: type, evaluate: Callable[[str], Any]) -> Any:
-    """A loader class that knows units; one for each file, because each evaluates in an expansion of its own."""
+    """Return a new loader class that knows units; each file needs one, as it evaluates in its expansion."""
 
     class UnitLoader(base):  # type: ignore[misc]
-        """The safe loader plus units."""
+        """The safe loader with additional support for units."""
 
     def with_unit(loader: Any, tag: str, node: Any) -> float:
         return float(evaluate(loader.construct_scalar(node))) * UNITS[f"!{tag}"]

@@ -1,7 +1,7 @@
-"""From YAML nodes to values, for the content of nearly all files: mappings and lists of texts and numbers.
+"""Conversion of YAML nodes with the usual content to values: mappings and lists of scalars.
 
-PyYAML's own way does the same with a dozen calls for each value. It still handles the rare cases: merge keys, keys that
-are not scalars, dates, tags.
+PyYAML's own conversion is equivalent but needs a dozen calls for each value. It still handles the rare cases: merge
+keys, keys that are not scalars, dates, and tags.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ tags: dict[str, str] = {}
 
 
 class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
-    """The safe loader, which remembers the tags of plain scalars, and which has bounds.
+    """The safe loader with limits, which also records the tags of plain scalars.
 
-    Without them, a file of a few lines could fill the memory, or overflow the stack of libyaml's composer.
+    Without the limits, a file of a few lines could fill the memory, or overflow the stack of libyaml's composer.
     """
 
     depth = 0
@@ -34,7 +34,7 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
     large = 0
 
     def resolve(self, kind: Any, value: Any, implicit: Any) -> Any:
-        """The tag of a node that has none."""
+        """Return the tag of a node without an explicit tag."""
         if kind is not yaml.ScalarNode or not implicit[0]:
             return super().resolve(kind, value, implicit)
         tag = tags.get(value)
@@ -45,18 +45,18 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
         return tag
 
     def descend_resolver(self, node: Any, _index: Any) -> None:
-        """Count how deep nodes nest; tags do not depend on the path to a node."""
+        """Count how deeply nodes are nested; tags do not depend on the path to a node."""
         self.depth += 1
         if self.depth > _DEEPEST:
             message = f"the values are nested more than {_DEEPEST} deep"
             raise yaml.composer.ComposerError(None, None, message, node.start_mark)
 
     def ascend_resolver(self) -> None:
-        """See `descend_resolver`."""
+        """Leave a nesting level; see `descend_resolver`."""
         self.depth -= 1
 
     def construct_yaml_int(self, node: Any) -> Any:
-        """Return an integer. Those that may have the hash of another one, and so make slow keys, are counted."""
+        """Return an integer, counting those that may share a hash with others and make keys slow."""
         if len(node.value) > _LONGEST_NUMBER:
             message = f"the number has more than {_LONGEST_NUMBER:,} characters"
             raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
@@ -69,7 +69,7 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
         return number
 
     def flatten_mapping(self, node: Any) -> None:
-        """Put the pairs of merged mappings into a mapping, unless they become too many."""
+        """Add the pairs of merged mappings to a mapping, unless there are too many."""
         super().flatten_mapping(node)
         self.merged += len(node.value)
         if self.merged > _MOST_PAIRS:
@@ -81,14 +81,14 @@ NodeLoader.add_constructor(f"{_PREFIX}int", NodeLoader.construct_yaml_int)
 
 
 class _UnusualError(Exception):
-    """A node that is left to PyYAML."""
+    """Raised for a node that is left to PyYAML."""
 
 
 def construct(loader: Any, node: Any) -> Any:
-    """The value of the root node of a document.
+    """Return the value of the root node of a document.
 
     Raises:
-        yaml.YAMLError: it has none.
+        yaml.YAMLError: if it has none.
     """
     try:
         return _Construction(loader).value(node)

@@ -1,1 +1,1 @@
-"""The tags of the language: one module for each family."""
+"""The xacro tags, with one module for each family."""

@@ -1,4 +1,4 @@
-"""The tags of the language and their effects, except macro calls: arguments, properties, conditions, includes."""
+"""The xacro tags except macro calls, and their effects: arguments, properties, conditions, includes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _OF_PATTERNS = ("*", "[", "?")
 
 
 def include(expander: Expander, site: Site) -> None:
-    """Put the content of a file, or of all files that match a pattern, in the place of the tag."""
+    """Replace the tag with the content of a file, or of all files that match a pattern."""
     node, session = site.node, expander.session
     check_attributes(expander, node, ("filename",), ("ns", "optional"))
     scope, macros = _tables(expander, site)
@@ -132,7 +132,7 @@ def _document(expander: Expander, site: Site, path: str) -> Document:
 
 
 def xml_hint(diagnostic: Diagnostic) -> Phrase | None:
-    """The hint of a mistake in the XML; for the prefix of this language, how to declare it."""
+    """Return the hint of an XML mistake; for the xacro prefix, how to declare it."""
     if diagnostic.code == "XML205" and diagnostic.message.startswith("the prefix 'xacro'"):
         return phrase('declare it on the root element: xmlns:xacro="http://www.ros.org/wiki/xacro"')
     return diagnostic.hint
@@ -156,7 +156,7 @@ def define_property(expander: Expander, site: Site) -> None:
     check_attributes(expander, node, ("name",), _OPTIONAL)
     name = _name(expander, node, scope)
     attributes = node.attributes
-    if len(attributes) == 2 and "value" in attributes:  # as nearly always
+    if len(attributes) == 2 and "value" in attributes:  # the usual case
         warn_of_global(expander, node, name, "name")
         scope.define(name, attributes["value"], lazy=True, element=node)
         return
@@ -216,7 +216,10 @@ def _flag(expander: Expander, node: Element, attribute: str, scope: Scope, *, de
 
 
 def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
-    """Remove a value. False if there is none: then, as in ros/xacro, the element defines a block of this name."""
+    """Remove a value and return whether it existed.
+
+    If it does not exist, the element defines a block with this name, as in ros/xacro.
+    """
     span = node.attribute_span("name")
     if name not in scope:
         expander.session.warn("XAC310", phrase("there is no property '{name}' to remove", name=name), span)
@@ -230,7 +233,7 @@ def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
 
 
 def _target(expander: Expander, node: Element, name: str, scope: Scope) -> tuple[Scope, bool]:
-    """The scope that a property goes to, and whether that is the scope of its tag."""
+    """Return the scope in which a property is defined, and whether it is the scope of its tag."""
     where = node.attributes.get("scope")
     if where == "global":
         return scope.document_scope(), False
@@ -252,7 +255,7 @@ _NAME = r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?"  # not compiled here: few files ne
 
 
 def declare_argument(expander: Expander, site: Site) -> None:
-    """``<xacro:arg name default/>``: gives an argument a value, unless it has one."""
+    """Expand ``<xacro:arg name default/>``: give an argument a value, unless it has one."""
     node, session = site.node, expander.session
     check_attributes(expander, node, ("name", "default"), ())
     name = node.attributes["name"]
@@ -263,10 +266,10 @@ def declare_argument(expander: Expander, site: Site) -> None:
 
 
 def expand_condition(expander: Expander, site: Site) -> None:
-    """``<xacro:if value>`` and ``<xacro:unless value>``: keeps its content, or drops it."""
+    """Expand ``<xacro:if value>`` or ``<xacro:unless value>``: keep the content, or drop it."""
     node, scope, session = site.node, site.scope, expander.session
     output = site.parent.children
-    waiting: list[Any] = []  # the marker is below the tag, unless a tag inside takes it
+    waiting: list[Any] = []  # the marker is below the tag, unless a tag inside it moves it
     if expander.sweeper.sweep(output, followed=site.followed):
         expander.sweeper.mark(waiting)
     check_attributes(expander, node, ("value",), ())
@@ -283,7 +286,7 @@ def expand_condition(expander: Expander, site: Site) -> None:
         expander.fail_at("XAC305", message, node, node.attribute_span("value"), hint)
     if keep is (node.tag == "xacro:if"):
         if "$" in node.attributes["value"] and session.changes(node.attributes["value"]):
-            expander.attributes(node, scope)  # ros/xacro evaluates the attributes of elements that it keeps once more
+            expander.attributes(node, scope)  # ros/xacro evaluates the attributes of kept elements a second time
         container = Container(node.tag)
         expander.children(node, container, scope, site.macros)
         expander.splice(container, site)
@@ -292,7 +295,7 @@ def expand_condition(expander: Expander, site: Site) -> None:
 
 
 def insert_block(expander: Expander, site: Site) -> None:
-    """``<xacro:insert_block name/>``: evaluates a block and puts it here."""
+    """Expand ``<xacro:insert_block name/>``: evaluate a block and insert it here."""
     node, scope = site.node, site.scope
     check_attributes(expander, node, ("name",), ())
     name = node.attributes["name"]
@@ -314,7 +317,10 @@ def insert_block(expander: Expander, site: Site) -> None:
 
 
 def expand_element(expander: Expander, site: Site) -> None:
-    """``<xacro:element xacro:name>``: an element whose tag is evaluated; it may turn out to be any tag."""
+    """Expand ``<xacro:element xacro:name>``: create an element whose tag is evaluated.
+
+    The resulting tag may be any tag.
+    """
     node = site.node
     if "xacro:name" not in node.attributes:
         expander.fail_at("XAC301", phrase("'xacro:element' lacks its attribute 'xacro:name'"), node, node.span())
@@ -330,14 +336,14 @@ def expand_element(expander: Expander, site: Site) -> None:
 
 
 def set_attribute(expander: Expander, site: Site) -> None:
-    """``<xacro:attribute name value/>``: sets an attribute of the element around it."""
+    """Expand ``<xacro:attribute name value/>``: set an attribute of the enclosing element."""
     node = site.node
     check_attributes(expander, node, ("name", "value"), ())
     name = expander.text_value(node, "name", site.scope)
     _check_name(expander, node, "name", "attribute", name)
     value = expander.value(node, "value", site.scope)
     before = expander.unwritable.pop((id(site.parent), name), None)
-    if before is not None:  # its value is not written
+    if before is not None:  # the previous value is not written
         expander.session.withdraw(before[1])
     if isinstance(site.parent, Container) and not name.startswith("xmlns:"):
         message = phrase(
@@ -356,7 +362,7 @@ def set_attribute(expander: Expander, site: Site) -> None:
 
 
 def _warn_of_value(expander: Expander, site: Site, name: str, value: object) -> None:
-    """Warn of a value that is not text, until another one replaces it."""
+    """Warn about a value that is not text, until another one replaces it."""
     node = site.node
     kind = type(value).__name__
     message = (

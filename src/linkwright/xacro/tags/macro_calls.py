@@ -1,4 +1,4 @@
-"""Macros: defining them and calling them."""
+"""Definition and calls of macros."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.xmltree import Element
 
 
 def define_macro(expander: Expander, site: Site) -> None:
-    """``<xacro:macro name params>``: defines a macro."""
+    """Expand ``<xacro:macro name params>``: define a macro."""
     node = site.node
     expander.sweep(site)
     check_attributes(expander, node, ("name",), ("params",))
@@ -46,7 +46,7 @@ def define_macro(expander: Expander, site: Site) -> None:
 
 
 def call_dynamically(expander: Expander, site: Site) -> None:
-    """``<xacro:call macro>``: calls the macro whose name the attribute gives."""
+    """Expand ``<xacro:call macro>``: call the macro whose name is in the attribute."""
     node = site.node
     if not node.attributes.get("macro"):
         expander.fail_at("XAC301", phrase("'xacro:call' lacks its attribute 'macro'"), node, node.span())
@@ -58,15 +58,15 @@ def call_dynamically(expander: Expander, site: Site) -> None:
 
 
 def call_macro(expander: Expander, site: Site) -> None:
-    """``<xacro:NAME ...>``: calls a macro."""
+    """Expand ``<xacro:NAME ...>``: call a macro."""
     _Call(expander, site, site.node.tag[len(PREFIX) :], written_in=None).run()
 
 
 class _Call:
     """One call of a macro.
 
-    The arguments and then the blocks are evaluated in the caller's scope, then the defaults of missing arguments;
-    then the body is expanded in a scope of its own.
+    First the arguments and then the blocks are evaluated in the caller's scope. The defaults of missing arguments
+    follow. Finally, the body is expanded in a new scope.
     """
 
     def __init__(self, expander: Expander, site: Site, name: str, written_in: str | None) -> None:
@@ -143,7 +143,7 @@ class _Call:
             warn_of_global(expander, node, name, name)
             scope.define(name, value)
         left = [parameter for parameter in macro.parameters if parameter.name not in attributes]
-        if len(macro.known) < len(macro.parameters):  # of one declared twice, the second is never given
+        if len(macro.known) < len(macro.parameters):  # the second of two parameters with the same name gets no argument
             seen: set[str] = set()
             for parameter in macro.parameters:
                 if parameter.name in seen and parameter.name in attributes:

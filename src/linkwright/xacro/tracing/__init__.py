@@ -1,1 +1,1 @@
-"""Traced expansions, for the arguments, the provenance of elements and the log of properties."""
+"""Traced expansions, which yield the arguments, the provenance of elements and the log of properties."""

@@ -1,9 +1,9 @@
-"""The arguments that a description takes, whether or not it can be expanded without them.
+"""The arguments of a description, whether or not it can be expanded without them.
 
-The file is expanded with a session that never lacks an argument: a missing one gets the default that some file
-declares for it, or an empty text, and is noted as required. All files that were read that way are then searched,
-including branches not taken and macros not called. If the expansion did not finish, includes that it did
-not reach are followed as far as their names are known.
+The file is expanded with a session in which no argument is missing: a missing one gets the default that some file
+declares for it, or an empty text, and is recorded as required. All files that were read in this way are then
+searched, including branches not taken and macros not called. If the expansion did not finish, includes that it did
+not reach are followed if their names are known.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ _USE = lazy_pattern(r"\$\(\s*arg\s+(?P<plain>[^\s()$]+)\s*\)|\bxacro\.arg\(\s*([
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """An argument that a description takes.
+    """An argument of a description.
 
     Attributes:
         name: its name.
-        default: its default as written, or None if the files declare none.
-        span: where it is declared; its first use if nothing declares it.
-        required: whether the description cannot be expanded without it. That may be so in spite of a default:
-            the attributes of the root are evaluated before any declaration.
+        default: its default as written, or None if the files do not declare one.
+        span: the place of its declaration, or of its first use if nothing declares it.
+        required: whether the description cannot be expanded without it. This is possible despite a default: the
+            attributes of the root are evaluated before any declaration.
         used: whether any text uses it.
-        value: its value with the given arguments, or None if that is not known.
-        given: whether it was given.
+        value: its value with the passed arguments, or None if it is not known.
+        given: whether it was passed.
     """
 
     name: str
@@ -53,12 +53,12 @@ class Argument:
 
 @dataclass(frozen=True, slots=True)
 class Arguments:
-    """The arguments of a description, as `examine_arguments` found them.
+    """The arguments of a description, as found by `examine_arguments`.
 
     Attributes:
         arguments: the arguments, in the order of their first use.
-        unused: a warning for each argument that was given and that nothing declares or uses.
-        problems: why the expansion did not finish, if so; arguments may be missing from the list then.
+        unused: a warning for each argument that was passed but that nothing declares or uses.
+        problems: the reasons why the expansion did not finish; then, arguments may be missing from the list.
     """
 
     arguments: tuple[Argument, ...]
@@ -67,10 +67,10 @@ class Arguments:
 
 
 def examine_arguments(inputs: Inputs) -> Arguments:
-    """The arguments that a description takes, and findings about the given ones.
+    """Return the arguments of a description, with findings about the passed ones.
 
     Raises:
-        LinkwrightError: the file cannot be read or is not XML.
+        LinkwrightError: if the file cannot be read or is not XML.
     """
     session = _Session(inputs)
     main = main_document(session, inputs.text)
@@ -91,10 +91,10 @@ class _Session(TracedSession):
     """A session in which no argument is missing.
 
     Attributes:
-        documents: path -> document of every file read.
+        documents: path -> document of every file that was read.
         declared: name -> the first element that declares it.
-        missing: names that were used before they had a value.
-        asked: names that were used.
+        missing: the names of arguments that were used before they had a value.
+        asked: the names of arguments that were used.
     """
 
     def __init__(self, inputs: Inputs) -> None:
@@ -106,7 +106,7 @@ class _Session(TracedSession):
         self._defaults: dict[str, str] = {}
 
     def read(self, path: str) -> Document:
-        """The document of a file; its declarations are defaults for arguments that are missing from then on."""
+        """Return the document of a file, whose declarations become defaults for missing arguments."""
         document = super().read(path)
         if path not in self.documents:
             self.documents[path] = document
@@ -121,7 +121,7 @@ class _Session(TracedSession):
                 self._defaults.setdefault(element.attributes["name"], "" if "$" in default else default)
 
     def argument(self, name: str) -> str:
-        """The value of an argument, or its replacement."""
+        """Return the value of an argument, or its replacement."""
         self.asked[name] = None
         if name not in self.arguments:
             self.missing[name] = None
@@ -129,7 +129,7 @@ class _Session(TracedSession):
         return super().argument(name)
 
     def declare(self, expander: Expander, site: Site) -> None:
-        """The directive ``<xacro:arg>``: it records the declaration."""
+        """Expand the directive ``<xacro:arg>`` and record the declaration."""
         DIRECTIVES["xacro:arg"](expander, site)
         self.declared.setdefault(site.node.attributes["name"], site.node)
 
@@ -157,7 +157,7 @@ class _Findings:
                     self.uses.setdefault(name, span)
 
     def arguments(self) -> tuple[Argument, ...]:
-        """All of them; those that are declared first."""
+        """Return all arguments, those with a declaration first."""
         session = self.session
         declared = {**session.declared, **self.elsewhere, **session.declared}
         needed = dict(session.missing)
@@ -174,7 +174,7 @@ class _Findings:
         return tuple(listed)
 
     def unused(self) -> tuple[Diagnostic, ...]:
-        """A warning for each argument given that nothing declares or uses."""
+        """Return a warning for each argument that was passed but that nothing declares or uses."""
         known = {**self.uses, **self.elsewhere, **self.session.declared, **self.session.asked}
         return tuple(
             Diagnostic(
@@ -214,7 +214,7 @@ class _Findings:
 
 
 def _follow_includes(session: _Session) -> None:
-    """Read the includes that an expansion did not reach, as far as their names are known."""
+    """Read the includes that an expansion did not reach, if their names are known."""
     scope = Scope(session.globals, session)
     pending = list(session.documents.items())
     seen = set(session.documents)
@@ -230,11 +230,11 @@ def _follow_includes(session: _Session) -> None:
                     seen.add(path)
                     pending.append((path, session.read(path)))
             except (Fault, LinkwrightError):
-                continue  # one that the files' own properties decide about
+                continue  # an include that depends on the files' own properties
 
 
 def _uses(element: Element) -> Iterator[tuple[str, Span | None]]:
-    """The arguments that an element uses, in its attributes and the texts directly inside."""
+    """Yield the arguments that an element uses, in its attributes and the texts directly inside it."""
     for attribute, value in element.attributes.items():
         for match in _found(value):
             name = match["plain"] or match["called"]
@@ -250,7 +250,7 @@ def _found(text: str) -> Iterator[re.Match[str]]:
 
 
 def arguments_data(arguments: tuple[Argument, ...]) -> list[dict[str, Any]]:
-    """Arguments as JSON-ready data; places are 1-based, absent ones are None."""
+    """Return arguments as JSON-ready data; places are 1-based, missing ones are None."""
     return [
         {
             "name": argument.name,

@@ -11,7 +11,7 @@ from linkwright.xacro.tracing.provenance_text import place
 
 
 def arguments_text(arguments: tuple[Argument, ...]) -> str:
-    """The arguments, one a line: name, default, place, and remarks."""
+    """Return the arguments, one on each line: name, default, place, and remarks."""
     if not arguments:
         return "the file takes no arguments\n"
     names = max(len(argument.name) for argument in arguments)
@@ -24,7 +24,7 @@ def arguments_text(arguments: tuple[Argument, ...]) -> str:
 
 
 def incomplete(examined: Arguments) -> list[Diagnostic]:
-    """A remark that the list may lack arguments, if the expansion did not finish."""
+    """Return a remark that the list may lack arguments, if the expansion did not finish."""
     if not examined.problems:
         return []
     first = examined.problems[0]
@@ -37,7 +37,7 @@ def incomplete(examined: Arguments) -> list[Diagnostic]:
 
 
 def _blamed(arguments: Iterable[Argument], message: str) -> list[Argument]:
-    """The arguments whose defaults made a message, as a file is missing that is named by one of them."""
+    """Return the arguments whose defaults caused a message, such as one that names a missing file."""
     return [
         argument
         for argument in arguments

@@ -1,4 +1,4 @@
-"""The log of properties: when each is set and used, as ``xacro --verbosity 3`` and ``4`` print it."""
+"""The log of when properties are set and used, as ``xacro --verbosity 3`` and ``4`` print it."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from linkwright.xmltree import Element
 
 
 def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bool) -> None:
-    """Expand a file for the log alone; its mistakes are not reported.
+    """Expand a file only for the log; its mistakes are not reported.
 
     Args:
         inputs: the inputs of the expansion.
-        put: receives each line of the log.
-        everywhere: whether the properties and parameters of macros and namespaces are logged too.
+        put: the function that receives each line of the log.
+        everywhere: whether the properties and parameters of macros and namespaces are logged, too.
     """
     log = _Log(put, everywhere=everywhere)
     try:
@@ -32,7 +32,7 @@ def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bo
 
 
 class _Log:
-    """Puts a `_Table` into each scope at its first probe."""
+    """The logger, which puts a `_Table` into each scope at its first probe."""
 
     def __init__(self, put: Callable[[str], None], *, everywhere: bool) -> None:
         self._put = put
@@ -46,7 +46,7 @@ class _Log:
             session = expander.session
             known, scope.values = scope.values, _Table(session, self._put, depth - 1)
             if session.frame is not None:
-                session.place = session.frame.site  # which gives the existing parameters
+                session.place = session.frame.site  # this reports the existing parameters
             for name, value in known.items():
                 scope.values[name] = value
         if not (isinstance(about, Element) and about.tag == "xacro:macro"):
@@ -54,7 +54,7 @@ class _Log:
 
 
 class _Table(dict[str, Any]):
-    """The names of a scope, logged."""
+    """The names of a scope, with logged access."""
 
     __slots__ = ("_indent", "_put", "_session", "_waiting")
 
@@ -67,7 +67,7 @@ class _Table(dict[str, Any]):
 
     def __setitem__(self, name: str, value: Any) -> None:
         super().__setitem__(name, value)
-        if name in self._waiting:  # not set again: it is evaluated because it is used
+        if name in self._waiting:  # not set again, but evaluated because it is used
             self._waiting.discard(name)
             self._log("use", name, value)
         else:
@@ -82,7 +82,7 @@ class _Table(dict[str, Any]):
         return value
 
     def get(self, name: str, default: Any = None) -> Any:
-        """The value of a name; using it is logged."""
+        """Return the value of a name and log its use."""
         return self[name] if name in self else default  # noqa: SIM401 - it is `get` itself
 
     def _log(self, what: str, name: str, value: Any) -> None:
@@ -100,7 +100,7 @@ class _Table(dict[str, Any]):
 
 
 def _depth(scope: Scope) -> int:
-    """How many scopes there are around one."""
+    """Return the number of scopes that enclose a scope."""
     depth = 0
     while scope.parent is not None:
         scope, depth = scope.parent, depth + 1

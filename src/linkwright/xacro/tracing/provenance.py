@@ -1,4 +1,4 @@
-"""The provenance of an element of an expansion: where each part was written, by which calls, with which values."""
+"""The provenance of an element of an expansion: the place, calls and values of each of its parts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Call:
 
     Attributes:
         macro: the macro's name, or None for an include.
-        span: the tag that calls or includes.
+        span: the place of the calling or including tag.
         parameters: the parameters of the call with their values; blocks are left out.
     """
 
@@ -32,7 +32,7 @@ class Call:
 
 @dataclass(frozen=True, slots=True)
 class AttributeProvenance:
-    """Where an attribute comes from.
+    """The provenance of an attribute.
 
     Attributes:
         name: its name.
@@ -40,7 +40,7 @@ class AttributeProvenance:
         written: its text in the source, such as ``${prefix}_link``.
         span: the place of that text.
         values: the names in the text, with their values.
-        calls: the calls and includes around that place, innermost first; they are others than the element's when
+        calls: the calls and includes that contain that place, innermost first; they differ from the element's if
             ``<xacro:attribute>`` has set the attribute.
     """
 
@@ -54,13 +54,13 @@ class AttributeProvenance:
 
 @dataclass(frozen=True, slots=True)
 class TextProvenance:
-    """Where a text inside an element comes from.
+    """The provenance of a text inside an element.
 
     Attributes:
-        value: the text in the result, without the blanks around it.
+        value: the text in the result, without surrounding blanks.
         written: the text in the source.
-        span: its place.
-        values: the names in it, with their values.
+        span: the place of the text in the source.
+        values: the names in the text, with their values.
     """
 
     value: str
@@ -71,14 +71,14 @@ class TextProvenance:
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """Where an element of an expansion comes from.
+    """The provenance of an element of an expansion.
 
     Attributes:
         element: the element as it is in the result.
-        span: where it is written.
-        calls: the macro calls and includes around it, innermost first.
+        span: the place where it is written.
+        calls: the macro calls and includes that contain it, innermost first.
         attributes: the provenance of each attribute, in document order.
-        texts: the provenance of each text directly inside, blank ones left out.
+        texts: the provenance of each text directly inside, except blank texts.
         children: the provenance of the elements inside.
     """
 
@@ -90,7 +90,7 @@ class Provenance:
     children: tuple[Provenance, ...]
 
     def walk(self) -> Iterator[Provenance]:
-        """This provenance and those of all elements inside, in document order."""
+        """Yield this provenance and that of all elements inside, in document order."""
         pending = [self]
         while pending:
             provenance = pending.pop()
@@ -99,12 +99,12 @@ class Provenance:
 
 
 def provenance_of(inputs: Inputs, root: Element, element: Element) -> Provenance:
-    """The provenance of an element of an expansion; see `linkwright.xacro.Expansion.provenance`."""
+    """Return the provenance of an element of an expansion; see `linkwright.xacro.Expansion.provenance`."""
     return Tracer(inputs, root).trace(element)
 
 
 class Tracer:
-    """Expands again with a recorder, and returns the provenance that it recorded.
+    """The tracer, which expands again with a recorder and returns the recorded provenance.
 
     Args:
         inputs: the inputs of the expansion.
@@ -123,7 +123,7 @@ class Tracer:
             self._twins[id(ours)] = theirs
 
     def trace(self, element: Element) -> Provenance:
-        """The provenance of an element of the first result.
+        """Return the provenance of an element of the first result.
 
         Raises:
             LinkwrightError: XAC802 if the second result differs.

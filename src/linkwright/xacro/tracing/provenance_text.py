@@ -19,12 +19,12 @@ _OUTSIDE = {
 
 
 def provenance_text(provenance: Provenance) -> str:
-    """For a terminal: the resulting element, the calls that led to it, and the texts that were evaluated."""
+    """Return terminal text: the resulting element, the calls that produced it, and the evaluated texts."""
     return "\n".join([write_element(provenance.element).rstrip("\n"), "", *provenance_lines(provenance)]) + "\n"
 
 
 def provenance_lines(provenance: Provenance) -> list[str]:
-    """The lines of `provenance_text` after the element itself."""
+    """Return the lines of `provenance_text` after the element itself."""
     lines = [f"written at {place(provenance.span)}"]
     lines += [f"  {line}" for call in provenance.calls for line in _call_lines(call)]
     evaluated = [line for part in provenance.walk() for line in _element_lines(part, provenance)]
@@ -34,7 +34,7 @@ def provenance_lines(provenance: Provenance) -> list[str]:
 
 
 def provenance_data(provenance: Provenance) -> dict[str, Any]:
-    """JSON-ready data; places are 1-based, absent ones are None."""
+    """Return JSON-ready data; places are 1-based, missing ones are None."""
     return {
         "tag": provenance.element.tag,
         "xml": write_element(provenance.element),
@@ -47,7 +47,7 @@ def provenance_data(provenance: Provenance) -> dict[str, Any]:
 
 
 def place(span: Span | None) -> str:
-    """A place as ``file:line:column``."""
+    """Return a place as ``file:line:column``."""
     if span is None:
         return "(no file)"
     file = span.file if span.file.startswith("<") else display_path(span.file)
@@ -108,7 +108,7 @@ def _is_shown(attribute: AttributeProvenance, provenance: Provenance) -> bool:
 
 
 def _is_inside(attribute: AttributeProvenance, provenance: Provenance) -> bool:
-    """Whether an attribute is written on its element, and not by a tag elsewhere."""
+    """Return whether an attribute is written on its element, not set by a tag elsewhere."""
     element: Element = provenance.element
     return attribute.span is None or element.attribute_span(attribute.name) == attribute.span
 

@@ -1,4 +1,4 @@
-"""The recorder: the steps of an expansion for each element that it made."""
+"""The recorder, which records the expansion steps for each element of the result."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from linkwright.xmltree import Element, Text
 
 @dataclass
 class Moment:
-    """How an element was made.
+    """The record of how an element was produced.
 
     Attributes:
         node: the element as it is written.
-        frame: the innermost macro call or include then.
-        values: attribute -> the names in it.
-        texts: text as it is written, with the names in it, for the texts with expressions.
+        frame: the innermost macro call or include at that time.
+        values: attribute -> the names in its value.
+        texts: the texts with expressions as they are written, each with the names in it.
     """
 
     node: Element
@@ -37,7 +37,7 @@ class Moment:
 
 @dataclass(frozen=True)
 class Setting:
-    """A use of ``<xacro:attribute>``: its element, the call or include then, and the names in its value."""
+    """A use of ``<xacro:attribute>``: its element, the active call or include, and the names in its value."""
 
     node: Element
     name: str
@@ -47,10 +47,10 @@ class Setting:
 
 
 class Recorder:
-    """Watches one expansion.
+    """An observer that records one expansion.
 
     Args:
-        given: the names of the arguments that were given.
+        given: the names of the arguments that were passed.
 
     Attributes:
         directives: the directives for the expansion.
@@ -71,7 +71,7 @@ class Recorder:
         self._parameters: dict[int, dict[str, Value]] = {}
         self._of_frame: dict[int, tuple[Value, ...]] = {}
         self._arguments: dict[str, Element] = {}
-        self._kept: list[Any] = []  # objects known by their id must stay alive
+        self._kept: list[Any] = []  # keeps objects alive that are known by their id
 
     def call(self, expander: Expander, site: Site) -> None:
         """Expand a macro call, and record it."""
@@ -80,22 +80,22 @@ class Recorder:
     # the recorded moments
 
     def moment(self, element: Element) -> Moment | None:
-        """How an element was made."""
+        """Return the record of how an element was produced, or None."""
         moment = self._moments.get(id(element))
         return moment[1] if moment else None
 
     def setting(self, element: Element, name: str) -> Setting | None:
-        """The ``<xacro:attribute>`` that set an attribute of an element, or None when it is written on it."""
+        """Return the ``<xacro:attribute>`` that set an element's attribute; None if it is on the element."""
         return self._set.get((id(element), name))
 
     def parameters(self, frame: Frame) -> tuple[Value, ...]:
-        """The parameters of a macro call."""
+        """Return the parameters of a macro call."""
         return self._of_frame.get(id(frame), ())
 
     # watching
 
     def _watched(self, directive: Directive) -> Directive:
-        """A directive that may contain ``<xacro:attribute>``, whose effect goes to the element around it."""
+        """Return a directive that also records the effect of ``<xacro:attribute>`` on the enclosing element."""
 
         def expand(expander: Expander, site: Site) -> None:
             before = len(self._settings)
@@ -145,7 +145,7 @@ class Recorder:
 
     def _probe(self, expander: Expander, site: Site) -> None:
         element, about = site.parent, site.node.origin
-        if isinstance(about, Moment):  # a block that is expanded once more
+        if isinstance(about, Moment):  # a block that is expanded a second time
             self._remember(element, about)
         elif isinstance(about, Text):
             known = self.moment(element)
@@ -209,7 +209,7 @@ class Recorder:
         return Value(reference.path, "property", shown(value), place, written)
 
     def _member(self, namespace: object, path: str) -> tuple[Span | None, str | None] | None:
-        """Where a property of a namespace, such as ``A.B.radius``, is defined."""
+        """Return where a property of a namespace, such as ``A.B.radius``, is defined, with its text."""
         *_, name = parts = path.split(".")
         for part in parts[1:-1]:
             namespace = namespace.values.get(part) if isinstance(namespace, Scope) else None
@@ -243,7 +243,7 @@ def _evaluated(expander: Expander, text: str, scope: Scope) -> Any:
 
 
 def _again(expander: Expander, node: Element, attribute: str, scope: Scope) -> str | None:
-    """An attribute that a directive has evaluated, evaluated once more; None where that could change something."""
+    """Evaluate a directive's attribute a second time; None if that could change something."""
     text = node.attributes.get(attribute)
     if text is None or ("$" in text and expander.session.changes(text)):
         return None
@@ -251,7 +251,7 @@ def _again(expander: Expander, node: Element, attribute: str, scope: Scope) -> s
 
 
 def _holder(scope: Scope, name: str) -> Scope | None:
-    """The scope of a chain that has a name."""
+    """Return the scope in a chain that defines a name, or None."""
     holder: Scope | None = scope
     while holder is not None and name not in holder.values:
         holder = holder.parent
@@ -259,7 +259,7 @@ def _holder(scope: Scope, name: str) -> Scope | None:
 
 
 def _parameter(parameter: Parameter, value: Any, call: Element, macro: Element) -> Value:
-    """A parameter of a call: its argument, or its default."""
+    """Return the record of a call's parameter: its argument, or its default."""
     text = shown(value.text if isinstance(value, Lazy) else literal(value))
     if parameter.name in call.attributes:
         place, written = call.attribute_span(parameter.name), written_attribute(call, parameter.name)

@@ -1,4 +1,4 @@
-"""The names that a text with expressions refers to, each with its value and the place that gave it."""
+"""The names that a text with expressions refers to, each with its value and that value's origin."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class Value:
     Attributes:
         name: the name as written, such as ``radius``, ``arm.length`` or ``$(arg prefix)``.
         kind: ``parameter``, ``property``, ``argument``, ``package`` or ``variable`` (of the environment).
-        value: its value, as Python writes it; long ones are cut.
-        span: where the value is written, or None if it was given from outside.
-        written: the text there, such as ``${wheel_radius}``, or None.
+        value: its value in Python notation; long values are truncated.
+        span: the place where the value is written, or None if it was passed from outside.
+        written: the text at this place, such as ``${wheel_radius}``, or None.
     """
 
     name: str
@@ -39,7 +39,7 @@ class Reference(NamedTuple):
     """A name in a text.
 
     Attributes:
-        path: the name, with the keys that are reached for in it, as an expression.
+        path: the name as an expression, with the keys that are accessed in it.
         name: the name alone.
         command: ``arg``, ``find``, ``env`` or ``optenv`` for a substitution, else None.
     """
@@ -50,13 +50,13 @@ class Reference(NamedTuple):
 
 
 def references(text: str) -> list[Reference]:
-    """The names in a text, each path once, in the order of the text."""
+    """Return the names in a text, each path once, in the order of the text."""
     found = dict.fromkeys(_references(text))
     return list(found)
 
 
 def shown(value: Any) -> str:
-    """A value as Python writes it, cut when it is long."""
+    """Return a value in Python notation, truncated if it is long."""
     from linkwright.xacro.expressions import sandbox
     from linkwright.xacro.expressions.bounded import RefusalError
 
@@ -68,7 +68,7 @@ def shown(value: Any) -> str:
 
 
 def written_attribute(element: Any, name: str) -> str | None:
-    """An attribute's value as the source has it, or None if it is not written there."""
+    """Return an attribute's value as it is written in the source, or None if it is not written there."""
     source = element.source
     if source is None:
         return None
@@ -108,7 +108,10 @@ def _in_expression(inside: str) -> Iterator[Reference]:
 
 
 class _Paths(ast.NodeVisitor):
-    """Collects names with the keys reached for in them; the variables of lambdas and comprehensions are `bound`."""
+    """The visitor that collects names with the keys accessed in them.
+
+    The variables of lambdas and comprehensions are in `bound`.
+    """
 
     def __init__(self) -> None:
         self.found: list[Reference] = []
@@ -132,7 +135,7 @@ class _Paths(ast.NodeVisitor):
 
 
 def _root(node: ast.AST) -> str | None:
-    """The name that a path of keys begins with; None when it is no such path."""
+    """Return the name that a path of keys begins with; None if the node is not such a path."""
     while True:
         if isinstance(node, ast.Name):
             return node.id

@@ -1,9 +1,9 @@
-"""Expansions that are traced: for explanations and logs, at no cost to those that are not.
+"""Traced expansions for explanations and logs, at no cost for other expansions.
 
-The trees are copied with a probe at the beginning of every element and macro, and before every text with a dollar. A
-probe is a tag of the language like any other: the observer defines its effect, and sees the element that is being
-made, the scope, and the calls and includes around it. Probes stay in the result, since a block is expanded twice,
-and are removed at the end.
+The trees are copied with a probe at the beginning of every element and macro, and before every text with a dollar.
+A probe is a xacro tag like any other: the observer defines its effect, and sees the element that is being produced,
+the scope, and the enclosing calls and includes. Probes stay in the result, since a block is expanded twice, and are
+removed at the end.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ PROBE = "xacro:.probe"
 
 
 class TracedSession(Session):
-    """A session whose files are read with probes in them.
+    """A session that inserts probes into the files that it reads.
 
     Args:
         inputs: the inputs of the expansion.
-        probes: whether to put them in.
+        probes: whether to insert probes.
     """
 
     def __init__(self, inputs: Inputs, *, probes: bool = True) -> None:
@@ -37,7 +37,7 @@ class TracedSession(Session):
         self._documents: dict[str, Document] = {}
 
     def read(self, path: str) -> Document:
-        """The document of a file; see `Session.read`."""
+        """Return the document of a file; see `Session.read`."""
         if not self._probes:
             return super().read(path)
         document = self._documents.get(path)
@@ -52,13 +52,13 @@ def expand_traced(
     directives: Mapping[str, Directive],
     call: Directive = call_macro,
 ) -> Document:
-    """Expand with other directives than usual; no banner, and no warning of unused arguments.
+    """Expand with different directives, without a banner and warnings about unused arguments.
 
     Args:
         inputs: the inputs of the expansion.
-        session: its session.
-        directives: tag -> the function that expands it, that of `PROBE` included if there are probes.
-        call: expands macro calls.
+        session: the session of the expansion.
+        directives: tag -> the function that expands it, including the one for `PROBE` if there are probes.
+        call: the function that expands macro calls.
 
     Raises:
         LinkwrightError: the mistakes of the description.
@@ -71,7 +71,7 @@ def expand_traced(
 
 
 def with_probes(document: Document) -> Document:
-    """A copy with probes; the `origin` of a probe is the element or text of the original that follows it."""
+    """Return a copy with probes; a probe's `origin` is the element or text of the original after it."""
     root = Element(document.root.tag, document.root.attributes, document.root.source, document.root.offset)
     pending = [(document.root, root)]
     while pending:
@@ -91,7 +91,7 @@ def with_probes(document: Document) -> Document:
 
 
 def without_probes(document: Document) -> Document:
-    """The document, its probes removed in place."""
+    """Remove the probes from a document in place, and return the document."""
     pending = [document.root]
     while pending:
         element = pending.pop()
@@ -107,7 +107,7 @@ def without_probes(document: Document) -> Document:
 
 
 def echo(memory: object) -> Element:
-    """A probe that stays in the result; its `origin` is the memory of the element around it."""
+    """Return a probe that stays in the result; its `origin` is the record of the enclosing element."""
     return Element(PROBE, origin=memory)
 
 
