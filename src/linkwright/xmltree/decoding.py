@@ -1,7 +1,7 @@
-"""From the bytes of a file to its text.
+"""Decoding of the bytes of a file to text.
 
-A text that is valid UTF-8 is read as UTF-8 against any XML declaration, as ros/xacro does; only a text that is
-not is read in the encoding that it declares.
+A text that is valid UTF-8 is read as UTF-8 regardless of its XML declaration, as in ros/xacro. Only a text that is
+not valid UTF-8 is read in the encoding that it declares.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ _BEGINNING_OF_BINARY = 1024
 
 
 class Decoded(NamedTuple):
-    """The text of a file, without its byte order mark, and the encoding that it was in."""
+    """The text of a file without its byte order mark, and the encoding of the file."""
 
     text: str
     encoding: str = UTF_8
 
 
 def decode(data: bytes, name: str) -> str:
-    """The text of a file, without its byte order mark.
+    """Return the text of a file without its byte order mark.
 
     Raises:
         LinkwrightError: XML104 if the bytes are not text in the file's encoding.
@@ -49,10 +49,11 @@ def decode(data: bytes, name: str) -> str:
 
 
 def decoded(data: bytes, name: str) -> Decoded:
-    """The text of bytes, and its encoding.
+    """Return the text of bytes, with its encoding.
 
     Raises:
-        LinkwrightError: XML104, or XML106 where the file itself was never fetched.
+        LinkwrightError: XML104 as for `decode`, or XML106 if the file is a Git LFS pointer whose content was not
+            fetched.
     """
     _refuse_pointer(data, name)
     for mark, encoding in _BYTE_ORDER_MARKS:
@@ -72,7 +73,7 @@ def decoded(data: bytes, name: str) -> Decoded:
 
 
 def unsaved(text: str, name: str) -> Decoded:
-    """A text that is in no file, such as one that an editor has not saved yet.
+    """Return a text that is not in a file, such as one that an editor has not yet saved.
 
     Raises:
         LinkwrightError: XML106, as for a file.

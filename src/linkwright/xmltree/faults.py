@@ -1,4 +1,4 @@
-"""Errors of texts that are not well-formed XML, in plain words."""
+"""Error messages in plain words for texts that are not well-formed XML."""
 
 from __future__ import annotations
 
@@ -55,19 +55,19 @@ _LESS_HINT = phrase("close the quotes of the attribute before it, or write '&lt;
 def syntax_error(
     source: SourceText, error: ExpatError, offset: int, open_elements: list[tuple[str, int]]
 ) -> LinkwrightError:
-    """The error for a mistake that expat found.
+    """Return the error for a mistake that expat found.
 
     Args:
         source: the text being read.
         error: expat's error.
-        offset: character offset at which it stopped.
-        open_elements: name and offset of each element not yet closed, outermost first.
+        offset: the character offset at which expat stopped.
+        open_elements: the name and offset of each element that is not yet closed, outermost first.
     """
     return LinkwrightError(_Fault(source, offset, open_elements).describe(error))
 
 
 def undeclared_prefix(source: SourceText, offset: int, name: str) -> LinkwrightError:
-    """The error for a name whose namespace prefix is declared nowhere around it."""
+    """Return the error for a name whose namespace prefix is not declared."""
     prefix = name.partition(":")[0]
     return LinkwrightError(
         Diagnostic(
@@ -85,7 +85,7 @@ def undeclared_prefix(source: SourceText, offset: int, name: str) -> LinkwrightE
 
 
 def forbidden_entity(source: SourceText, offset: int, message: Phrase) -> LinkwrightError:
-    """The error for an entity that would read another file or grow without bound."""
+    """Return the error for an entity that would read another file or grow without bound."""
     return LinkwrightError(
         Diagnostic(
             "XML209",
@@ -147,7 +147,7 @@ class _Fault:
         return self._diagnostic("XML206", _words(error))
 
     def _template(self) -> Diagnostic | None:
-        """A template whose placeholders XML forbids."""
+        """Return the error for a template with placeholders that XML forbids, or None."""
         for pattern, language, hint in _TEMPLATES:
             tag = pattern.search(self._text)
             if tag is not None and tag.start() <= self._offset:
@@ -215,7 +215,8 @@ class _Fault:
         begin = len(self._text) - len(self._text.lstrip())
         return self._diagnostic("XML206", phrase("this is not XML"), at=begin, hint=hint)
 
-    # --- tokens that are not well-formed: each of the usual mistakes, where it fits -----------------------------------
+    # --- tokens that are not well-formed: common mistakes, if they match
+    # ------------------------------------------------
 
     def _invalid_token(self) -> Diagnostic:
         for usual_mistake in (
@@ -242,12 +243,12 @@ class _Fault:
 
     @property
     def _character(self) -> str:
-        """The character that expat stopped at; empty at the end."""
+        """The character at which expat stopped; empty at the end."""
         return self._text[self._offset : self._offset + 1]
 
     @property
     def _before(self) -> str:
-        """The text right before it."""
+        """The text directly before this character."""
         return self._text[max(0, self._offset - _AS_FAR_BACK) : self._offset]
 
     def _unfinished_merge(self) -> Diagnostic | None:

@@ -1,16 +1,16 @@
-"""The nodes of an XML tree, and the garbage collector's rest while one is built.
+"""The nodes of an XML tree, and a context that reduces garbage collection while a tree is built.
 
-Running Python's garbage collector less often while a tree is built.
+Python's garbage collector runs less often while a tree is built.
 
-Reading and expanding make many small objects at once. Nearly all of them stay, and none form reference cycles that are
-garbage. The collector searches them again and again all the same, which costs up to a tenth of the time; now and then
-it searches every object of the program.
+Reading and expanding create many small objects in a short time. Nearly all of them stay, and none form reference
+cycles that are garbage. The collector still searches them repeatedly, which costs up to a tenth of the time;
+occasionally, it searches every object of the program.
 """
 
 from __future__ import annotations
 
 import gc
-from _thread import allocate_lock  # threading.Lock without the rest of threading
+from _thread import allocate_lock  # threading.Lock, without importing the rest of threading
 from collections.abc import Iterator
 
 from linkwright.diagnostics import SourceText, Span
@@ -25,7 +25,7 @@ _before = (0, 0, 0)
 
 
 class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as a function is
-    """Let the garbage collector run less often inside a ``with`` block; new objects then count as old."""
+    """A context manager in which the garbage collector runs less often; new objects then count as old."""
 
     def __enter__(self) -> None:
         global _active, _before  # noqa: PLW0603 - there is one collector for the whole process
@@ -48,7 +48,7 @@ class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as
 
 
 class Text:
-    """Character data. `cdata` marks a CDATA section, which is written back as one and never evaluated."""
+    """Character data. `cdata` marks a CDATA section, which is written as one and never evaluated."""
 
     __slots__ = ("cdata", "data", "offset", "source")
 
@@ -89,11 +89,11 @@ class Element:
         tag: the name as written, with its prefix.
         attributes: name as written -> value, in document order.
         children: elements, texts, comments and processing instructions, in document order.
-        source: the text it was read from; None for an element made by a program.
-        offset: character offset of its ``<`` in that text.
-        origin: what produced it if it was not simply read (the xacro room's chain of macro calls), else None.
-        plan: the xacro room's plan for expanding it, else None; to change an element of a tree
-            that was expanded, set it to None, on the elements around as well.
+        source: the text that it was read from; None for an element created by a program.
+        offset: the character offset of its ``<`` in that text.
+        origin: what produced the element, if it was not simply read (the xacro room's chain of macro calls), else None.
+        plan: the xacro room's plan for expanding it, else None; to change an element of an expanded tree, set it to
+            None, also on the enclosing elements.
     """
 
     __slots__ = ("attributes", "children", "offset", "origin", "plan", "source", "tag")
@@ -118,13 +118,13 @@ class Element:
         return f"<{self.tag} {self.attributes}>"
 
     def elements(self, tag: str | None = None) -> Iterator[Element]:
-        """The child elements, all or those of one tag, in document order."""
+        """Yield the child elements, all or those with one tag, in document order."""
         for child in self.children:
             if isinstance(child, Element) and (tag is None or child.tag == tag):
                 yield child
 
     def walk(self) -> Iterator[Element]:
-        """The element itself and all elements inside, in document order."""
+        """Yield the element itself and all elements inside it, in document order."""
         pending = [self]
         while pending:
             element = pending.pop()
@@ -132,24 +132,27 @@ class Element:
             pending += [child for child in reversed(element.children) if isinstance(child, Element)]
 
     def first(self, tag: str) -> Element | None:
-        """The first child element of a tag, or None."""
+        """Return the first child element with a tag, or None."""
         for child in self.children:
             if isinstance(child, Element) and child.tag == tag:
                 return child
         return None
 
     def text(self) -> str:
-        """The character data directly inside, joined."""
+        """Return the joined character data directly inside the element."""
         return "".join(child.data for child in self.children if isinstance(child, Text))
 
     def span(self) -> Span | None:
-        """The place of the start tag's name, ``<`` included; None for an element made by a program."""
+        """Return the place of the start tag's name with its ``<``; None for an element created by a program."""
         if self.source is None:
             return None
         return self.source.span(self.offset, self.offset + 1 + len(self.tag))
 
     def attribute_span(self, name: str) -> Span | None:
-        """The place of an attribute's value in the source, else of the element (absent or made by a program)."""
+        """Return the place of an attribute's value in the source, or else that of the element.
+
+        The attribute may be absent, or created by a program.
+        """
         from linkwright.xmltree.positions import attribute_value_range
 
         if self.source is None:
@@ -159,10 +162,10 @@ class Element:
 
 
 class CachedText:
-    """The text that an element was written as, kept for the next time.
+    """The cached text of an element that has been written.
 
     Attributes:
-        written: the blanks before it, and the text; None until it is written.
+        written: the blanks before the text, and the text; None until it is written.
     """
 
     __slots__ = ("written",)
@@ -175,12 +178,12 @@ _lock = allocate_lock()
 
 
 class LazyCopy(Element):
-    """An element that stays as it was read: a copy of another one, made on first access.
+    """An unchanged copy of an element, whose content is created on first access.
 
-    Most of a description is only written again, and the original is enough for that.
+    Most of a description is only written again, for which the original suffices.
 
     Attributes:
-        original: the element that it is a copy of; None once it has attributes and children of its own.
+        original: the element that it is a copy of; None once the copy has its own attributes and children.
         plan: holds the text of the original.
     """
 
@@ -195,9 +198,9 @@ class LazyCopy(Element):
         self.original: Element | None = original
 
     def __getattr__(self, name: str) -> Any:
-        # Python comes here when a slot is empty.
+        # Python calls this method when a slot is empty.
         if name in ("attributes", "children"):
-            with _lock:  # two threads that look at once find the same children
+            with _lock:  # two threads with simultaneous access find the same children
                 original = self.original
                 if original is not None:
                     self.original = None
@@ -205,16 +208,16 @@ class LazyCopy(Element):
         return object.__getattribute__(self, name)
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> Any:
-        """For `copy` and `pickle`, which read the state."""
+        """Support `copy` and `pickle`, which read the state."""
         _ = self.children
         return super().__reduce_ex__(protocol)
 
 
 def _fill(copy: LazyCopy, original: Element) -> None:
-    """Give a copy attributes and children of its own; texts and comments are shared."""
+    """Give a copy its own attributes and children; texts and comments are shared."""
     origin = copy.origin
     pending: list[tuple[Element, Element]] = [(copy, original)]
-    while pending:  # not by recursion: elements may be nested deeper than Python's calls
+    while pending:  # no recursion: elements may be nested more deeply than Python's calls
         made, original = pending.pop()
         while isinstance(original, LazyCopy) and original.original is not None:
             original = original.original
@@ -235,16 +238,16 @@ Node = Element | Text | Comment | ProcessingInstruction
 
 
 class Document:
-    """A parsed document: the nodes before the root, the root, the nodes after it.
+    """A parsed document: the nodes before the root, the root, and the nodes after it.
 
     Attributes:
         prolog: comments and processing instructions before the root.
         root: the root element.
         epilog: comments and processing instructions after the root.
-        doctype: the document type declaration as it is written back, or None.
-        doctype_index: how many nodes of the prolog precede the document type declaration.
-        source: the text it was read from; None for a document made by a program.
-        encoding: of the file; ``utf-8`` for any text that is valid as such, and for texts without a file.
+        doctype: the document type declaration in the form in which it is written, or None.
+        doctype_index: the number of nodes in the prolog before the document type declaration.
+        source: the text that it was read from; None for a document created by a program.
+        encoding: the encoding of the file; ``utf-8`` for any valid UTF-8 text, and for texts without a file.
     """
 
     __slots__ = ("doctype", "doctype_index", "encoding", "epilog", "prolog", "root", "source")

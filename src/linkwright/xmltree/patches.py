@@ -1,6 +1,6 @@
-"""Smallest changes of a text of XML: the places of elements in it, and replacing ranges of it.
+"""Minimal changes to an XML text: the places of elements in it, and replacements of ranges.
 
-Everything outside the ranges, formatting and comments included, stays as it is.
+Everything outside the ranges, including formatting and comments, is unchanged.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _UNSAFE = {"&": "&amp;", "<": "&lt;", '"': "&quot;"}
 
 @dataclass(frozen=True, slots=True)
 class Replacement:
-    """Characters `start` to `end` (exclusive) of a source text become `text`."""
+    """The replacement of characters `start` to `end` (exclusive) of a source text by `text`."""
 
     start: int
     end: int
@@ -33,10 +33,10 @@ class StartTag:
     """A start tag in a text, by character offsets.
 
     Attributes:
-        start: its ``<``.
-        room: behind its last attribute, where another can be written.
-        end: behind its ``>``.
-        is_whole: whether it is the whole element, ``<a/>``.
+        start: the offset of its ``<``.
+        room: the offset after its last attribute, where another can be written.
+        end: the offset after its ``>``.
+        is_whole: whether the tag is the whole element, ``<a/>``.
     """
 
     start: int
@@ -46,7 +46,7 @@ class StartTag:
 
 
 def apply(text: str, edits: Iterable[Replacement]) -> str:
-    """A text with replacements made, which must not overlap."""
+    """Return a text with replacements applied; they must not overlap."""
     parts, at = [], 0
     for edit in sorted(edits, key=lambda edit: (edit.start, edit.end)):
         parts += [text[at : edit.start], edit.text]
@@ -55,23 +55,26 @@ def apply(text: str, edits: Iterable[Replacement]) -> str:
 
 
 def escaped(value: str) -> str:
-    """A value as it is written between double quotes."""
+    """Escape a value to be written between double quotes."""
     return "".join(_UNSAFE.get(character, character) for character in value)
 
 
 def newline_of(text: str) -> str:
-    """The line ending of a text."""
+    """Return the line ending of a text."""
     return "\r\n" if "\r\n" in text else "\n"
 
 
 def indentation(text: str, offset: int) -> str | None:
-    """The blanks before a place in its line; None if the line has other characters there."""
+    """Return the blanks before a place in its line; None if the line contains other characters there."""
     before = text[text.rfind("\n", 0, offset) + 1 : offset]
     return before if not before.strip() else None
 
 
 def start_tag_of(element: Element) -> StartTag | None:
-    """The start tag of an element in its source; None if it is not written there: made, or by an entity."""
+    """Return the start tag of an element in its source.
+
+    The result is None if it is not written there, because it was created by a program or by an entity.
+    """
     if element.source is None:
         return None
     text = element.source.text
@@ -85,7 +88,10 @@ def start_tag_of(element: Element) -> StartTag | None:
 
 
 def element_range(element: Element) -> tuple[int, int] | None:
-    """Character offsets of an element in its file, from its ``<`` to behind its last ``>``; None for a made one."""
+    """Return the character offsets of an element, from its ``<`` to after its last ``>``.
+
+    The result is None for an element created by a program.
+    """
     tag = start_tag_of(element)
     if element.source is None or tag is None:
         return None
@@ -108,7 +114,7 @@ def element_range(element: Element) -> tuple[int, int] | None:
 
 
 def whole_lines(text: str, start: int, end: int) -> tuple[int, int]:
-    """A range with its complete lines, line ends included, unless the lines have other content."""
+    """Return a range extended to complete lines with line ends, unless the lines have other content."""
     line_start = text.rfind("\n", 0, start) + 1
     line_end = text.find("\n", end)
     line_end = len(text) if line_end < 0 else line_end + 1
@@ -117,13 +123,13 @@ def whole_lines(text: str, start: int, end: int) -> tuple[int, int]:
 
 
 def block(element: Element, indent: str = "", step: str = _STEP, newline: str = "\n") -> str:
-    """An element as it is written into a file, without a line end after it.
+    """Return an element as it is written into a file, without a final line end.
 
     Args:
-        element: made by a program; it contains either elements or text.
-        indent: before each line but the first.
-        step: additional indentation of the children.
-        newline: between the lines.
+        element: an element created by a program, which contains either elements or text.
+        indent: the indentation of each line except the first.
+        step: the additional indentation of the children.
+        newline: the line ending.
     """
     opening = element.tag + "".join(f' {name}="{escaped(value)}"' for name, value in element.attributes.items())
     children = list(element.elements())
@@ -138,16 +144,16 @@ def block(element: Element, indent: str = "", step: str = _STEP, newline: str = 
 def inserted(
     owner: Element, new: Sequence[Element], *, after: Element | None = None, first: bool = False
 ) -> Replacement | None:
-    """The replacement that puts elements into one, with the indentation that there is.
+    """Return the replacement that inserts elements into an element with the existing indentation.
 
     Args:
-        owner: of a file.
-        new: made by a program.
-        after: an element in the owner that they come behind; None for the end.
-        first: whether they come before all elements in it, where `after` is None.
+        owner: the element of a file into which they are inserted.
+        new: the new elements, created by a program.
+        after: the element in the owner after which they are inserted; None for the end.
+        first: whether they are inserted before all elements in it, if `after` is None.
 
     Returns:
-        None where the owner is not written in the file as an element.
+        The replacement; None if the owner is not written in the file as an element.
     """
     found = element_range(owner)
     tag = start_tag_of(owner)
@@ -183,6 +189,6 @@ def inserted(
 
 
 def _blanks(text: str, offset: int) -> str:
-    """The blanks that the line of a place begins with."""
+    """Return the blanks at the beginning of the line of a place."""
     line = text[text.rfind("\n", 0, offset) + 1 : offset]
     return line[: len(line) - len(line.lstrip())]

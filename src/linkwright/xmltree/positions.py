@@ -1,7 +1,7 @@
-"""Places of names and values inside a start tag.
+"""Positions of names and values inside a start tag.
 
-The tree keeps only the offset of each ``<``. Places inside the tag are found by reading the tag again, which is
-done only for the few places that a message or the viewer needs.
+The tree keeps only the offset of each ``<``. Places inside the tag are found by reading the tag again. This is done
+only for the few places that a message or the viewer needs.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _CHARACTER = lazy_pattern(r"&[^;&<]*;|\r\n?|.", re.DOTALL)
 
 
 def attribute_value_range(text: str, offset: int, name: str) -> tuple[int, int] | None:
-    """Character offsets of an attribute's value, without its quotes.
+    """Return the character offsets of an attribute's value, without its quotes.
 
     Args:
         text: the whole source text.
@@ -24,14 +24,14 @@ def attribute_value_range(text: str, offset: int, name: str) -> tuple[int, int] 
         name: the attribute's name as written.
 
     Returns:
-        Start and end (exclusive), or None when the tag does not have the attribute.
+        Start and end (exclusive), or None if the tag does not have the attribute.
     """
     found = _attributes(text, offset).get(name)
     return found and found[1]
 
 
 def attribute_name_range(text: str, offset: int, name: str) -> tuple[int, int] | None:
-    """Character offsets of an attribute's name in the start tag at `offset`, or None if the tag lacks it."""
+    """Return the offsets of an attribute's name in the start tag at `offset`; None if it is missing."""
     found = _attributes(text, offset).get(name)
     return found and found[0]
 
@@ -42,7 +42,7 @@ _read_last: tuple[str, int, _Ranges] = ("", -1, {})
 
 
 def _attributes(text: str, offset: int) -> _Ranges:
-    """Name -> ranges of the name and of the value of each attribute of the start tag at an offset."""
+    """Return the ranges of name and value of each attribute in the start tag at an offset, by name."""
     global _read_last  # noqa: PLW0603 - one tuple, so that threads see it whole
     last_text, last_offset, ranges = _read_last
     if last_text is text and last_offset == offset:
@@ -58,16 +58,16 @@ def _attributes(text: str, offset: int) -> _Ranges:
 
 
 def raw_offset(text: str, start: int, end: int, index: int) -> int:
-    """Character offset in the source of one character of a value.
+    """Return the character offset in the source of a character of a value.
 
     The value may be shorter than its source: an entity such as ``&lt;`` yields one character, and so do the
     two characters of a Windows line end.
 
     Args:
         text: the complete source text.
-        start: where the written value begins.
-        end: where it ends (exclusive).
-        index: index of the character in the value of the tree.
+        start: the offset where the written value begins.
+        end: the offset where it ends (exclusive).
+        index: the index of the character in the tree's value.
     """
     at = start
     for _ in range(index):

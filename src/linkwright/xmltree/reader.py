@@ -1,4 +1,4 @@
-"""Reading XML, from a file or the text that replaces it, into a tree that knows where each node was written."""
+"""XML reader for a file, or its replacement text, that builds a tree with the position of each node."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 import re
 from bisect import bisect_right
 from collections.abc import Callable, Mapping
-from pyexpat import ExpatError, ParserCreate  # xml.parsers.expat without its packages
+from pyexpat import ExpatError, ParserCreate  # xml.parsers.expat, without importing its packages
 
 from linkwright.diagnostics import (
     Diagnostic,
@@ -34,7 +34,7 @@ _REFERENCE = r"&([^\s#;&<]+);"  # not compiled here: few files need it
 
 
 class EntityGuard:
-    """The internal entities that a document declares, and how long each one is when expanded."""
+    """The internal entities that a document declares, with the length of each when expanded."""
 
     def __init__(self) -> None:
         self._values: dict[str, str] = {}
@@ -44,16 +44,16 @@ class EntityGuard:
         return bool(self._values)
 
     def declare(self, name: str, value: str) -> None:
-        """Remember an internal entity; of two with the same name the first applies, as in XML."""
+        """Record an internal entity; of two with the same name, the first applies, as in XML."""
         self._values.setdefault(name, value)
 
     def growth(self, text: str) -> int:
-        """How many characters the references to declared entities in a text expand to, together."""
+        """Return the total length to which the references to declared entities in a text expand."""
         return sum(self._length(name, ()) for name in re.findall(_REFERENCE, text))
 
     def _length(self, name: str, within: tuple[str, ...]) -> int:
         value = self._values.get(name)
-        if value is None or name in within:  # predefined or undeclared; recursion is the parser's to report
+        if value is None or name in within:  # predefined or undeclared; the parser reports recursion
             return 0
         known = self._lengths.get(name)
         if known is None:
@@ -76,12 +76,12 @@ def parse(
     Names stay as written. Entities that the document itself declares are expanded; external ones are refused.
 
     Args:
-        text: the document; bytes are decoded as a file is.
+        text: the document; bytes are decoded like those of a file.
         name: the name of the text in messages: a path, or a name in angle brackets such as ``<stdin>``.
-        blanks: whether to keep texts of nothing but blanks, which only matter if the document is written again.
-        read_as: the text to read instead, with everything in the same place; for languages whose own parsers
-            accept text that XML forbids.
-        any_prefix: whether names may have prefixes that are declared nowhere.
+        blanks: whether to keep texts that consist of blanks, which only matter if the document is written again.
+        read_as: the text to read instead, with everything at the same position; for languages whose own parsers accept
+            text that XML forbids.
+        any_prefix: whether names may have undeclared prefixes.
 
     Raises:
         LinkwrightError: XML104 (not text), XML105 (empty), XML106 (a pointer of Git LFS), XML2xx (not well-formed
@@ -97,13 +97,13 @@ def parse_file(path: str | Path) -> Document:
     """Read a document from a file.
 
     Raises:
-        LinkwrightError: XML101 (no such file), XML102 (a folder), XML103 (cannot be read), and those of `parse`.
+        LinkwrightError: XML101 (no such file), XML102 (a folder), XML103 (cannot be read), and the errors of `parse`.
     """
     return parse(read_bytes(path), str(path))
 
 
 def read_bytes(path: str | Path) -> bytes:
-    """The bytes of a file, or a `LinkwrightError` (XML101, XML102, XML103) that gives the reason."""
+    """Return the bytes of a file, or raise a `LinkwrightError` (XML101, XML102, XML103) with the reason."""
     try:
         data = read_file(path, LARGEST_TEXT)
     except FileNotFoundError:
@@ -127,7 +127,7 @@ def read_bytes(path: str | Path) -> bytes:
                 "XML103", phrase("cannot read '{path}': {reason}", path=path, reason=foreign(reason)), hint=advice
             )
         ) from None
-    if len(data) == LARGEST_TEXT:  # such as a device that never ends
+    if len(data) == LARGEST_TEXT:  # such as a device that produces endless data
         reason = phrase("it has more than {count} million bytes", count=LARGEST_TEXT // 1_000_000)
         message = phrase("cannot read '{path}': {reason}", path=path, reason=reason)
         raise LinkwrightError(Diagnostic("XML103", message))
@@ -141,11 +141,11 @@ def _missing(path: str | Path) -> Phrase:
 
 
 class _Reader:
-    """Builds the tree from expat's events.
+    """A reader that builds the tree from expat's events.
 
-    Positions are expat's byte offsets while reading; for a text that is not plain ASCII they are
-    turned into character offsets at the end. Nearly all events are starts, ends and texts, whose handlers are
-    therefore closures.
+    While reading, positions are expat's byte offsets. For a text that is not plain ASCII, they are converted to
+    character offsets at the end. Nearly all events are starts, ends and texts, so their handlers are closures for
+    speed.
     """
 
     def __init__(self, source: SourceText, *, blanks: bool, read_as: str | None, any_prefix: bool) -> None:
@@ -157,7 +157,7 @@ class _Reader:
         self._keep_blanks = blanks
         self._parser = parser = ParserCreate("utf-8")
         parser.buffer_text = True
-        parser.specified_attributes = True  # the defaults of a DTD are not written, so the tree lacks them
+        parser.specified_attributes = True  # leave out the defaults of a DTD, which are not written in the document
         parser.buffer_size = max(1024, min(len(self._data), 1 << 20))
         parser.CommentHandler = self._comment
         parser.ProcessingInstructionHandler = self._instruction
@@ -169,7 +169,7 @@ class _Reader:
         parser.ExternalEntityRefHandler = self._external_entity
         parser.SkippedEntityHandler = self._skipped_entity
         self._entities = EntityGuard()
-        self._top = Element("")  # holds the root and the nodes outside it
+        self._top = Element("")  # contains the root and the nodes outside it
         self._open = [self._top]
         self._cdata_at: int | None = None
         self._doctype: str | None = None
@@ -204,7 +204,8 @@ class _Reader:
             if self._cdata_at is not None or (children and isinstance(children[-1], Text)):
                 self._more_characters(data, children)
                 return
-            # Expat passes text on when it meets the next node, so its place is counted back from there.
+            # Expat reports text only when it reaches the next node, so the start of the text is computed back from
+            # there.
             at = parser.CurrentByteIndex - len(data)
             if not (is_ascii and text.startswith(data, at)):
                 at = self._text_start(data)
@@ -216,7 +217,7 @@ class _Reader:
         try:
             self._parser.Parse(self._data, True)
         except ExpatError as error:
-            from linkwright.xmltree.faults import syntax_error  # here, because most texts are well-formed
+            from linkwright.xmltree.faults import syntax_error  # imported here, because most texts are well-formed
 
             self._check_prefixes()
             open_elements = [(element.tag, self._character(element.offset)) for element in self._open[1:]]
@@ -235,7 +236,7 @@ class _Reader:
         return document
 
     def _release(self) -> None:
-        # The handlers refer to the parser: without this, parser and reader would wait for the garbage collector.
+        # Break the reference cycle between parser and handlers, so that both are freed without the garbage collector.
         parser = self._parser
         for handler in ("StartElement", "EndElement", "CharacterData", "Comment", "ProcessingInstruction"):
             setattr(parser, f"{handler}Handler", None)
@@ -250,14 +251,14 @@ class _Reader:
     # prefixes
 
     def _check_prefixes(self) -> None:
-        """Refuse names whose prefix is declared nowhere around them."""
+        """Refuse names whose prefix is not declared in an enclosing element."""
         if self._any_prefix:
             return
         used = {name.partition(":")[0] for name in self._parser.intern if name and ":" in name}
         for root in self._top.elements():
             declared = {"xml", "xmlns", *_declared_prefixes(root)}
             if used <= declared:
-                return  # as in nearly every document
+                return  # as in nearly all documents
             pending = [(root, declared)]
             while pending:
                 element, declared = pending.pop()
@@ -282,7 +283,7 @@ class _Reader:
     # character data
 
     def _more_characters(self, data: str, children: list[Node]) -> None:
-        """Character data in a CDATA section, or after other character data."""
+        """Handle character data in a CDATA section, or after other character data."""
         last = children[-1] if children else None
         if self._cdata_at is not None:
             if isinstance(last, Text) and last.cdata and last.offset == self._cdata_at:
@@ -295,7 +296,8 @@ class _Reader:
             children.append(Text(data, self._source, self._text_start(data)))
 
     def _text_start(self, data: str) -> int:
-        # A text that is longer as written than as read (entities, Windows line ends) begins after the tag before it.
+        # A text whose written form is longer than the read one (entities, Windows line ends) begins after the previous
+        # tag.
         end = self._parser.CurrentByteIndex
         raw = data.encode("utf-8", "surrogatepass")
         if self._data.endswith(raw, 0, end):
@@ -385,9 +387,9 @@ def _outside(nodes: list[Node]) -> list[Comment | ProcessingInstruction]:
 
 
 def _to_character_offsets(document: Document, data: bytes) -> None:
-    """Turn the byte offsets of all nodes into character offsets."""
+    """Convert the byte offsets of all nodes to character offsets."""
     ends: list[int] = []
-    extra = [0]  # how many bytes more than characters there are up to each end
+    extra = [0]  # the surplus of bytes over characters up to each end
     for run in re.finditer(_BEYOND_ASCII, data):
         ends.append(run.end())
         extra.append(extra[-1] + len(run[0]) - len(run[0].decode("utf-8", "replace")))
@@ -400,10 +402,10 @@ def _to_character_offsets(document: Document, data: bytes) -> None:
 
 
 class Overlay:
-    """The files of the disk, some of them with other texts, such as those that an editor has not saved yet.
+    """The files on disk with replacement texts for some, such as those not yet saved in an editor.
 
     Args:
-        texts: path -> the text to take for that of the file, whether or not there is one.
+        texts: path -> the text to use for the file, whether or not the file exists.
     """
 
     def __init__(self, texts: Mapping[str | os.PathLike[str], str] | None = None) -> None:
@@ -411,14 +413,14 @@ class Overlay:
         self._documents: dict[str, Document] = {}
 
     def text(self, path: str | os.PathLike[str]) -> str | None:
-        """The text that replaces that of a file, or None if the disk has the text."""
+        """Return the text that replaces that of a file; None if the text on disk applies."""
         return self._texts.get(_key(path)) if self._texts else None
 
     def document(self, path: str) -> Document | None:
-        """The document of such a text, parsed once; None if the disk has the text.
+        """Return the document of a replacement text, parsed once; None if the text on disk applies.
 
         Raises:
-            LinkwrightError: the text is not XML; see `linkwright.xmltree.parse`.
+            LinkwrightError: if the text is not XML; see `linkwright.xmltree.parse`.
         """
         text = self.text(path)
         if text is None:
@@ -428,15 +430,15 @@ class Overlay:
         return self._documents[path]
 
     def read(self, path: str) -> Decoded:
-        """The text of a file, and the encoding that it is in.
+        """Return the text of a file, with its encoding.
 
         Raises:
-            LinkwrightError: XML101 to XML104 and XML106, there is none to be had.
+            LinkwrightError: XML101 to XML104 and XML106, if the text cannot be read.
         """
         text = self.text(path)
         return decoded(read_bytes(path), path) if text is None else unsaved(text, path)
 
 
 def _key(path: str | os.PathLike[str]) -> str:
-    """One name for a file, through whichever links it is reached: packages are often installed as links."""
+    """Return one key for a file, whichever links lead to it, as packages are often installed as links."""
     return os.path.realpath(path)

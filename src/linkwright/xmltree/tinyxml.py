@@ -1,11 +1,11 @@
-"""Parsing XML as TinyXML2 does, the parser of urdfdom and the simulators, which accepts more than XML allows.
+"""XML parsing as in TinyXML2, the parser of urdfdom and the simulators, which accepts more than XML.
 
-It knows no namespaces, ends a comment at ``-->`` alone, passes over text before the root element and over elements
-after it, reads nothing after a closing tag that closes nothing, and an ``&`` that begins no entity does not trouble it.
-Nor do a ``<`` in a value, attributes without a blank between, control characters, and a second XML declaration right
-after the first. Such files work for their users, so they are read, with a warning.
+It does not know namespaces, ends a comment only at ``-->``, skips text before the root element and elements after
+it, and stops reading after a closing tag without an open element. It also accepts an ``&`` that does not begin an
+entity, a ``<`` in a value, attributes without a blank between them, control characters, and a second XML
+declaration directly after the first. Such files work for their users, so they are read, with a warning.
 
-Characters in place of those that TinyXML2 accepts and expat refuses, as many as there were.
+Characters that TinyXML2 accepts and expat refuses are replaced by the same number of other characters.
 
 Each repair gets a text and the place of its first mistake. It returns the text with all mistakes of that kind replaced,
 or unchanged if the mistake is of another kind. `put_back` then restores the original characters in the tree.
@@ -39,17 +39,17 @@ _ATTRIBUTE = lazy_pattern(r"""(\s*)([^\s=/>"'<]+)\s*=\s*("[^"]*"|'[^']*')""", re
 
 
 def stand_in(character: str) -> str:
-    """The character that `put_back` turns into ``&``, ``<`` or a control character."""
+    """Return the character that `put_back` converts back to ``&``, ``<`` or a control character."""
     return _STAND_INS[character]
 
 
 def can_stand_in(text: str) -> bool:
-    """Whether a text has none of the replacement characters."""
+    """Return whether a text contains none of the replacement characters."""
     return _ANY.search(text) is None
 
 
 def tags_alone(text: str) -> str:
-    """The text with comments and CDATA blanked."""
+    """Return the text with comments and CDATA sections blanked."""
     return _BETWEEN_TAGS.sub(lambda found: " " * len(found[0]), text)
 
 
@@ -72,12 +72,12 @@ def _less_than_in_values(text: str, at: int) -> str:
 
 
 def _missing_blanks(text: str, at: int) -> str:
-    """Blanks between attributes, each in the place of the last character of the value before it."""
+    """Insert blanks between attributes, each in place of the last character of the preceding value."""
     if text[at - 1 : at] not in ("'", '"'):
         return text
     for value in _crowded(text):
         if value.start == value.end or text[value.end - 1] == ";":
-            return text  # there is no character, or it is the end of an entity
+            return text  # there is no character to replace, or it ends an entity
         text = text[: value.end - 1] + text[value.end] + " " + text[value.end + 1 :]
     return text
 
@@ -86,7 +86,7 @@ REPAIRS = (_control_characters, _less_than_in_values, _missing_blanks)
 
 
 def put_back(document: Document, text: str) -> None:
-    """Restore in a tree the characters that were replaced in its text."""
+    """Restore the characters in a tree that were replaced in its text."""
     shortened: dict[int, list[_Value]] = {}
     for value in _crowded(text):
         shortened.setdefault(value.tag, []).append(value)
@@ -105,7 +105,7 @@ def put_back(document: Document, text: str) -> None:
 
 
 class _Value(NamedTuple):
-    """The value of an attribute: where its tag begins, its name, and its place without its quotes."""
+    """The value of an attribute: the start of its tag, its name, and its range without the quotes."""
 
     tag: int
     name: str
@@ -118,7 +118,7 @@ def _values(text: str) -> Iterator[_Value]:
 
 
 def _crowded(text: str) -> Iterator[_Value]:
-    """The values that are followed by an attribute without a blank between."""
+    """Yield the values that are directly followed by another attribute, without a blank."""
     last: _Value | None = None
     for value, blanks in _with_blanks_before(text):
         if last is not None and last.tag == value.tag and not blanks:
@@ -150,16 +150,18 @@ _DEFINITION = "<!ENTITY"
 def parse_as_tinyxml(
     text: str, name: str, readers: Phrase, *, read_as: str | None = None
 ) -> tuple[Document, tuple[Diagnostic, ...]]:
-    """Parse a text as TinyXML2 does, with a warning (XML205 to XML207) for each kind of mistake that XML forbids.
+    """Parse a text as TinyXML2 does.
+
+    Each kind of mistake that XML forbids gets a warning (XML205 to XML207).
 
     Args:
         text: the text.
-        name: of the file, for messages.
-        readers: which programs read the file all the same, and which do not.
-        read_as: the text to read instead, with everything in the same place.
+        name: the name of the file, for messages.
+        readers: a phrase on which programs read the file nevertheless, and which do not.
+        read_as: the text to read instead, with everything at the same position.
 
     Raises:
-        LinkwrightError: it is not XML for TinyXML2 either (XML###).
+        LinkwrightError: if TinyXML2 does not accept the text either (XML###).
     """
     warnings: list[Diagnostic] = []
     source = SourceText(name, text)
@@ -226,17 +228,17 @@ def _ampersands(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]
 
 
 def _without(text: str, match: re.Match[str]) -> str:
-    """The text with the first group of a match blanked."""
+    """Return the text with the first group of a match blanked."""
     return text[: match.start(1)] + blanked(match[1]) + text[match.end(1) :]
 
 
 def blanked(text: str) -> str:
-    """As many blanks, in as many lines, so that places stay right."""
+    """Return the same number of blanks in the same number of lines, so that positions stay valid."""
     return re.sub(r"\S", " ", text)
 
 
 def forbidden(message: Phrase, span: Span, source: SourceText, hint: Phrase, readers: Phrase) -> Diagnostic:
-    """Return a warning about something that XML forbids and TinyXML2 accepts."""
+    """Return a warning about a construct that XML forbids and TinyXML2 accepts."""
     return Diagnostic("XML206", message, span, Severity.WARNING, (Note(readers),), hint, source)
 
 
@@ -266,7 +268,10 @@ def _parsed(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document
 
 
 def _repaired(source: SourceText, error: LinkwrightError, text: str) -> str:
-    """The text with all mistakes of the error's kind replaced; the error, where TinyXML2 has one there, too."""
+    """Return the text with all mistakes of the error's kind replaced.
+
+    If TinyXML2 reports the error, too, it is raised.
+    """
     diagnostic = error.diagnostics[0]
     if diagnostic.code == _NOT_XML and diagnostic.span is not None and can_stand_in(source.text):
         at = source.offset(diagnostic.span.line, diagnostic.span.column)
@@ -278,14 +283,14 @@ def _repaired(source: SourceText, error: LinkwrightError, text: str) -> str:
 
 
 def _passed_over(source: SourceText, end: int, readers: Phrase) -> Diagnostic:
-    """The warning about content after the root."""
+    """Return the warning about content after the root."""
     message = phrase("there is content after the end of the root element")
     hint = phrase("a file has one root element")
     return Diagnostic(_AFTER_ROOT, message, source.span(end, end + 1), Severity.WARNING, (Note(readers),), hint, source)
 
 
 def _end_of_root(diagnostic: Diagnostic, text: str) -> int | None:
-    """Where the content after the root may begin, by the error that it causes."""
+    """Return where the content after the root may begin, according to the error that it causes."""
     if diagnostic.span is None or diagnostic.source is None:
         return None
     at = diagnostic.source.offset(diagnostic.span.line, diagnostic.span.column)
@@ -293,7 +298,7 @@ def _end_of_root(diagnostic: Diagnostic, text: str) -> int | None:
 
 
 def _is_passed_over(rest: str) -> bool:
-    """Whether elements after the root are whole, up to a closing tag that closes nothing."""
+    """Return whether the elements after the root are complete up to an unmatched closing tag."""
     parser = ParserCreate()
     depth = 0
 
@@ -314,5 +319,5 @@ def _is_passed_over(rest: str) -> bool:
 
 
 def _has_dashes(comment: str | None) -> bool:
-    """Whether XML forbids the content of a comment; pass None for other nodes."""
+    """Return whether XML forbids the content of a comment; pass None for other nodes."""
     return comment is not None and ("--" in comment or comment.endswith("-"))

@@ -1,8 +1,8 @@
-"""Writing a tree as text.
+"""Serialization of a tree to text.
 
-The form is the one that ros/xacro 2.1 gives on Python up to 3.12: minidom's ``toprettyxml`` with two blanks of
-indent, with attributes in alphabetical order, blank text dropped, and an element that holds nothing but text on one
-line. It is the same here on every Python version.
+The form is that of ros/xacro 2.1 on Python up to 3.12: minidom's ``toprettyxml`` with an indentation of two blanks,
+attributes in alphabetical order, no blank text, and elements that contain only text on one line. It is the same
+here on every Python version.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ _DEEPEST = 3_000
 
 
 def write(document: Document) -> str:
-    """The document as text, with an XML declaration and a newline at the end.
+    """Return the document as text, with an XML declaration and a final newline.
 
     Raises:
-        LinkwrightError: XML301 when a comment made by a program contains two dashes, which XML forbids; XML302 when
-            elements are nested thousands deep.
+        LinkwrightError: XML301 if a comment created by a program contains two dashes, which XML forbids; XML302 if
+            elements are nested thousands of levels deep.
     """
     pieces: list[str] = ['<?xml version="1.0" ?>\n']
     before: list[Node] = list(document.prolog)
@@ -38,14 +38,14 @@ def write(document: Document) -> str:
 
 
 def write_element(element: Element, depth: int = 0) -> str:
-    """An element and its content as text, without an XML declaration.
+    """Return an element and its content as text, without an XML declaration.
 
     Args:
         element: the element.
-        depth: the number of elements around it, by which it is indented.
+        depth: the number of enclosing elements, which determines the indentation.
 
     Raises:
-        LinkwrightError: XML301, see `write`.
+        LinkwrightError: XML301; see `write`.
     """
     pieces: list[str] = []
     _write_nodes([element], pieces.append, _INDENT * depth)
@@ -53,9 +53,9 @@ def write_element(element: Element, depth: int = 0) -> str:
 
 
 def tidied(root: Element) -> Element:
-    """A copy whose texts beside elements have no blanks around them, or writing would add some each time."""
+    """Return a copy in which texts next to elements are stripped, as each writing would add blanks to them."""
     top = Element(root.tag, dict(root.attributes))
-    todo = [(root, top)]  # not by recursion: the writer reports too deep nesting
+    todo = [(root, top)]  # no recursion: the writer reports excessive nesting
     while todo:
         element, copy = todo.pop()
         mixed = any(not isinstance(child, Text) for child in element.children)
@@ -73,7 +73,7 @@ def tidied(root: Element) -> Element:
 
 
 def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None], indent: str = "") -> None:
-    # A loop with its own stack: documents may be nested deeper than Python's calls.
+    # Use a loop with its own stack: documents may be nested more deeply than Python's calls.
     stack: list[tuple[Iterator[Node], str]] = []
     remaining = iter(nodes)
     around = len(indent) // len(_INDENT)
@@ -115,7 +115,7 @@ def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None], indent: str 
 
 
 def _text_of_original(copy: LazyCopy, indent: str) -> str:
-    """The text of a copy that was never accessed."""
+    """Return the text of a copy that was never accessed."""
     cache, original = copy.plan, copy.original
     if isinstance(cache, CachedText) and cache.written is not None and cache.written[0] == indent:
         return cache.written[1]
