@@ -46,8 +46,9 @@ class AxisLimit:
 
 @dataclass(frozen=True, slots=True)
 class AxisDynamics:
-    """The damping of an axis in N m s/rad or N s/m, its friction in N m or N, and a spring about a position in rad or
-    m.
+    """The damping of an axis in N m s/rad or N s/m, its friction in N m or N, and its spring.
+
+    The spring pulls towards a position in rad or m.
     """
 
     damping: float = 0.0

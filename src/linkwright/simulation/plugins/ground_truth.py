@@ -104,8 +104,9 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
 
 
 class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
-    """``gz-sim-odometry-publisher-system``: publishes the pose of a model in the world, and its velocity in its own
-    axes.
+    """``gz-sim-odometry-publisher-system``: publishes the pose of a model in the world, and its velocity.
+
+    The velocity is in the axes of the model.
     """
 
     PARAMETERS = GzOdometryParameters
