@@ -32,7 +32,7 @@ from linkwright.xacro import expand, sources
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.expressions.yamldata import YamlError, load
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.limits import Limits, room_for
+from linkwright.xacro.limits import Limits, recursion_limit_for
 from linkwright.xacro.session import Session
 from linkwright.xmltree import Comment, parse, write
 
@@ -98,7 +98,7 @@ def check_expression(source: str) -> None:
 
 def _fault_of(session: Session, text: str, scope: Scope) -> Fault | None:
     try:
-        with room_for(_LIMITS):
+        with recursion_limit_for(_LIMITS):
             session.evaluate_text(text, scope)
     except Fault as fault:
         return fault

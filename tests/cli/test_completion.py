@@ -126,7 +126,7 @@ def test_a_look_at_the_graph(in_graph: Callable[[Callable[[Graph], object]], Non
         node.create_publisher(get_message("std_msgs/msg/String"), "chatter", 1)
 
     in_graph(make)
-    assert graph_names.look() == 0
+    assert graph_names.discover() == 0
     assert "/left/talker" in graph_names.names_of("nodes")
     assert "/left/chatter" in graph_names.names_of("topics")
     assert "/left/talker/get_parameters" in graph_names.names_of("services")

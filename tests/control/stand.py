@@ -60,7 +60,7 @@ class Stand:
         """So many updates, each after what has come by topics, and before what goes out."""
         for _ in range(count):
             await self.graph.settle()
-            self.exchange.work()
+            self.exchange.run_commands()
             self.time_ns += round(period_s * 1e9)
             controller.step(self.time_ns, period_s)
             self.exchange.deliver()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.sweep.plan import planned
+from linkwright.sweep.plan import plan_runs
 from linkwright.sweep.running import run_once
 from linkwright.sweep.scenario import load_scenario
 from tests.docs.pages import blocks
@@ -17,7 +17,7 @@ def test_it_runs_and_friction_decides_who_arrives(page, tmp_path):
     path = tmp_path / block.title
     path.write_text(block.text, encoding="utf-8")
     scenario = load_scenario(path)
-    runs = planned(scenario)
+    runs = plan_runs(scenario)
     assert len(runs) == 10
     slippery, rough = run_once(scenario, runs[0]), run_once(scenario, runs[-1])
     assert not slippery.error

@@ -127,4 +127,4 @@ async def test_a_message_that_cannot_be_written_is_told_of_and_the_others_are_ke
 async def test_without_room_nothing_is_kept():
     async with world(config()) as made, page(made.viewer) as client:
         assert "timeline" not in await client.opened()
-        assert made.viewer.context.node.handle.intake is None
+        assert made.viewer.context.node.handle.message_filter is None

@@ -66,7 +66,7 @@ class _Failing(SimulatedPlugin[_Parameters]):
         reach = self.parameters.reach
         reach("start")
         output = self.node.publisher(STRING, "said")
-        make = output.making(lambda: reach(MAKING) or get_message(STRING)())
+        make = output.deferred_publisher(lambda: reach(MAKING) or get_message(STRING)())
         self.every(100.0, lambda: reach(TASK))
         self.every(100.0, make)
         self.every(100.0, lambda: output.publish(3 if self.parameters.where == PUBLISHING else get_message(STRING)()))

@@ -192,7 +192,7 @@ async def test_a_message_of_values_is_made_once_and_only_when_it_is_handed_over(
         made.append(get_message("std_msgs/msg/String")(data=f"{number} {word}"))
         return made[-1]
 
-    send = output.making(text)
+    send = output.deferred_publisher(text)
     send(1, "one")
     assert not made
     exchange.deliver()

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.sweep.plan import planned
+from linkwright.sweep.plan import plan_runs
 from linkwright.sweep.running import run_once
 from linkwright.sweep.scenario import load_scenario
 from linkwright.sweep.workers import run_locally
@@ -54,14 +54,14 @@ def drive(noise, friction, seed):
 
 def ran(path: Path, workers: int) -> dict[int, object]:
     outcomes = {}
-    run_locally(path, planned(load_scenario(path)), workers, lambda each: outcomes.setdefault(each.row, each))
+    run_locally(path, plan_runs(load_scenario(path)), workers, lambda each: outcomes.setdefault(each.row, each))
     return outcomes
 
 
 def test_rows_are_the_same_bits_in_any_process_and_order(tmp_path):
     path = write(tmp_path, SIMULATED)
     scenario = load_scenario(path)
-    here = {run.row: run_once(scenario, run) for run in reversed(planned(scenario))}
+    here = {run.row: run_once(scenario, run) for run in reversed(plan_runs(scenario))}
     assert ran(path, 2) == here
     assert all(not each.error for each in here.values())
     assert len({each.results["a"] for each in here.values()}) == 4
@@ -127,7 +127,7 @@ def test_a_run_that_fails_makes_status_1(tmp_path, monkeypatch, capsys):
 def test_a_row_is_run_again_by_its_number(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     path = write(tmp_path, SQUARES)
-    fourth = planned(load_scenario(path))[3]
+    fourth = plan_runs(load_scenario(path))[3]
     assert main(["sweep", "squares.py", "--rerun", "4"]) == 0
     drawn = fourth.parameters["drawn"]
     expected = f"n: 2\ndrawn: {drawn}\nseed: 1\nsquare: 4\nbig: False\nsum: {3 + drawn}\n"

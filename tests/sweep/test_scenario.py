@@ -3,14 +3,14 @@
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.sweep.plan import fingerprint, planned, with_values
+from linkwright.sweep.plan import fingerprint, plan_runs, with_values
 from linkwright.sweep.running import run_once
 from linkwright.sweep.scenario import load_scenario
 from tests.sweep.scenarios import HEAD, SQUARES, loaded, write
 
 
 def test_each_value_is_run_with_each_seed(tmp_path):
-    runs = planned(loaded(tmp_path))
+    runs = plan_runs(loaded(tmp_path))
     assert [run.row for run in runs] == [1, 2, 3, 4, 5, 6]
     assert [(run.parameters["n"], run.seed) for run in runs] == [(1, 0), (1, 1), (2, 0), (2, 1), (3, 0), (3, 1)]
     assert list(runs[0].parameters) == ["n", "drawn"]
@@ -18,10 +18,10 @@ def test_each_value_is_run_with_each_seed(tmp_path):
 
 def test_what_is_drawn_depends_on_seed_and_name_alone(tmp_path):
     scenario = loaded(tmp_path)
-    drawn = {run.seed: run.parameters["drawn"] for run in planned(scenario)}
-    assert all(run.parameters["drawn"] == drawn[run.seed] for run in planned(scenario))
+    drawn = {run.seed: run.parameters["drawn"] for run in plan_runs(scenario)}
+    assert all(run.parameters["drawn"] == drawn[run.seed] for run in plan_runs(scenario))
     assert len(set(drawn.values())) == 2
-    more = planned(with_values(scenario, {"n": "7"}, 50))
+    more = plan_runs(with_values(scenario, {"n": "7"}, 50))
     assert {run.seed: run.parameters["drawn"] for run in more}.items() >= drawn.items()
     assert all(0.0 <= run.parameters["drawn"] < 1.0 for run in more)
 
@@ -38,7 +38,7 @@ def test_values_of_the_command_line_are_yaml(tmp_path):
 
 def test_a_run_is_what_the_function_returns(tmp_path):
     scenario = loaded(tmp_path)
-    last = planned(scenario)[-1]
+    last = plan_runs(scenario)[-1]
     outcome = run_once(scenario, last)
     assert (outcome.row, outcome.error) == (6, "")
     assert outcome.results == {"square": 9, "big": True, "sum": 4 + last.parameters["drawn"]}
@@ -54,8 +54,8 @@ def draw():
     return {{"python": random.random(), "numpy": numpy.random.rand(), "array": numpy.float64(0.5)}}
 """
     scenario = loaded(tmp_path, text)
-    first, second = (run_once(scenario, run).results for run in planned(scenario))
-    assert first == run_once(scenario, planned(scenario)[0]).results
+    first, second = (run_once(scenario, run).results for run in plan_runs(scenario))
+    assert first == run_once(scenario, plan_runs(scenario)[0]).results
     assert first["python"] != second["python"]
     assert first["numpy"] != second["numpy"]
     assert type(first["array"]) is float
@@ -74,7 +74,7 @@ def draw():
 )
 def test_what_goes_wrong_is_the_outcome(tmp_path, body, error):
     scenario = loaded(tmp_path, f"{HEAD}\n@scenario(n=[1])\ndef f(n):\n    {body}\n")
-    outcome = run_once(scenario, planned(scenario)[0])
+    outcome = run_once(scenario, plan_runs(scenario)[0])
     assert outcome.error.startswith(error)
     assert outcome.results == {}
 
@@ -138,8 +138,8 @@ def test_bad_values_of_the_command_line(tmp_path, words, code):
 
 def test_the_fingerprint_is_that_of_file_and_values(tmp_path):
     scenario = loaded(tmp_path)
-    whole = fingerprint(scenario, planned(scenario))
-    assert whole == fingerprint(scenario, planned(scenario))
-    assert whole != fingerprint(scenario, planned(with_values(scenario, {}, 1)))
+    whole = fingerprint(scenario, plan_runs(scenario))
+    assert whole == fingerprint(scenario, plan_runs(scenario))
+    assert whole != fingerprint(scenario, plan_runs(with_values(scenario, {}, 1)))
     write(tmp_path, f"{SQUARES}\n# changed\n")
-    assert whole != fingerprint(scenario, planned(scenario))
+    assert whole != fingerprint(scenario, plan_runs(scenario))

@@ -8,10 +8,10 @@ import pyarrow.parquet as pq
 import pytest
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.sweep.plan import planned
+from linkwright.sweep.plan import plan_runs
 from linkwright.sweep.running import Outcome, run_once
 from linkwright.sweep.sweep import Sweep
-from linkwright.sweep.table import Table, check_format, written
+from linkwright.sweep.table import Table, check_format, table_bytes
 from tests.full_disk import full_disk, needs_limits
 from tests.sweep.scenarios import HEAD, SQUARES, loaded, write
 
@@ -195,8 +195,8 @@ def test_tables_are_csv_or_parquet(tmp_path):
 
 
 def test_what_is_not_returned_everywhere_is_empty_there(tmp_path):
-    runs = planned(loaded(tmp_path))[:2]
+    runs = plan_runs(loaded(tmp_path))[:2]
     table = Table.of(runs, {1: Outcome(1, {"a": 1}), 2: Outcome(2, {"b": "x"})})
-    lines = written(table, tmp_path / "out.csv").decode().splitlines()
+    lines = table_bytes(table, tmp_path / "out.csv").decode().splitlines()
     assert [line.split(",")[4:] for line in lines] == [["a", "b", "error"], ["1", "", ""], ["", "x", ""]]
     assert write(tmp_path).exists()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.limits import Limits, room_for
+from linkwright.xacro.limits import Limits, recursion_limit_for
 from linkwright.xacro.session import Session
 
 
@@ -14,5 +14,5 @@ def evaluate(text: str, limits: Limits | None = None, **properties: Any) -> Any:
     limits = limits or Limits()
     session = Session("main.xacro", {}, {}, limits)
     scope = Scope(session.globals, session, dict(properties))
-    with room_for(limits):
+    with recursion_limit_for(limits):
         return session.evaluate(text, scope)

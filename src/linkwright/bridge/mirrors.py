@@ -97,7 +97,7 @@ class MirroredPublisher:
 
     def listeners(self) -> int:
         """The number of matching subscriptions of others, other bridges included."""
-        return self._publisher.get_subscription_count() - len(self._publisher.matched())
+        return self._publisher.get_subscription_count() - len(self._publisher.local_subscriptions())
 
     @property
     def waits(self) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.lookup import absolute_or_given, unknown
+from linkwright.cli.lookup import absolute_or_given, unknown_name_error
 from linkwright.diagnostics import Diagnostic, LinkwrightError, joined, phrase
 
 if TYPE_CHECKING:
@@ -107,5 +107,5 @@ async def find_node(session: Session, name: str, *, hidden: bool = False, timeou
             if known
             else phrase("no nodes are running")
         )
-        raise unknown("CLI423", phrase("Node not found: '{full}'", full=full), full, known, nothing)
+        raise unknown_name_error("CLI423", phrase("Node not found: '{full}'", full=full), full, known, nothing)
     return full

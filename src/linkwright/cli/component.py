@@ -12,7 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.calls import call, node_names
-from linkwright.cli.lookup import absolute_or_given, unknown
+from linkwright.cli.lookup import absolute_or_given, unknown_name_error
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.remote_parameters import parameter_of
 from linkwright.cli.session import add_session_arguments, run_in_graph
@@ -200,7 +200,9 @@ async def find_container(session: Session, name: str, timeout: float = _APPEARS_
     if not await session.until(lambda: full in containers(session), timeout):
         known = containers(session)
         nothing = phrase("running nodes: {known}", known=joined(known)) if known else phrase("no container is running")
-        raise unknown("CLI432", phrase("Unable to find container node '{name}'", name=name), full, known, nothing)
+        raise unknown_name_error(
+            "CLI432", phrase("Unable to find container node '{name}'", name=name), full, known, nothing
+        )
     return full
 
 

@@ -35,7 +35,7 @@ def absolute(name: str) -> str:
     return expand_topic_name(name, "ros2cli", "/")
 
 
-def unknown(code: str, message: Phrase, name: str, known: Iterable[str], nothing: Phrase) -> LinkwrightError:
+def unknown_name_error(code: str, message: Phrase, name: str, known: Iterable[str], nothing: Phrase) -> LinkwrightError:
     """Return the error for a name that is not in the graph.
 
     Args:
@@ -77,7 +77,7 @@ async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
         known = [topic for topic, _ in session.node.get_topic_names_and_types()]
         nothing = phrase("give the message type to wait for the topic, or see `linkwright topic list`")
         message = phrase("Could not determine the type for the passed topic '{name}'", name=name)
-        raise unknown("CLI411", message, name, known, nothing)
+        raise unknown_name_error("CLI411", message, name, known, nothing)
     while not types:
         await asyncio.sleep(_POLL)
         types = _types_of(session, name)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linkwright.cli.lookup import absolute, unknown, visible
+from linkwright.cli.lookup import absolute, unknown_name_error, visible
 from linkwright.cli.session import run_in_graph
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class Kind:
         name = absolute(given)
         found = dict(visible(self.found(session), hidden=hidden))
         if name not in found:
-            raise unknown(self.code, self.missing(given), name, found, self.hint)
+            raise unknown_name_error(self.code, self.missing(given), name, found, self.hint)
         return found[name]
 
     def print_types(self, arguments: argparse.Namespace, given: str, *, hidden: bool = True) -> int:

@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from linkwright.cli.calls import node_names
-from linkwright.cli.lookup import NamesAndTypes, absolute_or_given, unknown, visible
+from linkwright.cli.lookup import NamesAndTypes, absolute_or_given, unknown_name_error, visible
 from linkwright.cli.names_listing import add_count_argument, print_names
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.session import add_session_arguments, run_in_graph
@@ -64,7 +64,7 @@ def run_info(arguments: argparse.Namespace) -> int:
         count = names.count(full)
         if not count:
             message = phrase("Unable to find node '{node_name}'", node_name=arguments.node_name)
-            raise unknown("CLI423", message, full, names, phrase("`linkwright node list` lists them"))
+            raise unknown_name_error("CLI423", message, full, names, phrase("`linkwright node list` lists them"))
         if count > 1:
             print(
                 f"There are {count} nodes in the graph with the exact name '{full}'."

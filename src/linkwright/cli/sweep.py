@@ -59,7 +59,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the sweep; return 1 if a run failed, 130 if it was interrupted."""
-    from linkwright.sweep.plan import planned, with_values
+    from linkwright.sweep.plan import plan_runs, with_values
     from linkwright.sweep.running import prepare
     from linkwright.sweep.sweep import Sweep
     from linkwright.sweep.table import check_format
@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     progress = _Progress()
     table = sweep.run(_runner(arguments, path), resume=arguments.resume, progress=progress.show)
     progress.end()
-    missing = len(planned(scenario)) - len(table)
+    missing = len(plan_runs(scenario)) - len(table)
     _print_summary(table, time.monotonic() - began, progress.made)
     for written in (sweep.table, sweep.page):
         print(localized(phrase("Created file {file}", file=display_path(written))))
@@ -104,10 +104,10 @@ def _runner(arguments: argparse.Namespace, path: Path) -> Runner:
 
 def _rerun(scenario: Scenario, row: int) -> int:
     """Run one row in this process, and print its values and results, or its error."""
-    from linkwright.sweep.plan import planned
+    from linkwright.sweep.plan import plan_runs
     from linkwright.sweep.running import results_of
 
-    runs = planned(scenario)
+    runs = plan_runs(scenario)
     if row > len(runs):
         message = phrase("there is no row {row}", row=row)
         hint = phrase("the sweep has rows 1 to {count}", count=len(runs))

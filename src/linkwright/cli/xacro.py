@@ -176,12 +176,12 @@ def _arguments(inputs: Inputs, verbosity: int, form: str) -> str:
 
 def _provenance(inputs: Inputs, name: str, form: str) -> str:
     from linkwright.xacro.inspection import provenance_of_named
-    from linkwright.xacro.limits import room_for
+    from linkwright.xacro.limits import recursion_limit_for
     from linkwright.xacro.tracing.provenance_text import provenance_data, provenance_text
 
     found = provenance_of_named(inputs, name)
     if form == "json":
-        with room_for(inputs.limits):  # elements may be nested deeper than Python's recursion limit
+        with recursion_limit_for(inputs.limits):  # elements may be nested deeper than Python's recursion limit
             return _json({"elements": [provenance_data(provenance) for provenance in found]})
     return "\n".join(map(provenance_text, found))
 

@@ -103,7 +103,7 @@ class OdometryTopics:
         velocity = self.variances if self.velocity_variances is None else self.velocity_variances
         self._covariances = (_diagonal(self.variances), _diagonal(velocity))
         made = ((self.odometry, self._odometry_message), (self.transforms, self._transform_message))
-        self._outputs = tuple((output, output.making(make)) for output, make in made if output is not None)
+        self._outputs = tuple((output, output.deferred_publisher(make)) for output, make in made if output is not None)
 
     @property
     def is_wanted(self) -> bool:

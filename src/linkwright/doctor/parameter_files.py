@@ -20,7 +20,7 @@ def examine_parameter_files(seen: Observation, files: Iterable[str | Path]) -> I
     running = phrase("running nodes: {nodes}", nodes=joined(nodes)) if nodes else None
     for file in files:
         shown = display_path(file)
-        for section in read_parameter_file(file).without_node(nodes):
+        for section in read_parameter_file(file).unmatched_patterns(nodes):
             message = phrase("section '{section}' of '{file}' matches no running node", section=section, file=shown)
             hint = did_you_mean(section, nodes) or running
             yield Diagnostic("DOC702", message, severity=Severity.WARNING, hint=hint)

@@ -274,7 +274,7 @@ class _Watcher:
 
     def _on_velocity(self, topic: str, data: bytes, info: MessageInfo) -> None:
         dispute = self._disputes.setdefault(topic, Dispute(_DISPUTED_S, _DISPUTED_TIMES))
-        dispute.hear(info.publisher_gid, bytes(data[-_TWIST_BYTES:]), time.monotonic())
+        dispute.note_command(info.publisher_gid, bytes(data[-_TWIST_BYTES:]), time.monotonic())
 
     def _on_stamped(self, topic: str, data: bytes, info: MessageInfo, *, driving: bool) -> None:
         if driving:

@@ -52,7 +52,7 @@ class LocalGraph(GraphQueries):
     ) -> None:
         self.timebase: Timebase = clock or SystemClock()
         self.bus = Bus()
-        self.makers: dict[str, str] = {}
+        self.creators: dict[str, str] = {}
         self.levels = levels or LogLevels()
         self._sink = on_log or print_to_console
         self._logger = self.get_logger("graph")

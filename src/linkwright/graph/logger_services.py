@@ -35,7 +35,7 @@ class LoggerServices:
         from linkwright.graph.parameters.parameter import interface
 
         level_class = interface("LoggerLevel")
-        response.levels = [level_class(name=name, level=int(self._levels.own(name))) for name in request.names]
+        response.levels = [level_class(name=name, level=int(self._levels.own_level(name))) for name in request.names]
         return response
 
     def _set(self, request: Any, response: Any) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.graph.endpoints.subscription import Detailed, Subscription
+from linkwright.graph.endpoints.subscription import QueuedMessage, Subscription
 from linkwright.graph.loop.node_handle import Dispatcher, NodeHandle
 from linkwright.graph.parameters.node_parameters import NodeParameters
 from linkwright.graph.parameters.parameter import SetParametersResult
@@ -82,7 +82,7 @@ class _ClockSubscription(Subscription[Any]):
         if type(message) is self._as_it_is:
             self._move(message)
             return
-        call = self._prepared(message)
+        call = self._prepare_call(message)
         if call is not None:
             call()
 
@@ -90,7 +90,7 @@ class _ClockSubscription(Subscription[Any]):
         """Do nothing: this subscription needs no dispatcher."""
 
     def _move(self, message: Any) -> None:
-        if isinstance(message, Detailed):
+        if isinstance(message, QueuedMessage):
             message = message.message
         stamp = message.clock
         self._ros_clock.override(stamp.sec * NANOSECONDS_PER_SECOND + stamp.nanosec)

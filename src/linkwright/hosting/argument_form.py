@@ -30,7 +30,7 @@ def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Dia
         The form, or None if other values would change nothing, as far as that is known.
     """
     from linkwright.descriptions.argument_sets import argument_sets
-    from linkwright.lint.argument_sets import asked_argument
+    from linkwright.lint.argument_sets import undeclared_argument
     from linkwright.page.protocol.description import ArgumentChoice, ArgumentForm
 
     if call.path.suffix == ".sdf":
@@ -41,7 +41,7 @@ def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Dia
         values = {**given, **argument_set.values}
         if argument_set.values and values not in sets and _expands(call, values, finder):
             sets.append(values)
-    asked = [name for finding in findings if (name := asked_argument(finding))]
+    asked = [name for finding in findings if (name := undeclared_argument(finding))]
     names = list(dict.fromkeys([*asked, *(name for values in sets for name in values), *(given if asked else ())]))
     if not names:
         return None

@@ -364,7 +364,7 @@ class NodeHost:
 
     def _process_of(self, logger: str) -> str:
         """Return the process of a logger, or of its nearest ancestor, or the node that made it."""
-        makers = {} if self._graph is None else dict(self._graph.makers)
+        makers = {} if self._graph is None else dict(self._graph.creators)
         while logger:
             if logger in self._process_of_logger:
                 return self._process_of_logger[logger]

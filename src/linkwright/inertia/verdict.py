@@ -92,7 +92,7 @@ def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
     shapes = link.collisions if found.kind == "collision" else link.visuals
     comparison = None if found.properties is None else compare(present, found.properties)
     computed = found.properties if found.shapes == len(shapes) else None  # a part of them tells nothing
-    alone = not bodies.stands_for_others(link)
+    alone = not bodies.includes_massless_links(link)
     reasons = [_Reason(Standing.IMPOSSIBLE, words) for words in problems(present)]
     density = None
     if alone and computed is not None and comparison is not None:

@@ -21,7 +21,7 @@ from linkwright.diagnostics import (
     quoted_names,
 )
 from linkwright.diagnostics.phrase import as_phrase
-from linkwright.lint.engine import Checked, as_set, in_order
+from linkwright.lint.engine import Checked, sorted_by_place, with_configured_severity
 from linkwright.lint.registry import find_rule
 from linkwright.lint.rules.inertia_doubtful import LEFT_TO_PLACEHOLDERS, placeholders
 from linkwright.lint.settings import Settings
@@ -94,7 +94,7 @@ class SetCheck:
 
     def with_configured(self, sets: Sequence[Mapping[str, str]]) -> Checked:
         """Return the result for the argument sets of a configuration, which replace the sets of all callers."""
-        return self._together([self._run(ArgumentSet(values)) for values in sets], ())
+        return self._merged([self._run(ArgumentSet(values)) for values in sets], ())
 
     def with_callers(self, find_sets: Callable[[], Sequence[ArgumentSet]]) -> Checked:
         """Return the result for the defaults and the callers' sets; `find_sets` is called only if needed."""
@@ -125,12 +125,12 @@ class SetCheck:
             kept.insert(0, default)
         kept = kept or [run for run in others if run.is_fine(common)]
         if not kept and any(argument_set.open for argument_set in sets):
-            return self._remarked(default, [default, *tried], common, sets)
+            return self._result_for_unknown_values(default, [default, *tried], common, sets)
         if is_unknown and kept in ([], [default]):
             return self._without_values(default, sets)
         if not kept or default in kept:
-            return self._together(kept or [default], ())
-        return self._together(kept, self._needs(kept[0], default, common, sets))
+            return self._merged(kept or [default], ())
+        return self._merged(kept, self._needs_arguments_finding(kept[0], default, common, sets))
 
     def _expanded(self, sets: Sequence[ArgumentSet]) -> _Run | None:
         """Return the run of a file that launch files pass to xacro; None if xacro would fail."""
@@ -161,17 +161,17 @@ class SetCheck:
             return run
         opened = dict.fromkeys(filter(None, given.open), _ANY_VALUE)
         changed = self._changed(run, opened) if opened else frozenset()
-        return replace(run, hanging=changed | {place for place in errors if _may_hang_on(place[0])})
+        return replace(run, hanging=changed | {place for place in errors if _may_depend_on_argument(place[0])})
 
     # --- findings ---------------------------------------------------------------------------------------------
 
-    def _together(self, runs: Sequence[_Run], more: Iterable[Diagnostic]) -> Checked:
+    def _merged(self, runs: Sequence[_Run], more: Iterable[Diagnostic]) -> Checked:
         """Merge the findings of several runs, each once, with the robot of the first run that has one."""
         collected: dict[Key, tuple[Diagnostic, list[_Run]]] = {}
         for run in runs:
             for key, each in _numbered(run.checked.diagnostics):
                 collected.setdefault(key, (each, []))[1].append(run)
-        found: list[Diagnostic] = [*as_set(more, self.settings)]
+        found: list[Diagnostic] = [*with_configured_severity(more, self.settings)]
         copied = {name for run in runs if run.checked.subject for name in run.checked.subject.once(placeholders)}
         for diagnostic, having in collected.values():
             if diagnostic.code in LEFT_TO_PLACEHOLDERS and as_phrase(diagnostic.message).arguments["name"] in copied:
@@ -181,13 +181,13 @@ class SetCheck:
             elif not _holds_for_all_sets(diagnostic):
                 found.append(_under_condition(diagnostic, having, runs))
         best = next((run.checked for run in runs if run.checked.robot is not None), runs[0].checked)
-        return replace(best, diagnostics=tuple(in_order(found, str(self.path))))
+        return replace(best, diagnostics=tuple(sorted_by_place(found, str(self.path))))
 
-    def _needs(
+    def _needs_arguments_finding(
         self, working: _Run, default: _Run, common: frozenset[Key], sets: Sequence[ArgumentSet]
     ) -> Iterator[Diagnostic]:
         """Yield the finding that the defaults alone do not produce a robot."""
-        names = self._needed(working.given.values, common)
+        names = self._required_arguments(working.given.values, common)
         shown = " ".join(f"{name}:={working.given.values[name]}" for name in names[:_FEW])
         message = (
             phrase("it gets {values} here, for instance", values=shown)
@@ -199,7 +199,7 @@ class SetCheck:
             notes.append(Note(phrase("it is checked with the {count} sets of values that are given", count=len(sets))))
         yield _needs_arguments(default.checked, names, tuple(notes))
 
-    def _needed(self, values: Mapping[str, str], common: frozenset[Key]) -> list[str]:
+    def _required_arguments(self, values: Mapping[str, str], common: frozenset[Key]) -> list[str]:
         """Return the arguments that are needed for a robot, found by leaving each argument out in turn."""
         kept = dict(values)
         for name in values:
@@ -217,38 +217,38 @@ class SetCheck:
             found = error.diagnostics
         return all(diagnostic.severity is not Severity.ERROR or _place(diagnostic) in common for diagnostic in found)
 
-    def _remarked(
+    def _result_for_unknown_values(
         self, default: _Run, runs: Sequence[_Run], common: frozenset[Key], sets: Sequence[ArgumentSet]
     ) -> Checked:
         """Return the result with the defaults for callers that give unknown values."""
-        names = _opened(sets)
+        names = _runtime_arguments(sets)
         if not names:
             return self._without_values(default, sets)
         certain = common.difference(*(run.hanging for run in runs))
-        return self._only(default, lambda error: _place(error) in certain, names, _when(sets))
+        return self._only(default, lambda error: _place(error) in certain, names, _runtime_value_note(sets))
 
     def _without_values(self, default: _Run, sets: Sequence[ArgumentSet]) -> Checked:
         """Return the result for callers without known values.
 
         Such callers set the arguments that lack a declaration or value.
         """
-        asked = [name for diagnostic in default.checked.diagnostics if (name := asked_argument(diagnostic))]
+        asked = [name for diagnostic in default.checked.diagnostics if (name := undeclared_argument(diagnostic))]
         if asked:
             hanging = self._changed(default, dict.fromkeys(asked, _ANY_VALUE))
             return self._only(
                 default,
-                lambda error: asked_argument(error) is None and _place(error) not in hanging,
+                lambda error: undeclared_argument(error) is None and _place(error) not in hanging,
                 list(dict.fromkeys(asked)),
-                _when(sets),
+                _runtime_value_note(sets),
             )
-        names = dict.fromkeys((*_opened(sets), *empty_defaults(_sources(default.checked))))
+        names = dict.fromkeys((*_runtime_arguments(sets), *empty_defaults(_sources(default.checked))))
         changed = {
             name: found for name in list(names)[:_MOST_TRIED] if (found := self._changed(default, {name: _ANY_VALUE}))
         }
         if not changed:
             return default.checked
         hanging = frozenset[Key]().union(*changed.values())
-        return self._only(default, lambda error: _place(error) not in hanging, list(changed), _when(sets))
+        return self._only(default, lambda error: _place(error) not in hanging, list(changed), _runtime_value_note(sets))
 
     def _changed(self, run: _Run, values: Mapping[str, str]) -> frozenset[Key]:
         """Return the errors of a run that other values of some arguments change or remove."""
@@ -268,8 +268,8 @@ class SetCheck:
             file=self.path.name,
             name=names[0],
         )
-        found += as_set([_needs_arguments(default.checked, names, notes, hint)], self.settings)
-        return replace(default.checked, diagnostics=tuple(in_order(found, str(self.path))))
+        found += with_configured_severity([_needs_arguments(default.checked, names, notes, hint)], self.settings)
+        return replace(default.checked, diagnostics=tuple(sorted_by_place(found, str(self.path))))
 
 
 def _sources(checked: Checked) -> Sequence[Document]:
@@ -348,25 +348,25 @@ def _condition(run: _Run, runs: Sequence[_Run]) -> Note:
     return Note(phrase("this happens with {values}", values=shown), run.given.span)
 
 
-def asked_argument(diagnostic: Diagnostic) -> str | None:
+def undeclared_argument(diagnostic: Diagnostic) -> str | None:
     """Return the argument that a finding reports as undeclared, unless it may be misspelt."""
     if diagnostic.code != UNDECLARED or as_phrase(diagnostic.hint or "").template.startswith("did you mean"):
         return None
     return str(as_phrase(diagnostic.message).arguments.get("name", ""))
 
 
-def _opened(sets: Sequence[ArgumentSet]) -> list[str]:
+def _runtime_arguments(sets: Sequence[ArgumentSet]) -> list[str]:
     """Return the arguments whose values are known only when their callers run."""
     return list(dict.fromkeys(name for argument_set in sets for name in argument_set.open if name))
 
 
-def _when(sets: Sequence[ArgumentSet]) -> tuple[Note, ...]:
+def _runtime_value_note(sets: Sequence[ArgumentSet]) -> tuple[Note, ...]:
     """Return a note on a caller whose values are known only when it runs, or nothing."""
     calls = [argument_set.span for argument_set in sets if argument_set.open]
     return (Note(phrase("their values are only known when this runs"), calls[0]),) if calls else ()
 
 
-def _may_hang_on(code: str) -> bool:
+def _may_depend_on_argument(code: str) -> bool:
     """Return whether an error may depend on the value of an argument.
 
     Such errors concern a name, a file, or how the robot is connected.

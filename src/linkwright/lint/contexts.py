@@ -73,7 +73,7 @@ class OfFile:
             known = self._facts[key] = facts
         return known
 
-    def done(self, facts: XacroFacts, root: Element, *, is_whole: bool) -> dict[Any, Any]:
+    def results_for(self, facts: XacroFacts, root: Element, *, is_whole: bool) -> dict[Any, Any]:
         """Return the results for a description with the same expansion, to be extended; empty for the first one.
 
         Args:

@@ -56,7 +56,7 @@ def is_always_installed(package: str) -> bool:
     return package in _OF_EVERY_INSTALLATION
 
 
-def brings(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
+def depends_indirectly_on(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
     """Return whether a declared dependency of a manifest depends on a package.
 
     Only packages that are installed here can be read.
@@ -68,11 +68,11 @@ def brings(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
     """
     return any(
         name == package or any(name == one and package.startswith(family) for one, family in _FAMILIES)
-        for name in _everything_below(manifest, finder)
+        for name in _transitive_dependencies(manifest, finder)
     )
 
 
-def would_make_a_circle(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
+def would_form_cycle(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
     """Return whether a package depends on that of a manifest, so that the reverse would form a cycle.
 
     colcon refuses such a cycle.
@@ -83,10 +83,10 @@ def would_make_a_circle(manifest: Manifest, package: str, finder: PackageFinder)
         finder: the finder of packages.
     """
     other = _manifest_of(package, finder)
-    return other is not None and any(name == manifest.name for name in _everything_below(other, finder))
+    return other is not None and any(name == manifest.name for name in _transitive_dependencies(other, finder))
 
 
-def _everything_below(manifest: Manifest, finder: PackageFinder) -> Iterator[str]:
+def _transitive_dependencies(manifest: Manifest, finder: PackageFinder) -> Iterator[str]:
     """Yield the names of the direct and indirect dependencies of a manifest, as far as found."""
     waiting, met = [manifest], {manifest.name}
     while waiting and len(met) < _MOST:

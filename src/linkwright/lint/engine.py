@@ -13,8 +13,8 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, 
 from linkwright.diagnostics.diagnostic import TEXT_NAME, is_text
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.finding import Finding
-from linkwright.lint.missing_files import judged_files
-from linkwright.lint.missing_packages import judged
+from linkwright.lint.missing_files import with_file_severity
+from linkwright.lint.missing_packages import with_package_severity
 from linkwright.lint.registry import find_rule, has_rules_of_others, rules_of, unusable_rules
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.settings import Settings
@@ -117,7 +117,7 @@ def examine(
             path, arguments=arguments, packages=finder, overlay=overlay, xacro=xacro, partly=True
         )
     except LinkwrightError as error:
-        return Checked(path, None, (*trouble, *as_set(error.diagnostics, settings)), None)
+        return Checked(path, None, (*trouble, *with_configured_severity(error.diagnostics, settings)), None)
     subject = Subject(description, finder, settings, contexts)
     found = _run(subject, scopes, _of_library(description) if subject.is_library else description.diagnostics)
     return Checked(path, subject.robot, (*trouble, *found), subject)
@@ -134,7 +134,7 @@ def _examine_world(
     try:
         described = examine_world(path, arguments=arguments, packages=finder, overlay=overlay)
     except LinkwrightError as error:
-        return Checked(path, None, (*trouble, *as_set(error.diagnostics, settings)), None)
+        return Checked(path, None, (*trouble, *with_configured_severity(error.diagnostics, settings)), None)
     found = list(described.diagnostics)
     if described.sdf is not None:
         from linkwright.lint.worlds import check_sdf, for_classic, one_for_each_world
@@ -142,7 +142,7 @@ def _examine_world(
 
         found = [*for_classic([*found, *check_sdf(described.sdf, ResourceFinder(finder))], path)]
         found = one_for_each_world(found)
-    diagnostics = in_order(as_set(found, settings), str(path))
+    diagnostics = sorted_by_place(with_configured_severity(found, settings), str(path))
     return Checked(path, None, (*trouble, *diagnostics), None, described.sdf)
 
 
@@ -150,8 +150,8 @@ def _run(subject: Subject, scopes: Collection[Scope], earlier: Iterable[Diagnost
     """Return the findings of the rules and the earlier ones, filtered by settings and comments, in order."""
     suppressions = Suppressions(subject, subject.settings)
     found = _without_replaced([*earlier, *_find(subject, scopes, suppressions)], scopes, subject.settings)
-    kept = _without_consequences(as_set(suppressions.apply(found), subject.settings))
-    return in_order(kept, str(subject.path))
+    kept = _without_consequences(with_configured_severity(suppressions.apply(found), subject.settings))
+    return sorted_by_place(kept, str(subject.path))
 
 
 def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
@@ -216,7 +216,7 @@ def _of_library(described: Description) -> Iterator[Diagnostic]:
     yield Diagnostic("LINT302", message, whole, Severity.INFO, hint=hint, source=root.source)
 
 
-def in_order(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnostic]:
+def sorted_by_place(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnostic]:
     """Sort diagnostics by place: the checked file first, others in the order in which they occur."""
     files = {first_file: 0}
 
@@ -260,9 +260,9 @@ def _finder(path: Path, packages: Packages) -> PackageFinder:
     return PackageFinder(start=[path.absolute().parent, Path.cwd()], extra=packages)
 
 
-def as_set(diagnostics: Iterable[Diagnostic], settings: Settings) -> Iterator[Diagnostic]:
+def with_configured_severity(diagnostics: Iterable[Diagnostic], settings: Settings) -> Iterator[Diagnostic]:
     """Yield the diagnostics that the settings allow, with the severities that they set."""
-    for diagnostic in judged_files(judged(diagnostics)):
+    for diagnostic in with_file_severity(with_package_severity(diagnostics)):
         if _is_wanted(diagnostic, settings):
             severity = settings.severity_of(diagnostic.code, diagnostic.severity)
             yield diagnostic if severity is diagnostic.severity else diagnostic.but(severity=severity)

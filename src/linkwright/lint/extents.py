@@ -42,7 +42,7 @@ class Extents:
         self._of_bodies: dict[tuple[Body, str], Bounds | None] = {}
 
     @cached_property
-    def heavy(self) -> list[tuple[Link, Inertial]]:
+    def links_with_relevant_mass(self) -> list[tuple[Link, Inertial]]:
         """The links with shapes whose mass is relevant for their body."""
         if not any(link.inertial for link in self._links):
             return []
@@ -60,7 +60,7 @@ class Extents:
     @cached_property
     def measured(self) -> list[tuple[Link, Inertial, Bounds]]:
         """The links whose body turns, can be measured and is not a marker, with the body's box in the link's frame."""
-        turning = (item for item in self.heavy if self._bodies.turns(item[0].name))
+        turning = (item for item in self.links_with_relevant_mass if self._bodies.turns(item[0].name))
         boxes = ((link, inertial, self.body_bounds(link)) for link, inertial in turning)
         return [(link, inertial, box) for link, inertial, box in boxes if box is not None and box.diagonal > MARKER]
 
@@ -77,7 +77,7 @@ class Extents:
             if inertial is not None and inertial.mass > 0 and is_computable(inertial):
                 own = from_inertial(inertial)
                 rotation = np.array(frame.rotation)
-                center = rotation @ own.center + np.array(_near(frame).position)
+                center = rotation @ own.center + np.array(_clamped(frame).position)
                 parts.append(MassProperties(own.mass, center, rotation @ own.inertia @ rotation.T))
         return combine(parts)
 
@@ -117,11 +117,11 @@ class Extents:
             return None if body is None else self.link_bounds(link)
         key = (body, link.name if len(body.frames) <= _MANY else body.links[0])
         if key not in self._of_bodies:
-            self._of_bodies[key] = self._around(body, _near(body.frames[key[1]]))
+            self._of_bodies[key] = self._around(body, _clamped(body.frames[key[1]]))
         around = self._of_bodies[key]
         if around is None or key[1] == link.name:
             return around
-        return around.moved(_ORIGIN.seen_from(_near(body.frames[link.name])))
+        return around.moved(_ORIGIN.seen_from(_clamped(body.frames[link.name])))
 
     def _around(self, body: Body, frame: Placement) -> Bounds | None:
         """Return the box around a body in a frame given relative to the body's first link."""
@@ -132,7 +132,7 @@ class Extents:
             bounds = self.link_bounds(member)
             if bounds is None:
                 return None
-            boxes.append(bounds.moved(_near(own).seen_from(frame)))
+            boxes.append(bounds.moved(_clamped(own).seen_from(frame)))
         return union(boxes)
 
     def volume(self, link: Link) -> float | None:
@@ -170,7 +170,7 @@ class Extents:
         return box.moved(placement(shape.origin))
 
 
-def _near(frame: Placement) -> Placement:
+def _clamped(frame: Placement) -> Placement:
     """Return a frame whose position is clamped to the bounds, so that nothing overflows."""
     x, y, z = (min(max(part, -FARTHEST), FARTHEST) for part in frame.position)
     return Placement(frame.rotation, (x, y, z))

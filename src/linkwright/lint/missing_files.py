@@ -15,7 +15,7 @@ from linkwright.lint.package import find_package
 _MISSING = "XML101"
 
 
-def judged_files(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+def with_file_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the diagnostics; a missing file that the build creates becomes an information.
 
     Files that exist relative to the package's folder, which another program may use as the base, become one warning for

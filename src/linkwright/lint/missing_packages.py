@@ -13,7 +13,7 @@ from linkwright.packages.manifest import MANIFEST
 _MISSING = "PKG101"
 
 
-def judged(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+def with_package_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the diagnostics; a missing package becomes a warning if it is a declared dependency.
 
     The package that uses it may declare it, or a neighbouring package.

@@ -14,7 +14,7 @@ from linkwright.loading.lean_typing import Protocol
 from linkwright.xmltree.style import Style
 
 
-class Switched(Protocol):
+class SwitchableRule(Protocol):
     """A rule as far as settings need to know it to switch it on or off."""
 
     @property
@@ -58,7 +58,7 @@ class Settings:
     arguments: tuple[tuple[str, tuple[Mapping[str, str], ...]], ...] = ()
     style: Style = Style()
 
-    def runs(self, rule: Switched) -> bool:
+    def runs(self, rule: SwitchableRule) -> bool:
         """Return whether a rule must run at all."""
         return self.selects(rule.code, default=rule.default)
 

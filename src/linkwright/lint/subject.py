@@ -103,7 +103,7 @@ class Subject:
         """The results for this subject, or for one with other arguments and the same expansion."""
         if self._shared is None:
             return {}
-        return self._shared.done(self.xacro, self.root, is_whole=self.is_whole)
+        return self._shared.results_for(self.xacro, self.root, is_whole=self.is_whole)
 
     def elements(self, tag: str | None = None) -> Iterator[Element]:
         """Return the elements directly in ``<robot>``, all or those with one tag, in document order."""

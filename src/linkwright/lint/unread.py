@@ -46,7 +46,7 @@ _OTHER_ATTRIBUTES = {
 }
 
 
-def _homes() -> dict[str, tuple[str, ...]]:
+def _parents_by_tag() -> dict[str, tuple[str, ...]]:
     """Return the elements in which each tag is read, by tag."""
     homes: dict[str, dict[str, None]] = {}
     waiting: list[ElementRule] = [schema.ROBOT]
@@ -58,7 +58,7 @@ def _homes() -> dict[str, tuple[str, ...]]:
     return {tag: tuple(sorted(found)) for tag, found in homes.items()}
 
 
-HOMES = _homes()
+HOMES = _parents_by_tag()
 
 
 def _attributes() -> frozenset[str]:
@@ -126,7 +126,7 @@ def meant_attribute(place: Place, attribute: str) -> str | None:
     return misspelling_of(attribute, known)
 
 
-def inside(place: Place) -> str:
+def location_phrase(place: Place) -> str:
     """Return the text that names an element as the location of another element in a message."""
     return "<robot>" if place.rule is schema.ROBOT else str(place)
 

@@ -93,6 +93,6 @@ def values(element: Element, attribute: str) -> tuple[float, ...]:
         return ()
 
 
-def shown(number: float) -> str:
+def format_number(number: float) -> str:
     """Format a number for messages and hints."""
     return f"{number:.6g}"

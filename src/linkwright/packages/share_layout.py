@@ -38,7 +38,7 @@ _IN_PART = Path(__file__).parent / "substitutes"
 def substituted_share(name: str) -> Path | None:
     """Return the share folder of our substitute for a ROS package; None if there is none."""
     share = _share_with_files(name)
-    if share is None and name in _known_in_part():
+    if share is None and name in _partly_replaced_packages():
         return _IN_PART / "share" / name
     return share
 
@@ -74,7 +74,7 @@ def substituted_executables() -> dict[str, frozenset[str]]:
 
 
 @cache
-def _known_in_part() -> frozenset[str]:
+def _partly_replaced_packages() -> frozenset[str]:
     """Return the packages that are partly replaced by us or by nodes of other installed packages."""
     nodes = (name for group in ("linkwright.nodes", "linkwright.components") for name in extensions(group))
     return frozenset({*substituted_executables(), *(name.partition("/")[0] for name in nodes)})

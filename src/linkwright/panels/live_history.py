@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from linkwright.graph import DurabilityPolicy, MessageInfo, log_failure
-from linkwright.graph.endpoints.subscription import Detailed
+from linkwright.graph.endpoints.subscription import QueuedMessage
 from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import serialize
 
@@ -59,7 +59,7 @@ class LiveHistory:
         self._lock = threading.RLock()
         self._fresh: list[tuple[str, int, Any]] = []
         self._stored: History | None = None
-        self._handle.intake = self._intake
+        self._handle.message_filter = self._intake
 
     @property
     def history(self) -> History:
@@ -171,7 +171,7 @@ class LiveHistory:
 
     def close(self) -> None:
         """Stop storing messages."""
-        self._handle.intake = None
+        self._handle.message_filter = None
         self._context.graph_changes.unwatch(self._review)
         if self._stored is not None:
             self._stored.close()
@@ -208,7 +208,7 @@ class LiveHistory:
             keeper = self._recorded[topic] = subscription
         if keeper is not subscription:
             return self.live
-        if type(message) is Detailed:
+        if type(message) is QueuedMessage:
             message = message.message
         with self._lock:  # so that a message that arrives on the return to the present is shown once, and in order
             self._fresh.append((topic, self._now_ns(), message))

@@ -18,7 +18,7 @@ from linkwright.sdf.frames import Frames, PlacedLink, links_of
 from linkwright.sdf.links import Collision, Visual
 from linkwright.sdf.materials import Material, Workflow
 from linkwright.sdf.poses import RawPose
-from linkwright.sdf.scripts import gazebo_look, painted
+from linkwright.sdf.scripts import gazebo_look, with_look
 from linkwright.sdf.shapes import (
     Cone,
     Ellipsoid,
@@ -231,7 +231,7 @@ def _look(material: Material) -> tuple[Sequence[float] | None, str]:
     """
     named = gazebo_look(material.script.name) if material.script else None
     if named is not None:
-        material = painted(material, named)
+        material = with_look(material, named)
     workflow = material.pbr and (material.pbr.metal or material.pbr.specular)
     image = workflow.albedo_map if workflow else ""
     return material.diffuse or material.ambient, image

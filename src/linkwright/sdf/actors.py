@@ -12,7 +12,7 @@ from linkwright.sdf.joints import JOINT, Joint
 from linkwright.sdf.links import LINK, Link
 from linkwright.sdf.plugins import PLUGIN, Plugin
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
-from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TIME, TRUTH, made, name_of, value
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TIME, TRUTH, name_of, object_rule, value
 from linkwright.xmltree import Element
 
 
@@ -86,7 +86,7 @@ ACTOR = ElementRule(
     (name_of(),),
     (
         POSE,
-        made(Skin, "skin", "the mesh of the figure", _FILE, _SCALE),
+        object_rule(Skin, "skin", "the mesh of the figure", _FILE, _SCALE),
         ElementRule(
             "animation",
             "a movement of its limbs",
@@ -101,7 +101,7 @@ ACTOR = ElementRule(
             keeps=True,
             field="animations",
         ),
-        made(
+        object_rule(
             Script,
             "script",
             "when and where it walks",
@@ -117,7 +117,7 @@ ACTOR = ElementRule(
                     AttributeRule("tension", NUMBER, "from 0, round, to 1, straight", default="0"),
                 ),
                 (
-                    made(
+                    object_rule(
                         Waypoint,
                         "waypoint",
                         "a point of the path",

@@ -11,7 +11,7 @@ from typing import Any
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.noise import NO_NOISE, Noise, noise_rule
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
-from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, made, value
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, object_rule, value
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +124,7 @@ CAMERA = ElementRule(
     (
         POSE,
         value("horizontal_fov", NUMBER, "the horizontal field of view", "rad", default="1.047"),
-        made(
+        object_rule(
             ImageFormat,
             "image",
             "its images",
@@ -133,9 +133,9 @@ CAMERA = ElementRule(
             value("format", TEXT, "the format of a pixel, such as R8G8B8 or L8", default="R8G8B8"),
             default=ImageFormat(),
         ),
-        made(Clip, "clip", "the distances that it sees", *_CLIP_PARTS, default=Clip()),
+        object_rule(Clip, "clip", "the distances that it sees", *_CLIP_PARTS, default=Clip()),
         noise_rule(),
-        made(
+        object_rule(
             Distortion,
             "distortion",
             "how the lens distorts",
@@ -146,11 +146,11 @@ CAMERA = ElementRule(
             value("p2", NUMBER, "the second tangential coefficient", default="0"),
             value("center", VECTOR2, "its centre, in fractions of the image size", default="0.5 0.5"),
         ),
-        made(
+        object_rule(
             _Lens,
             "lens",
             "the lens",
-            made(
+            object_rule(
                 Intrinsics,
                 "intrinsics",
                 "the focal lengths and the centre in pixels",
@@ -162,11 +162,11 @@ CAMERA = ElementRule(
             ),
             get=lambda camera: _Lens(camera.intrinsics) if camera.intrinsics else None,
         ),
-        made(
+        object_rule(
             _DepthCamera,
             "depth_camera",
             "the range of a depth camera",
-            made(Clip, "clip", "the distances that it measures", *_CLIP_PARTS),
+            object_rule(Clip, "clip", "the distances that it measures", *_CLIP_PARTS),
             get=lambda camera: _DepthCamera(camera.depth_clip) if camera.depth_clip else None,
         ),
         value("segmentation_type", TEXT, "semantic, instance or panoptic", default="semantic"),

@@ -22,7 +22,7 @@ from linkwright.sdf.materials import Material, Pbr, Workflow
 from linkwright.sdf.models import Frame, Model
 from linkwright.sdf.poses import MODEL, WORLD, RawPose
 from linkwright.sdf.report import SdfReport
-from linkwright.sdf.scripts import gazebo_look, painted
+from linkwright.sdf.scripts import gazebo_look, with_look
 from linkwright.sdf.sensors import Sensor
 from linkwright.urdf import Robot
 from linkwright.urdf import model as urdf
@@ -307,7 +307,7 @@ def _material(written: urdf.Material | None, extension: Material | None) -> Mate
         and extension.script is not None
         and (look := gazebo_look(extension.script.name)) is not None
     ):
-        return painted(extension, look)
+        return with_look(extension, look)
     if written is None or (extension is not None and (extension.diffuse or extension.ambient)):
         return extension
     found = extension or Material()

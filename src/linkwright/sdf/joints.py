@@ -14,7 +14,7 @@ from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.poses import AT_ORIGIN, MODEL, POSE, RawPose
 from linkwright.sdf.sensors import SENSOR, Sensor
-from linkwright.sdf.values import NUMBER, TEXT, TRUTH, VECTOR3, choice, made, name_of, unwritten, value
+from linkwright.sdf.values import NUMBER, TEXT, TRUTH, VECTOR3, choice, name_of, object_rule, unwritten, value
 from linkwright.xmltree import Element
 
 JOINT_TYPES = (
@@ -156,7 +156,7 @@ def _joint(
 
 
 def _axis_rule(tag: str, meaning: str) -> ElementRule:
-    return made(
+    return object_rule(
         _axis,
         tag,
         meaning,
@@ -188,7 +188,7 @@ def _axis_rule(tag: str, meaning: str) -> ElementRule:
             get=unwritten,
         ),
         value("initial_position", NUMBER, "where the joint begins", "rad or m", default="0"),
-        made(
+        object_rule(
             _limit,
             "limit",
             "the bounds of motion",
@@ -200,7 +200,7 @@ def _axis_rule(tag: str, meaning: str) -> ElementRule:
             value("dissipation", NUMBER, "damping of the stop", default="1"),
             default=AxisLimit(),
         ),
-        made(
+        object_rule(
             AxisDynamics,
             "dynamics",
             "damping, friction and a spring",
@@ -261,12 +261,12 @@ JOINT = ElementRule(
             default="1",
         ),
         value("gearbox_reference_body", TEXT, "the link that both sides of a gearbox turn against", default=""),
-        made(
+        object_rule(
             _Physics,
             "physics",
             "parameters of physics engines",
             value("provide_feedback", TRUTH, "whether the forces in it are measured", default="false"),
-            made(
+            object_rule(
                 _Physics,
                 "ode",
                 "the same for ODE",

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
-from linkwright.sdf.values import COLOR, NUMBER, TRUTH, VECTOR3, Color, choice, made, name_of, value
+from linkwright.sdf.values import COLOR, NUMBER, TRUTH, VECTOR3, Color, choice, name_of, object_rule, value
 from linkwright.xmltree import Element
 
 
@@ -76,7 +76,7 @@ LIGHT = ElementRule(
         value("diffuse", COLOR, "its colour", default="1 1 1 1"),
         value("specular", COLOR, "the colour of its highlights", default="0.1 0.1 0.1 1"),
         value("direction", VECTOR3, "the direction of its rays, in its own frame", default="0 0 -1"),
-        made(
+        object_rule(
             Attenuation,
             "attenuation",
             "how it fades with distance",
@@ -86,7 +86,7 @@ LIGHT = ElementRule(
             value("quadratic", NUMBER, "the part that grows with its square", default="0"),
             default=Attenuation(),
         ),
-        made(
+        object_rule(
             Spot,
             "spot",
             "the cone of a spot light",

@@ -15,7 +15,7 @@ from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
 from linkwright.sdf.sensors import SENSOR, Sensor
 from linkwright.sdf.shapes import GEOMETRY, NO_SHAPE, Shape
 from linkwright.sdf.surfaces import SURFACE, USUAL_SURFACE, Surface
-from linkwright.sdf.values import INTEGER, NUMBER, TRUTH, made, name_of, value
+from linkwright.sdf.values import INTEGER, NUMBER, TRUTH, name_of, object_rule, value
 from linkwright.xmltree import Element
 
 
@@ -145,7 +145,7 @@ INERTIAL = ElementRule(
     (
         value("mass", NUMBER, "the mass", "kg", default="1", usual=True),
         POSE,
-        made(
+        object_rule(
             Inertia,
             "inertia",
             "the inertia tensor about the centre of mass, in the axes of the inertial frame",
@@ -216,7 +216,7 @@ LINK = ElementRule(
         value("enable_wind", TRUTH, "whether wind moves it", default="false"),
         value("self_collide", TRUTH, "whether it touches the other links of its model"),
         value("kinematic", TRUTH, "whether it moves and nothing moves it", default="false"),
-        made(
+        object_rule(
             Decay,
             "velocity_decay",
             "the velocity that is lost in a step",

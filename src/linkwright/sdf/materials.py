@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from linkwright.schema import AttributeRule, ElementRule
-from linkwright.sdf.values import COLOR, NUMBER, TEXT, TRUTH, Color, made, readable, value, values
+from linkwright.sdf.values import COLOR, NUMBER, TEXT, TRUTH, Color, object_rule, value, values, without_unreadable
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ _MAPS = (
     _map("light_map", "the image of the light on it"),
 )
 
-MATERIAL = made(
+MATERIAL = object_rule(
     Material,
     "material",
     "how it looks",
@@ -113,8 +113,8 @@ MATERIAL = made(
     value("lighting", TRUTH, "whether lights change it", default="true"),
     value("double_sided", TRUTH, "whether it is seen from within too", default="false"),
     value("render_order", NUMBER, "which of two surfaces in one place is drawn over the other", default="0"),
-    made(
-        readable(MaterialScript),
+    object_rule(
+        without_unreadable(MaterialScript),
         "script",
         "a material of Gazebo classic by its name",
         values("uri", TEXT, "a folder or file of material scripts, or one of its textures"),
@@ -128,11 +128,11 @@ MATERIAL = made(
         make=Shader,
         keeps=True,
     ),
-    made(
+    object_rule(
         Pbr,
         "pbr",
         "a physically based surface",
-        made(
+        object_rule(
             Workflow,
             "metal",
             "a surface by roughness and metalness",
@@ -142,7 +142,7 @@ MATERIAL = made(
             value("roughness", NUMBER, "from 0, a mirror, to 1, dull", default="0.5"),
             value("metalness", NUMBER, "from 0, none, to 1, metal", default="0.5"),
         ),
-        made(
+        object_rule(
             Workflow,
             "specular",
             "a surface by shine and glossiness",

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from linkwright.schema import AttributeRule, ElementRule
-from linkwright.sdf.values import NUMBER, TEXT, made, unwritten, value
+from linkwright.sdf.values import NUMBER, TEXT, object_rule, unwritten, value
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,7 @@ def noise_rule() -> ElementRule:
 def around_noise(tag: str, meaning: str, target: str = "") -> ElementRule:
     """Return the rule of an element that contains only noise."""
     inside = replace(noise_rule(), get=_inner)
-    return made(_inner, tag, meaning, inside, default=NO_NOISE, field=target or tag)
+    return object_rule(_inner, tag, meaning, inside, default=NO_NOISE, field=target or tag)
 
 
 def _inner(noise: Noise) -> Noise:
@@ -99,4 +99,4 @@ def _inner(noise: Noise) -> Noise:
 def noise_xyz(tag: str, meaning: str, absent: NoiseXyz | None = NO_NOISE_XYZ) -> ElementRule:
     """Return the rule of an element with noise for each of three components."""
     parts = (around_noise("x", "along x"), around_noise("y", "along y"), around_noise("z", "along z"))
-    return made(NoiseXyz, tag, meaning, *parts, default=absent)
+    return object_rule(NoiseXyz, tag, meaning, *parts, default=absent)

@@ -17,7 +17,7 @@ from linkwright.geometry.single import Pose, Vector3, quaternion_of, rotate
 from linkwright.schema import ElementRule
 from linkwright.sdf.models import MODEL, Model
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
-from linkwright.sdf.values import INTEGER, NUMBER, VECTOR3, choice, made, name_of, value
+from linkwright.sdf.values import INTEGER, NUMBER, VECTOR3, choice, name_of, object_rule, value
 from linkwright.xmltree import Element
 
 _AXES = ("linear-x", "linear-y", "linear-z")
@@ -137,7 +137,7 @@ POPULATION = ElementRule(
         POSE,
         MODEL,
         value("model_count", INTEGER, "the number of copies, unless they form a grid", default="1", field="count"),
-        made(
+        object_rule(
             Distribution,
             "distribution",
             "how they are spread",
@@ -147,13 +147,13 @@ POPULATION = ElementRule(
             value("step", VECTOR3, "from one to the next in a grid", "m", default="0.5 0.5 0"),
             default=Distribution(),
         ),
-        made(
+        object_rule(
             Box,
             "box",
             "the box around the copies",
             value("size", VECTOR3, "edge lengths along x, y, z", "m", default="1 1 1"),
         ),
-        made(
+        object_rule(
             Cylinder,
             "cylinder",
             "the cylinder around the copies, from its base upwards",

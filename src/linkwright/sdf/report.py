@@ -18,8 +18,8 @@ from linkwright.sdf.values import (
     TRUTH,
     VECTOR2,
     VECTOR3,
-    beginning,
     beginning_of_vector,
+    leading_number,
     numbers,
 )
 from linkwright.urdf.report import Findings
@@ -76,7 +76,7 @@ class SdfReport(Findings):
         inside = attribute is rule.text
         text = element.text().strip() if inside else element.attributes[attribute.name]
         message, hint = _explained(_place(element, rule, attribute, owner), text, attribute, element)
-        taken = beginning(text) if attribute.type in (NUMBER, INTEGER) else None
+        taken = leading_number(text) if attribute.type in (NUMBER, INTEGER) else None
         if taken is not None and isfinite(taken):
             self.warning("SDF121", message, element, None if inside else attribute.name, hint=hint)
             return int(taken) if attribute.type is INTEGER else taken

@@ -98,7 +98,7 @@ def gazebo_look(name: str) -> Look | None:
     return _NAMED.get(name.removeprefix(_PREFIX)) if name.startswith(_PREFIX) else None
 
 
-def painted(material: Material, look: Look) -> Material:
+def with_look(material: Material, look: Look) -> Material:
     """Return a material with missing colours and a missing texture completed from a script."""
     pbr = material.pbr
     if look.image and pbr is None:
@@ -143,7 +143,7 @@ class _Library:
         if visual.material is None or visual.material.script is None:
             return visual
         look = self._look(visual.material.script, visual)
-        return visual if look is None else replace(visual, material=painted(visual.material, look))
+        return visual if look is None else replace(visual, material=with_look(visual.material, look))
 
     def _look(self, script: MaterialScript, visual: Visual) -> Look | None:
         source = None if visual.element is None else visual.element.source

@@ -15,7 +15,7 @@ from linkwright.sdf.cameras import CAMERA, Camera
 from linkwright.sdf.noise import NO_NOISE, NO_NOISE_XYZ, Noise, NoiseXyz, around_noise, noise_rule, noise_xyz
 from linkwright.sdf.plugins import PLUGIN, Plugin
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
-from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, made, name_of, unwritten, value
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, name_of, object_rule, unwritten, value
 from linkwright.xmltree import Element
 
 
@@ -192,7 +192,7 @@ class Sensor:
 
 
 def _sweep(tag: str, meaning: str, samples: int) -> ElementRule:
-    return made(
+    return object_rule(
         Sweep,
         tag,
         meaning,
@@ -204,7 +204,7 @@ def _sweep(tag: str, meaning: str, samples: int) -> ElementRule:
     )
 
 
-_RANGE = made(
+_RANGE = object_rule(
     Reach,
     "range",
     "the distances that it measures",
@@ -226,11 +226,11 @@ def _lidar_of(scan: _Scan, **parts: Any) -> Lidar:
 
 
 def _lidar(tag: str) -> ElementRule:
-    return made(
+    return object_rule(
         _lidar_of,
         tag,
         "the rays and the range of a lidar",
-        made(
+        object_rule(
             _Scan,
             "scan",
             "its rays",
@@ -262,14 +262,14 @@ def _custom(angles: Vector3, parent_frame: str) -> tuple[Vector3, str]:
     return angles, parent_frame
 
 
-_IMU = made(
+_IMU = object_rule(
     _imu_of,
     "imu",
     "the noise and the reference of an IMU",
     noise_xyz("angular_velocity", "noise on the angular velocity"),
     noise_xyz("linear_acceleration", "noise on the acceleration"),
     value("enable_orientation", TRUTH, "whether it measures its orientation too", default="true"),
-    made(
+    object_rule(
         _Reference,
         "orientation_reference_frame",
         "the reference frame of the orientation",
@@ -309,11 +309,11 @@ def _navsat(tag: str) -> ElementRule:
     def sensing(kind: str, meaning: str) -> ElementRule:
         parts = (around_noise("horizontal", "across the ground"), around_noise("vertical", "upwards"))
         both = attrgetter(f"horizontal_{kind}", f"vertical_{kind}")
-        return made(
+        return object_rule(
             _Sensing, f"{kind}_sensing", meaning, *parts, default=_Sensing(), get=lambda navsat: _Sensing(*both(navsat))
         )
 
-    return made(
+    return object_rule(
         _navsat_of,
         tag,
         "noise of a satellite receiver",
@@ -322,7 +322,7 @@ def _navsat(tag: str) -> ElementRule:
     )
 
 
-_FORCE_TORQUE = made(
+_FORCE_TORQUE = object_rule(
     ForceTorque,
     "force_torque",
     "the frame and the noise of a force-torque sensor",
@@ -332,7 +332,7 @@ _FORCE_TORQUE = made(
     noise_xyz("torque", "noise on the torque"),
 )
 
-_SONAR = made(
+_SONAR = object_rule(
     Sonar,
     "sonar",
     "the field of a sonar",
@@ -383,7 +383,7 @@ SENSOR = ElementRule(
         _lidar("lidar"),
         replace(_lidar("ray"), get=unwritten),
         _IMU,
-        made(
+        object_rule(
             ContactSensor,
             "contact",
             "the collision and the topic of a contact sensor",
@@ -393,14 +393,14 @@ SENSOR = ElementRule(
         _navsat("navsat"),
         replace(_navsat("gps"), get=unwritten),
         noise_xyz("magnetometer", "noise of a magnetometer", None),
-        made(
+        object_rule(
             Altimeter,
             "altimeter",
             "noise of an altimeter",
             around_noise("vertical_position", "noise on the height"),
             around_noise("vertical_velocity", "noise on the vertical velocity"),
         ),
-        made(
+        object_rule(
             AirPressure,
             "air_pressure",
             "the reference and the noise of a barometer",
@@ -409,7 +409,7 @@ SENSOR = ElementRule(
         ),
         _FORCE_TORQUE,
         _SONAR,
-        made(
+        object_rule(
             LogicalCamera,
             "logical_camera",
             "the view of a logical camera, which names models",

@@ -10,7 +10,18 @@ from dataclasses import dataclass
 
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import Vector3
-from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, VECTOR3, made, readable, value, values
+from linkwright.sdf.values import (
+    INTEGER,
+    NUMBER,
+    TEXT,
+    TRUTH,
+    VECTOR2,
+    VECTOR3,
+    object_rule,
+    value,
+    values,
+    without_unreadable,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,29 +166,31 @@ _URI = value(
     required=True,
 )
 
-GEOMETRY = made(
+GEOMETRY = object_rule(
     _shape,
     "geometry",
     "the shape",
-    made(
+    object_rule(
         Box,
         "box",
         "a box centred at the origin",
         value("size", VECTOR3, "edge lengths along x, y, z", "m", default="1 1 1", usual=True),
         get=_if(Box),
     ),
-    made(Capsule, "capsule", "a cylinder along z with a half sphere at each end", _HALF, _LENGTH, get=_if(Capsule)),
-    made(Cone, "cone", "a cone along z, its tip above", _HALF, _LENGTH, get=_if(Cone)),
-    made(Cylinder, "cylinder", "a cylinder along z, centred at the origin", _RADIUS, _LENGTH, get=_if(Cylinder)),
-    made(
+    object_rule(
+        Capsule, "capsule", "a cylinder along z with a half sphere at each end", _HALF, _LENGTH, get=_if(Capsule)
+    ),
+    object_rule(Cone, "cone", "a cone along z, its tip above", _HALF, _LENGTH, get=_if(Cone)),
+    object_rule(Cylinder, "cylinder", "a cylinder along z, centred at the origin", _RADIUS, _LENGTH, get=_if(Cylinder)),
+    object_rule(
         Ellipsoid,
         "ellipsoid",
         "an ellipsoid centred at the origin",
         value("radii", VECTOR3, "semi-axes along x, y, z", "m", default="1 1 1", usual=True),
         get=_if(Ellipsoid),
     ),
-    made(Sphere, "sphere", "a sphere centred at the origin", _RADIUS, get=_if(Sphere)),
-    made(
+    object_rule(Sphere, "sphere", "a sphere centred at the origin", _RADIUS, get=_if(Sphere)),
+    object_rule(
         Plane,
         "plane",
         "a plane without end",
@@ -185,13 +198,13 @@ GEOMETRY = made(
         value("size", VECTOR2, "how much of it is drawn", "m", default="1 1", usual=True),
         get=_if(Plane),
     ),
-    made(
+    object_rule(
         Mesh,
         "mesh",
         "a mesh file",
         _URI,
         value("scale", VECTOR3, "factors along x, y, z", default="1 1 1"),
-        made(
+        object_rule(
             Submesh,
             "submesh",
             "one part of the mesh file",
@@ -200,14 +213,14 @@ GEOMETRY = made(
         ),
         get=_if(Mesh),
     ),
-    made(
+    object_rule(
         Heightmap,
         "heightmap",
         "a ground whose heights are in an image",
         _URI,
         value("size", VECTOR3, "its extent along x, y and z", "m", default="1 1 1", usual=True),
         value("pos", VECTOR3, "the offset of its middle", "m", default="0 0 0", field="position"),
-        made(
+        object_rule(
             TerrainTexture,
             "texture",
             "a texture of the terrain, from the lowest up",
@@ -217,7 +230,7 @@ GEOMETRY = made(
             many=True,
             field="textures",
         ),
-        made(
+        object_rule(
             Blend,
             "blend",
             "where one texture goes over into the next",
@@ -229,7 +242,7 @@ GEOMETRY = made(
         value("sampling", INTEGER, "how many heights are made of one pixel", default="2"),
         get=_if(Heightmap),
     ),
-    made(
+    object_rule(
         Image,
         "image",
         "boxes where an image is bright",
@@ -240,8 +253,8 @@ GEOMETRY = made(
         value("granularity", INTEGER, "how many pixels make one box along each side", default="1"),
         get=_if(Image),
     ),
-    made(
-        readable(Polyline),
+    object_rule(
+        without_unreadable(Polyline),
         "polyline",
         "a polygon raised to a height; several of them cut holes into each other",
         values("point", VECTOR2, "a corner: x and y in metres"),
@@ -249,6 +262,6 @@ GEOMETRY = made(
         many=True,
         get=lambda shape: shape if isinstance(shape, tuple) else (),
     ),
-    made(Empty, "empty", "no shape", get=_if(Empty)),
+    object_rule(Empty, "empty", "no shape", get=_if(Empty)),
     default=NO_SHAPE,
 )

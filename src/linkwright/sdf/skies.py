@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from linkwright.sdf.values import COLOR, NUMBER, TEXT, Color, made, value
+from linkwright.sdf.values import COLOR, NUMBER, TEXT, Color, object_rule, value
 from linkwright.xmltree import Element
 
 
@@ -41,7 +41,7 @@ class Fog:
     density: float = 1.0
 
 
-SKY = made(
+SKY = object_rule(
     Sky,
     "sky",
     "a sky instead of the background",
@@ -50,7 +50,7 @@ SKY = made(
     value("sunset", NUMBER, "when it sets", "h", default="20"),
     located=True,
 )
-FOG = made(
+FOG = object_rule(
     Fog,
     "fog",
     "fog",

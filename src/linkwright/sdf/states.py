@@ -12,7 +12,7 @@ from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.lights import LIGHT, Light
 from linkwright.sdf.models import MODEL, Model
 from linkwright.sdf.poses import POSE, RawPose
-from linkwright.sdf.values import INTEGER, TEXT, TIME, VECTOR3, made, name_of, readable, value, values
+from linkwright.sdf.values import INTEGER, TEXT, TIME, VECTOR3, name_of, object_rule, value, values, without_unreadable
 from linkwright.xmltree import Element
 
 
@@ -123,9 +123,11 @@ STATE = ElementRule(
             keeps=True,
             field="lights",
         ),
-        made(Insertions, "insertions", "models and lights added after the start", MODEL, LIGHT, default=Insertions()),
-        made(
-            readable(Deletions),
+        object_rule(
+            Insertions, "insertions", "models and lights added after the start", MODEL, LIGHT, default=Insertions()
+        ),
+        object_rule(
+            without_unreadable(Deletions),
             "deletions",
             "models and lights deleted after the start",
             values("name", TEXT, "its name"),

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
-from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, made, unwritten, value
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, object_rule, unwritten, value
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +172,7 @@ def _contact_group(surface: Surface) -> _ContactGroup | None:
     return _different(group, _ContactGroup())
 
 
-_ODE_FRICTION = made(
+_ODE_FRICTION = object_rule(
     _friction,
     "ode",
     "friction as ODE has it",
@@ -209,16 +209,16 @@ _ODE_FRICTION = made(
     value("slip2", NUMBER, "sliding for each newton across it", "m/s/N", default="0"),
 )
 
-SURFACE = made(
+SURFACE = object_rule(
     _surface,
     "surface",
     "friction, bounce and stiffness",
-    made(
+    object_rule(
         _FrictionGroup,
         "friction",
         "friction",
         _ODE_FRICTION,
-        made(
+        object_rule(
             BulletFriction,
             "bullet",
             "friction as Bullet has it",
@@ -226,7 +226,7 @@ SURFACE = made(
             value("friction2", NUMBER, "the coefficient across the first direction", default="1"),
             value("rolling_friction", NUMBER, "the coefficient against rolling", default="1"),
         ),
-        made(
+        object_rule(
             TorsionalFriction,
             "torsional",
             "friction against turning on the spot",
@@ -237,11 +237,11 @@ SURFACE = made(
         ),
         get=_friction_group,
     ),
-    made(
+    object_rule(
         _ContactGroup,
         "contact",
         "stiffness, and the shapes it touches",
-        made(
+        object_rule(
             Contact,
             "ode",
             "stiffness as ODE has it",
@@ -257,7 +257,7 @@ SURFACE = made(
         value("category_bitmask", INTEGER, "the bits that others see", default="65535"),
         get=_contact_group,
     ),
-    made(
+    object_rule(
         _Bounce,
         "bounce",
         "how it bounces",

@@ -53,7 +53,7 @@ def _joined(values: Iterable[float]) -> str:
     return " ".join(map(plain, values))
 
 
-def beginning(text: str) -> float | None:
+def leading_number(text: str) -> float | None:
     """Return the number at the beginning of a text, or None.
 
     The text is read as by ``std::stod`` in libsdformat.
@@ -186,7 +186,9 @@ def name_of(meaning: str = "its name, unique among its kind in the model or worl
     return AttributeRule("name", TEXT, meaning, required=True, default="")
 
 
-def made(kind: Callable[..., Any], tag: str, meaning: str, *children: ElementRule, **details: Any) -> ElementRule:
+def object_rule(
+    kind: Callable[..., Any], tag: str, meaning: str, *children: ElementRule, **details: Any
+) -> ElementRule:
     """Return the rule of an element that creates an object from its parts.
 
     An invalid part does not affect the others.
@@ -194,7 +196,7 @@ def made(kind: Callable[..., Any], tag: str, meaning: str, *children: ElementRul
     return ElementRule(tag, meaning, children=children, make=kind, keeps=True, **details)
 
 
-def readable(kind: Callable[..., Any]) -> Callable[..., Any]:
+def without_unreadable(kind: Callable[..., Any]) -> Callable[..., Any]:
     """Wrap a factory so that empty and unreadable parts in `values` are left out."""
 
     def make(**parts: Any) -> Any:

@@ -26,10 +26,10 @@ from linkwright.sdf.values import (
     TRUTH,
     VECTOR3,
     Color,
-    made,
-    readable,
+    object_rule,
     value,
     values,
+    without_unreadable,
 )
 from linkwright.xmltree import Element
 
@@ -159,7 +159,7 @@ WORLD = ElementRule(
     (
         value("gravity", VECTOR3, "gravity", "m/s2"),
         value("magnetic_field", VECTOR3, "the magnetic field", "T", default="5.5645e-6 22.8758e-6 -42.3884e-6"),
-        made(
+        object_rule(
             _Wind,
             "wind",
             "the wind",
@@ -167,7 +167,7 @@ WORLD = ElementRule(
             get=lambda world: _Wind(world.wind) if any(world.wind) else None,
         ),
         PHYSICS,
-        made(
+        object_rule(
             Scene,
             "scene",
             "how the world looks",
@@ -181,7 +181,7 @@ WORLD = ElementRule(
             located=True,
             default=Scene(),
         ),
-        made(
+        object_rule(
             SphericalCoordinates,
             "spherical_coordinates",
             "where on earth the origin is",
@@ -221,7 +221,7 @@ WORLD = ElementRule(
                 values("point", VECTOR3, "a point that it goes through"),
             ),
             many=True,
-            make=readable(Road),
+            make=without_unreadable(Road),
             keeps=True,
             located=True,
             field="roads",

@@ -19,9 +19,9 @@ def load_mujoco() -> Any:
         import mujoco  # type: ignore[import-untyped, unused-ignore]
     except ModuleNotFoundError as error:
         raise missing_extra("SIM101", error) from None
-    mujoco.set_mju_user_warning(_unheard)
+    mujoco.set_mju_user_warning(_discard_warning)
     return mujoco
 
 
-def _unheard(text: str) -> None:
+def _discard_warning(text: str) -> None:
     """Discard a MuJoCo warning: callers find the warnings in MuJoCo's data, and report them."""

@@ -34,11 +34,11 @@ def write_mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnosti
         raise LinkwrightError(
             Diagnostic("CLI321", phrase("MuJoCo rejects the model: {reason}", reason=foreign(reason)))
         ) from None
-    _take_images_out(scene.spec, model)
+    _replace_textures(scene.spec, model)
     return scene.spec.to_xml(), scene.diagnostics
 
 
-def _take_images_out(spec: Any, model: Any) -> None:
+def _replace_textures(spec: Any, model: Any) -> None:
     """Replace textures by their mean colours, because MJCF can only refer to image files."""
     means: dict[str, Any] = {}
     for material in spec.materials:

@@ -74,12 +74,12 @@ class Recovery:
         greatest[: np.count_nonzero(touching)] = _PARTING
         margins = data.efc_margin[rows]
         depths = data.efc_pos[rows] - margins
-        most = self._most(np.concatenate(springs), -np.copysign(1.0, depths) * data.efc_vel[rows], greatest)
+        most = self._maximum_depths(np.concatenate(springs), -np.copysign(1.0, depths) * data.efc_vel[rows], greatest)
         deep = np.abs(depths) > most
         data.efc_pos[rows[deep]] = (margins + np.copysign(most, depths))[deep]
         return bool(deep.any())
 
-    def _most(self, solref: Array, speeds: Array, greatest: Array) -> Array:
+    def _maximum_depths(self, solref: Array, speeds: Array, greatest: Array) -> Array:
         """Return the depths in m or rad at which springs do not exceed their maximum speeds after a step.
 
         Args:

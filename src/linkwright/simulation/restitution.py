@@ -87,7 +87,7 @@ class Stepper:
         answers = np.zeros_like(ways)
         self._mujoco.mj_solveM(model, data, answers, ways)
         now = ways @ data.qvel
-        impulses = _fitted(
+        impulses = _solve_impulses(
             ways @ answers.T,
             now,
             [(speed, float(contacts[index].friction[0]) if contacts[index].dim > 1 else 0.0) for index, speed in hits],
@@ -109,7 +109,7 @@ class Stepper:
         return apart
 
 
-def _fitted(response: Array, speeds: Array, wanted: list[tuple[float, float]]) -> Array:
+def _solve_impulses(response: Array, speeds: Array, wanted: list[tuple[float, float]]) -> Array:
     """Return the impulses along the normals and both tangents of contacts.
 
     Args:

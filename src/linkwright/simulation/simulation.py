@@ -20,7 +20,7 @@ from linkwright.simulation.actuators import Motor, Servo
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.restitution import Stepper
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
-from linkwright.simulation.scene.compiling import compiled, count_links, refused_models, whole_step
+from linkwright.simulation.scene.compiling import compile_scene, count_links, refused_models, step_in_nanoseconds
 from linkwright.simulation.scene.figures import let_walk, put_kinematic
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
@@ -70,15 +70,15 @@ class Simulation:
         self.scene = Scene(self.world, self._meshes, step)
         self.revision = 0
         try:
-            made = compiled(self.scene)
+            made = compile_scene(self.scene)
         except LinkwrightError:
             refused = refused_models(self.world, finder)
             if not refused:
                 raise
             self._meshes = MeshLibrary(finder)
             self.scene = Scene(self.world, self._meshes, step, refused)
-            made = compiled(self.scene)
-        self.step = whole_step(self.scene.step, self.world)
+            made = compile_scene(self.scene)
+        self.step = step_in_nanoseconds(self.scene.step, self.world)
         self.time = 0
         self.schedule = Schedule()
         self._sleep = Sleep(self.schedule)
@@ -134,13 +134,13 @@ class Simulation:
             finder: the finder of its meshes.
         """
         before, self.world, self.finder = self.world, as_saved(world), finder
-        self._meshes.look_in(finder)
+        self._meshes.set_finder(finder)
         self.scene.set_physics(self.world, self._given_step or self.scene.step_of(self.world))
         self.step = round(self.scene.step * NANOSECONDS_PER_SECOND)
         if _outlook(before) != _outlook(self.world):
             self.set_altered()
 
-    def beside(self, world: World, finder: ResourceFinder) -> Simulation:
+    def separate_simulation(self, world: World, finder: ResourceFinder) -> Simulation:
         """Return a separate simulation of another world, with the settings of this one."""
         return Simulation(world, finder, step=self._given_step)
 
@@ -240,7 +240,7 @@ class Simulation:
     def renew(self) -> None:
         """Compile MuJoCo's model again if the scene has changed."""
         if self._changed:
-            self._set_model(*compiled(self.scene, (self.model, self.data)))
+            self._set_model(*compile_scene(self.scene, (self.model, self.data)))
             self._bodies, self._joints = {}, {}
             self._changed = self._is_reshaped = self._current = False
             self.revision += 1

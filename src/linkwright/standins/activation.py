@@ -110,7 +110,7 @@ def _provide_for_processes() -> None:
     """Make our modules importable in the processes that launch files start."""
     from linkwright.packages.programs import child_python as surroundings
 
-    surroundings.provide(_environment, _python_command)
+    surroundings.register_launcher(_environment, _python_command)
 
 
 def _environment(base: Mapping[str, str]) -> Mapping[str, str]:

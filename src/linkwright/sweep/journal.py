@@ -55,7 +55,7 @@ class Journal:
 
     def __enter__(self) -> Self:
         known = [self._head, *map(_line, self.outcomes.values())]
-        with refusing(self.path):
+        with reporting_write_errors(self.path):
             self.path.parent.mkdir(parents=True, exist_ok=True)
             self._file = self.path.open("wb", buffering=0)
         try:
@@ -90,7 +90,7 @@ class Journal:
     def _write(self, line: dict[str, Any]) -> None:
         assert self._file is not None, "it was entered"
         left = f"{json.dumps(line)}\n".encode()
-        with refusing(self.path):
+        with reporting_write_errors(self.path):
             while left:
                 left = left[self._file.write(left) :]
 
@@ -106,7 +106,7 @@ class Journal:
 
 
 @contextmanager
-def refusing(path: Path) -> Iterator[None]:
+def reporting_write_errors(path: Path) -> Iterator[None]:
     """Report a file that cannot be written as a diagnostic.
 
     Raises:

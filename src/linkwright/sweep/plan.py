@@ -31,7 +31,7 @@ class Run:
     seed: int
 
 
-def planned(scenario: Scenario) -> list[Run]:
+def plan_runs(scenario: Scenario) -> list[Run]:
     """Return all runs of a scenario, in which the seeds for the same values follow each other.
 
     A drawn value depends only on the seed and on the name of the parameter: the same seed draws the same value when

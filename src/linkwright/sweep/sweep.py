@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.files.whole_files import write_whole_file
-from linkwright.sweep.journal import Journal, refusing
+from linkwright.sweep.journal import Journal, reporting_write_errors
 from linkwright.sweep.page import summary
-from linkwright.sweep.plan import Run, fingerprint, planned
+from linkwright.sweep.plan import Run, fingerprint, plan_runs
 from linkwright.sweep.running import Outcome
 from linkwright.sweep.scenario import Scenario
-from linkwright.sweep.table import Table, written
+from linkwright.sweep.table import Table, table_bytes
 
 Runner = Callable[[Sequence[Run], Callable[[Outcome], None]], None]
 """Makes runs and reports each when it is done."""
@@ -55,7 +55,7 @@ class Sweep:
         Raises:
             LinkwrightError: an error of the journal, see `Journal`; SWEEP110, a file cannot be written.
         """
-        runs = planned(self.scenario)
+        runs = plan_runs(self.scenario)
         with Journal(self.table, fingerprint(self.scenario, runs), resume=resume) as journal:
             failed = sum(bool(outcome.error) for outcome in journal.outcomes.values())
 
@@ -69,8 +69,8 @@ class Sweep:
                 runner([run for run in runs if run.row not in journal.outcomes], done)
         table = Table.of(runs, journal.outcomes)
         page = summary(table, self.scenario.path.name, shlex.join(self.words), len(runs))
-        for path, content in ((self.table, written(table, self.table)), (self.page, page)):
-            with refusing(path):
+        for path, content in ((self.table, table_bytes(table, self.table)), (self.page, page)):
+            with reporting_write_errors(path):
                 write_whole_file(path, content)
         if len(table) == len(runs):
             journal.remove()

@@ -68,7 +68,7 @@ def check_format(path: Path) -> None:
         _pyarrow()
 
 
-def written(table: Table, path: Path) -> bytes:
+def table_bytes(table: Table, path: Path) -> bytes:
     """Return the table as bytes in the format that the file's extension selects."""
     return _parquet(table) if path.suffix == ".parquet" else _csv(table)
 

@@ -171,7 +171,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             Exception: the error of a callback.
         """
         await self.graph.settle()
-        self.server.exchange.work()
+        self.server.exchange.run_commands()
         self.server.exchange.deliver()
         await super().settle()
 
@@ -188,7 +188,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self._left += round(seconds * NANOSECONDS_PER_SECOND)
         server, simulation = self.server, self.simulation
         while self._left > 0:
-            server.exchange.work()
+            server.exchange.run_commands()
             passed = min(self._period, self._left)
             if not self._progress.paused:
                 before = simulation.time

@@ -67,7 +67,7 @@ class Bodies:
             body = self._by_link.get(body.joint.parent)
         return body is None or WORLD not in body.frames
 
-    def stands_for_others(self, link: Link) -> bool:
+    def includes_massless_links(self, link: Link) -> bool:
         """Return whether a link's mass may include massless links with shapes that are fixed to it."""
         return link.name in self._standing_for_others
 

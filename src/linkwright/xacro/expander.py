@@ -400,7 +400,7 @@ class Expander:
             fault.place_at(frame.site)
             self.fail(fault)
         try:
-            self.session.budget.macro()
+            self.session.budget.charge_macro()
         except Fault as fault:
             fault.place_at(frame.site)
             self.fail(fault)
@@ -408,7 +408,7 @@ class Expander:
 
     def _pay_text(self, node: Element | Text, text: str) -> None:
         try:
-            self.session.budget.text(len(text))
+            self.session.budget.charge_text(len(text))
         except Fault as fault:
             if isinstance(node, Element):
                 fault.place_at(node)

@@ -10,7 +10,7 @@ from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xacro.expander import Expander
 from linkwright.xacro.faults import Origin, origin_of
 from linkwright.xacro.inputs import Inputs, main_document
-from linkwright.xacro.limits import Limits, room_for
+from linkwright.xacro.limits import Limits, recursion_limit_for
 from linkwright.xacro.session import PackageSource
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
@@ -118,7 +118,7 @@ def expand(
     inputs = Inputs(name, arguments or {}, packages, text, limits or Limits(), str(root_dir or ""), overlay)
     session = inputs.session()
     document = main_document(session, text)
-    with room_for(session.limits):
+    with recursion_limit_for(session.limits):
         expanded = Expander(session, DIRECTIVES, call_macro).document(document)
     session.warn_of_unused_arguments()
     session.close()

@@ -42,7 +42,7 @@ _active = 0
 _before = 0
 
 
-class room_for:  # noqa: N801 - it is called in a ``with`` statement, as a function is
+class recursion_limit_for:  # noqa: N801 - it is called in a ``with`` statement, as a function is
     """Raise Python's recursion limit so that our own limits apply first; restore it after the last use."""
 
     def __init__(self, limits: Limits) -> None:
@@ -110,7 +110,7 @@ class Budget:
         )
         return Fault("XAC602", message, hint=phrase("look for macros that call each other without end"))
 
-    def text(self, length: int) -> None:
+    def charge_text(self, length: int) -> None:
         """Charge a long text of the result.
 
         Raises:
@@ -123,7 +123,7 @@ class Budget:
                 phrase("the expansion has more than {characters:,} characters", characters=self._limits.characters),
             )
 
-    def macro(self) -> None:
+    def charge_macro(self) -> None:
         """Charge a macro call or an include.
 
         Raises:
@@ -136,7 +136,7 @@ class Budget:
         if not self._macros % _MACROS_BETWEEN_LOOKS:
             self._look_at_clock()
 
-    def step(self, count: int = 2) -> None:
+    def charge_steps(self, count: int = 2) -> None:
         """Charge the work of an expression, by default one more iteration of a comprehension.
 
         Raises:
@@ -158,7 +158,7 @@ class Budget:
         Raises:
             Fault: XAC604 if lambda calls are nested too deeply, XAC603 if there were too many calls.
         """
-        self.step(_LAMBDA)
+        self.charge_steps(_LAMBDA)
         self._call_depth += 1
         if self._call_depth > _CALL_DEPTH:
             raise Fault("XAC604", phrase("lambdas call each other more than {call_depth} deep", call_depth=_CALL_DEPTH))

@@ -21,7 +21,7 @@ from linkwright.xacro.expansion import Expansion
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.inputs import Inputs, main_document
-from linkwright.xacro.limits import room_for
+from linkwright.xacro.limits import recursion_limit_for
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.plan import PREFIX, plan_of
 from linkwright.xacro.session import Session
@@ -64,7 +64,7 @@ def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
     except LinkwrightError:
         raise error from None
     expander = _PartsExpander(session)
-    with room_for(inputs.limits):
+    with recursion_limit_for(inputs.limits):
         expanded = expander.walk(document)
     if expanded is None:
         raise error

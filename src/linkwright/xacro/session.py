@@ -19,7 +19,7 @@ from linkwright.diagnostics import (
 from linkwright.loading.lean_typing import TYPE_CHECKING, Any, Protocol
 from linkwright.xacro import sources
 from linkwright.xacro.expressions import sandbox, symbols
-from linkwright.xacro.expressions.bounded import RefusalError, keys
+from linkwright.xacro.expressions.bounded import RefusalError, checked_keys
 from linkwright.xacro.expressions.expression import compile_expression
 from linkwright.xacro.expressions.sandbox import Module
 from linkwright.xacro.expressions.scope import Namespace, Scope
@@ -285,7 +285,7 @@ class Session:
 
     def dotify(self, mapping: Any = (), **items: Any) -> YamlDict:
         """Return a mapping whose items are also accessible with a dot."""
-        return YamlDict(keys(mapping), **items)
+        return YamlDict(checked_keys(mapping), **items)
 
     # findings
 

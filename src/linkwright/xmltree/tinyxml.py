@@ -75,7 +75,7 @@ def _missing_blanks(text: str, at: int) -> str:
     """Insert blanks between attributes, each in place of the last character of the preceding value."""
     if text[at - 1 : at] not in ("'", '"'):
         return text
-    for value in _crowded(text):
+    for value in _values_without_blank_after(text):
         if value.start == value.end or text[value.end - 1] == ";":
             return text  # there is no character to replace, or it ends an entity
         text = text[: value.end - 1] + text[value.end] + " " + text[value.end + 1 :]
@@ -88,7 +88,7 @@ REPAIRS = (_control_characters, _less_than_in_values, _missing_blanks)
 def put_back(document: Document, text: str) -> None:
     """Restore the characters in a tree that were replaced in its text."""
     shortened: dict[int, list[_Value]] = {}
-    for value in _crowded(text):
+    for value in _values_without_blank_after(text):
         shortened.setdefault(value.tag, []).append(value)
     nodes: list[Node] = [*document.prolog, document.root, *document.epilog]
     while nodes:
@@ -117,7 +117,7 @@ def _values(text: str) -> Iterator[_Value]:
     return (value for value, _ in _with_blanks_before(text))
 
 
-def _crowded(text: str) -> Iterator[_Value]:
+def _values_without_blank_after(text: str) -> Iterator[_Value]:
     """Yield the values that are directly followed by another attribute, without a blank."""
     last: _Value | None = None
     for value, blanks in _with_blanks_before(text):

@@ -242,7 +242,7 @@ async def test_it_stops_when_it_is_deactivated(wheels):
     assert speeds(wheels) == [0.0, 0.0]
     command(wheels, 1.0)
     await wheels.graph.settle()
-    wheels.exchange.work()
+    wheels.exchange.run_commands()
     assert warnings(wheels) == ["Can't accept new commands. subscriber is inactive"]
     controller.on_activate()
     await wheels.step(controller)

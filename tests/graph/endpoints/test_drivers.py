@@ -27,7 +27,7 @@ def disputes(*streams: Iterable[Sent], dispute: Dispute | None = None) -> list[t
     dispute = dispute or Dispute()
     heard = []
     for now, who, speed in sorted(each for stream in streams for each in stream):
-        if dispute.hear(who, speed, now):
+        if dispute.note_command(who, speed, now):
             heard.append((now, set(dispute.parties)))
     return heard
 
@@ -126,7 +126,7 @@ def warned(graph: Known, message_type: type = Twist) -> list[str]:
                 message.twist.linear.x = float(number)
             else:
                 message.linear.x = float(number)
-            watch.hear(message, MessageInfo(0, 0, each.gid))
+            watch.note_command(message, MessageInfo(0, 0, each.gid))
     return log
 
 

@@ -41,7 +41,7 @@ async def test_messages_that_are_taken_together_come_in_one_call_of_the_dispatch
     many = node.create_subscription(String, "many", lambda message: order.append(message.data), 10)
     node.create_subscription(String, "few", lambda message: order.append(message.data), 10)
     publish_many, publish_few = node.create_publisher(String, "many", 10), node.create_publisher(String, "few", 10)
-    many.take_together()
+    many.deliver_in_batches()
     for number in range(3):
         publish_many.publish(String(f"many {number}"))
         publish_few.publish(String(f"few {number}"))
@@ -52,7 +52,7 @@ async def test_messages_that_are_taken_together_come_in_one_call_of_the_dispatch
 async def test_of_messages_that_are_taken_together_those_that_cannot_be_read_are_left_out(graph):
     node, received = graph.create_node("node"), []
     subscription = node.create_subscription(String, "many", received.append, 10)
-    subscription.take_together()
+    subscription.deliver_in_batches()
     for message in (String("a"), b"no CDR", String("b")):
         subscription.receive(message)
     await graph.settle()

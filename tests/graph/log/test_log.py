@@ -220,13 +220,16 @@ def test_arguments_choose_where_records_go(monkeypatch, tmp_path, capsys):
     silent.close()
     assert capsys.readouterr().err == ""
     assert len(list(tmp_path.iterdir())) == 1
-    assert (silent.levels.effective("a.b.c"), silent.levels.effective("a")) == (LogLevel.ERROR, LogLevel.INFO)
+    assert (silent.levels.effective_level("a.b.c"), silent.levels.effective_level("a")) == (
+        LogLevel.ERROR,
+        LogLevel.INFO,
+    )
     loud = set_up(
         parse(["--ros-args", "--disable-external-lib-logs", "--disable-rosout-logs", "--log-level", "debug"]), "talker"
     )
     loud.sink(RECORD)
     assert "hello" in capsys.readouterr().err
-    assert (loud.file, loud.rosout, loud.levels.effective("x")) == (None, False, LogLevel.DEBUG)
+    assert (loud.file, loud.rosout, loud.levels.effective_level("x")) == (None, False, LogLevel.DEBUG)
 
 
 async def test_levels_over_services(graph):

@@ -21,7 +21,7 @@ ENDLESS = r"(a|aa)+$"
     ],
 )
 def test_expressions_mean_what_they_mean_to_rviz(expression: str, found: list[str], not_found: list[str]) -> None:
-    assert Expression(expression).among(found + not_found) == set(found)
+    assert Expression(expression).found_in(found + not_found) == set(found)
 
 
 def test_a_match_is_of_the_whole_name() -> None:
@@ -47,7 +47,7 @@ def test_what_is_no_expression_is_said(expression: str, problem: str) -> None:
 def test_a_search_that_takes_too_long_is_given_up() -> None:
     endless = Expression(ENDLESS)
     with pytest.raises(TooCostlyError):
-        endless.among(["a" * 200 + "!"])
+        endless.found_in(["a" * 200 + "!"])
     with pytest.raises(TooCostlyError):
         endless.matches("a" * 200 + "!")
-    assert endless.among(["1aa", "a1"]) == {"1aa"}
+    assert endless.found_in(["1aa", "a1"]) == {"1aa"}

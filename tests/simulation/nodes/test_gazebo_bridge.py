@@ -11,8 +11,14 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
-from linkwright.simulation.nodes.bridge import BridgedTopic, ImageBridge, ParameterBridge, topic_of_word, topics_of_file
-from linkwright.simulation.plugins.bridged import gz_side
+from linkwright.simulation.nodes.bridge import (
+    BridgedTopic,
+    ImageBridge,
+    ParameterBridge,
+    parse_bridge_argument,
+    read_bridge_file,
+)
+from linkwright.simulation.plugins.bridged import hidden_gz_topic
 from tests.outside import Outside, Stranger
 from tests.places import GAZEBO_PACKAGE
 
@@ -44,17 +50,17 @@ def publisher(stage, kind, topic):
     ],
 )
 def test_arguments(word, topic):
-    assert topic_of_word(word) == topic
+    assert parse_bridge_argument(word) == topic
 
 
 @pytest.mark.parametrize("word", ["", "/scan", "/scan@", "/scan@sensor_msgs/msg/LaserScan", "@a@b", "/scan@a["])
 def test_an_argument_that_is_none(word):
     with pytest.raises(LinkwrightError, match="does not describe a topic to bridge"):
-        topic_of_word(word)
+        parse_bridge_argument(word)
 
 
 def test_the_file_of_our_own_package():
-    topics = {each.gz_topic: each for each in topics_of_file(str(GAZEBO_PACKAGE / "config" / "bridge.yaml"))}
+    topics = {each.gz_topic: each for each in read_bridge_file(str(GAZEBO_PACKAGE / "config" / "bridge.yaml"))}
     assert topics["kinect/image"].ros_topic == "kinect/image_raw"
     assert topics["cmd_vel"].direction == "ROS_TO_GZ"
 
@@ -74,9 +80,9 @@ def test_a_file_that_does_not_say_it(text, message, tmp_path: Path):
     path = tmp_path / "bridge.yaml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(LinkwrightError, match=message):
-        topics_of_file(str(path))
+        read_bridge_file(str(path))
     with pytest.raises(LinkwrightError, match="cannot read"):
-        topics_of_file(str(tmp_path / "nothing.yaml"))
+        read_bridge_file(str(tmp_path / "nothing.yaml"))
 
 
 async def test_what_has_one_name_is_there_already(stage):
@@ -130,7 +136,7 @@ async def test_messages_go_both_ways_and_not_round(stage):
 
 
 async def test_a_twist_with_a_header_becomes_one_without(stage, tmp_path: Path):
-    twists = heard(stage, "geometry_msgs/msg/Twist", gz_side("/cmd_vel"))
+    twists = heard(stage, "geometry_msgs/msg/Twist", hidden_gz_topic("/cmd_vel"))
     path = tmp_path / "bridge.yaml"
     path.write_text(
         "- topic_name: cmd_vel\n  ros_type_name: geometry_msgs/msg/TwistStamped\n"
@@ -276,7 +282,7 @@ def test_settings_of_a_topic_that_are_none(more, message, tmp_path: Path):
     path = tmp_path / "bridge.yaml"
     path.write_text(f"- topic_name: a\n  ros_type_name: b/msg/C\n  gz_type_name: c\n  {more}\n", encoding="utf-8")
     with pytest.raises(LinkwrightError, match=message):
-        topics_of_file(str(path))
+        read_bridge_file(str(path))
 
 
 @pytest.mark.parametrize("ros_type", ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"])

@@ -117,12 +117,12 @@ def test_worlds_that_come_with_the_program_are_not_written(tmp_path):
 def test_what_is_not_saved_is_kept(tmp_path):
     path, folder = tmp_path / "w.world", tmp_path / "state" / "unsaved"
     path.write_bytes(codecs.BOM_UTF8 + PLAIN.encode())
-    result = [edited(path, name).keep(folder) for name in ("a", "b")]
+    result = [edited(path, name).store_unsaved(folder) for name in ("a", "b")]
     (kept,) = folder.iterdir()
     assert [each.code for each in result] == ["RVIZ301", "RVIZ301"]
     assert f"'{path}'" in result[0].message
     assert f"'{kept}'" in result[0].message
     assert kept.read_bytes() == codecs.BOM_UTF8 + PLAIN.replace("'box'", "'b'").encode()
     (tmp_path / "file").touch()
-    lost = edited(path).keep(tmp_path / "file" / "unsaved")
+    lost = edited(path).store_unsaved(tmp_path / "file" / "unsaved")
     assert (lost.code, "cannot write" in lost.message) == ("RVIZ104", True)

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.simulation.ray_casting import GROUPS, cast
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
-from linkwright.simulation.scene.figures import skeleton_begins
+from linkwright.simulation.scene.figures import skeleton_origin
 from linkwright.simulation.server.unsimulated import unsimulated
 from tests.simulation.worlds import GROUND, box, simulated
 
@@ -106,7 +106,7 @@ DAE = """<?xml version="1.0"?>
 def test_a_skin_stands_where_its_skeleton_begins(tmp_path: Path, matrix, begins):
     file = tmp_path / "walk.dae"
     file.write_text(DAE.format(matrix=matrix))
-    assert skeleton_begins(file) == pytest.approx(begins)
+    assert skeleton_origin(file) == pytest.approx(begins)
 
 
 def test_a_plain_figure_stands_for_a_skin_that_is_not_there():

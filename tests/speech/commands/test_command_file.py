@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import LinkwrightError, SourceText
-from linkwright.speech.commands.actions import Drive, Publish, Slot, filled
+from linkwright.speech.commands.actions import Drive, Publish, Slot, fill_template
 from linkwright.speech.commands.command_file import DEFAULT_FILE, parse_commands, read_command_file
 from linkwright.speech.commands.command_set import CommandSet
 
@@ -123,8 +123,8 @@ def test_messages_are_filled_in_with_what_was_said() -> None:
     text = 'publish: {topic: /n, type: std_msgs/msg/String, message: {data: "{number} times"}}'
     action = read(COMMANDS.format(phrases='"ring {number}"', action=text)).commands[0].action
     assert isinstance(action, Publish)
-    assert filled(action.message, {"number": 3.0}) == {"data": "3 times"}
-    assert filled({"a": ["{number}", 1]}, {"number": 3.0}) == {"a": [3.0, 1]}
+    assert fill_template(action.message, {"number": 3.0}) == {"data": "3 times"}
+    assert fill_template({"a": ["{number}", 1]}, {"number": 3.0}) == {"a": [3.0, 1]}
 
 
 def test_the_phrase_that_says_more_of_itself_is_meant() -> None:

@@ -61,7 +61,7 @@ def _look_soon(path: Path) -> None:
         )
 
 
-def look() -> int:
+def discover() -> int:
     """Discover the names of the graph, and write them to the cache that `names_of` reads."""
     from argparse import Namespace
 
@@ -90,4 +90,4 @@ def look() -> int:
 
 
 if __name__ == "__main__":
-    raise SystemExit(look())
+    raise SystemExit(discover())

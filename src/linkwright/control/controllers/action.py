@@ -44,7 +44,7 @@ class Goal:
         self._handle = handle
         self._node = node
 
-    def is_of(self, handle: ServerGoalHandle) -> bool:
+    def belongs_to(self, handle: ServerGoalHandle) -> bool:
         """Return whether this is the goal of a handle."""
         return self._handle is handle
 
@@ -137,5 +137,5 @@ class ControllerAction:
         self._node.post(partial(self._canceled, handle))
 
     def _canceled(self, handle: ServerGoalHandle) -> None:
-        if self._goal is not None and self._goal.is_of(handle) and not self._goal.ended:
+        if self._goal is not None and self._goal.belongs_to(handle) and not self._goal.ended:
             self._cancel(self._goal)

@@ -58,7 +58,7 @@ class _Forwarding(Controller[P], Generic[P]):
         """Subscribe to the commands."""
         self._names()
         self._wanted: Sequence[float] | None = None
-        commander = self.node.commander(self._rest)
+        commander = self.node.commander(self._command_rest)
         self.node.subscribe("std_msgs/msg/Float64MultiArray", "~/commands", self._on_command, commander=commander)
 
     def on_activate(self) -> None:
@@ -77,7 +77,7 @@ class _Forwarding(Controller[P], Generic[P]):
         for command, value in zip(self.commands, wanted, strict=True):
             command.value = value
 
-    def _rest(self) -> bool:
+    def _command_rest(self) -> bool:
         """Set commanded velocities to zero, and hold positions and efforts.
 
         Returns whether any velocity was not zero.

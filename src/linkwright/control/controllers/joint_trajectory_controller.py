@@ -170,7 +170,7 @@ class JointTrajectoryController(Controller[Parameters]):
         elif self._active:
             self._give_up("Current goal cancelled due to new incoming trajectory.")
             self._tolerances = self.parameters.tolerances
-            self._follow(trajectory_of(message, self.parameters, self._held()))
+            self._follow(trajectory_of(message, self.parameters, self._held_positions()))
 
     def _is_allowed(self, request: Any) -> bool:
         self.node.logger.info("Received new action goal")
@@ -191,7 +191,7 @@ class JointTrajectoryController(Controller[Parameters]):
         parameters = self.parameters
         self._goal = goal
         self._tolerances = tolerances_of(goal.request, parameters.joints, parameters.tolerances, self.node.logger.error)
-        self._follow(trajectory_of(goal.request.trajectory, parameters, self._held()))
+        self._follow(trajectory_of(goal.request.trajectory, parameters, self._held_positions()))
 
     def _cancel(self, goal: Goal) -> None:
         self.node.logger.info("Got request to cancel goal")
@@ -206,7 +206,7 @@ class JointTrajectoryController(Controller[Parameters]):
             self._goal.cancel(self._result(error_code=self._result.INVALID_GOAL, error_string=reason))
             self._goal = None
 
-    def _held(self) -> list[float]:
+    def _held_positions(self) -> list[float]:
         """Return the positions to hold for joints that a trajectory leaves out.
 
         These are the last commands, or the current positions of joints without a command.

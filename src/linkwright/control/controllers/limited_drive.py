@@ -98,7 +98,7 @@ class LimitedDrive(Controller[P], Generic[P]):
             limiter.restart()
         for reference in self.references:
             reference.value = nan
-        self._odometry.odometer.stand()
+        self._odometry.odometer.reset_velocity()
         self._angles: list[float] | None = None
         self._input.open()
 

@@ -146,7 +146,7 @@ class MecanumDriveController(Controller[Parameters]):
         """Start at rest, and accept commands."""
         for reference in self.references:
             reference.value = nan
-        self._odometry.odometer.stand()
+        self._odometry.odometer.reset_velocity()
         self._input.open()
 
     def on_deactivate(self) -> None:

@@ -21,7 +21,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 _UNKNOWN = (0.0,) * 9
 
 
-def _nine(name: str, value: tuple[float, ...]) -> Phrase | None:
+def _check_covariance(name: str, value: tuple[float, ...]) -> Phrase | None:
     """Validate a covariance: 9 numbers, row by row."""
     if len(value) != 9:
         return phrase("Parameter '{name}' has {count} numbers and must have 9", name=name, count=len(value))
@@ -34,9 +34,9 @@ class ImuParameters:
 
     sensor_name: str = parameter("", check=not_empty)
     frame_id: str = parameter("", check=not_empty)
-    static_covariance_orientation: tuple[float, ...] = parameter(_UNKNOWN, check=_nine)
-    static_covariance_angular_velocity: tuple[float, ...] = parameter(_UNKNOWN, check=_nine)
-    static_covariance_linear_acceleration: tuple[float, ...] = parameter(_UNKNOWN, check=_nine)
+    static_covariance_orientation: tuple[float, ...] = parameter(_UNKNOWN, check=_check_covariance)
+    static_covariance_angular_velocity: tuple[float, ...] = parameter(_UNKNOWN, check=_check_covariance)
+    static_covariance_linear_acceleration: tuple[float, ...] = parameter(_UNKNOWN, check=_check_covariance)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +49,7 @@ class Vector:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Turn(Vector):
+class QuaternionNames(Vector):
     """The names of the four interfaces of a quaternion."""
 
     w: str = ""
@@ -68,11 +68,11 @@ class PoseNames:
     """The names of the interfaces of a pose."""
 
     position: Vector = Vector()
-    orientation: Turn = Turn()
+    orientation: QuaternionNames = QuaternionNames()
 
 
 @dataclass(frozen=True, kw_only=True)
-class Zeros:
+class AxisOffsets:
     """An offset for each of three axes, 0 by default."""
 
     x: float = 0.0
@@ -93,8 +93,8 @@ class Ones:
 class Offset:
     """The offset of a wrench, in N and N m."""
 
-    force: Zeros = Zeros()
-    torque: Zeros = Zeros()
+    force: AxisOffsets = AxisOffsets()
+    torque: AxisOffsets = AxisOffsets()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -190,7 +190,7 @@ class SteeringController(Controller[P], Generic[P]):
         """Start at rest, and accept commands."""
         for reference in self.references:
             reference.value = nan
-        self._odometry.odometer.stand()
+        self._odometry.odometer.reset_velocity()
         self._angles: list[float] | None = None
         self._steered = 0.0
         self._input.open()

@@ -142,7 +142,7 @@ class TricycleController(Controller[Parameters]):
         self._traction.restart()
         angle = self.states[1].value
         self._steering.restart(0.0 if isnan(angle) else angle)
-        self._odometry.odometer.stand()
+        self._odometry.odometer.reset_velocity()
         self._input.open()
 
     def on_deactivate(self) -> None:
@@ -162,7 +162,7 @@ class TricycleController(Controller[Parameters]):
             raise ControllerError(phrase("Could not read feedback value"))
         forward, _, angular = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
         speed, angle = self._drive.wheel(forward, angular)
-        speed = self._traction.follow(speed * _share(abs(angle - angle_now)), period_s)
+        speed = self._traction.follow(speed * _speed_fraction(abs(angle - angle_now)), period_s)
         angle = self._steering.follow(angle, period_s)
         self.commands[0].value, self.commands[1].value = speed, angle
         if self._settings.open_loop:
@@ -181,7 +181,7 @@ class TricycleController(Controller[Parameters]):
         return response
 
 
-def _share(error: float) -> float:
+def _speed_fraction(error: float) -> float:
     """Return the fraction of its speed at which the wheel is driven, for a steering error in rad."""
     if error < _NEAR:
         return 1.0

@@ -63,7 +63,7 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
         parameters=values,
         remappings=[remapping for remapping in remappings if remapping[0] not in _OF_THE_PROCESS],
     )
-    manager.graph.makers[node.get_logger().name] = manager.get_logger().name
+    manager.graph.creators[node.get_logger().name] = manager.get_logger().name
     return node
 
 

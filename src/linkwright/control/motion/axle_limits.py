@@ -45,7 +45,7 @@ class TractionLimiter:
     def follow(self, wanted: float, seconds: float) -> float:
         """Return the limited speed, `seconds` after the last one."""
         speed = self.speed
-        wanted = _bent(speed, self._before, wanted, self._jerk, seconds)
+        wanted = _limit_second_difference(speed, self._before, wanted, self._jerk, seconds)
         bounds = self._acceleration if abs(wanted) >= abs(speed) else self._deceleration
         reached = speed + _within(bounds, wanted - speed, seconds)
         self.speed, self._before = _within(self._velocity, reached), speed
@@ -77,13 +77,13 @@ class SteeringLimiter:
     def follow(self, wanted: float, seconds: float) -> float:
         """Return the limited angle, `seconds` after the last one."""
         angle = self.angle
-        wanted = _bent(angle, self._before, wanted, self._acceleration, seconds)
+        wanted = _limit_second_difference(angle, self._before, wanted, self._acceleration, seconds)
         reached = angle + _within(self._velocity, wanted - angle, seconds)
         self.angle, self._before = min(max(reached, self._position[0]), self._position[1]), angle
         return self.angle
 
 
-def _bent(now: float, before: float, wanted: float, bounds: Bounds, seconds: float) -> float:
+def _limit_second_difference(now: float, before: float, wanted: float, bounds: Bounds, seconds: float) -> float:
     """Return a value, limited so that its second difference is within bounds."""
     straight = now + now - before
     return straight + _within(bounds, wanted - straight, seconds * seconds)

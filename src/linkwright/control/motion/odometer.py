@@ -32,9 +32,9 @@ class Odometer:
     def reset(self, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> None:
         """Set the pose, in m and rad."""
         self.place = PlanarPose(x, y, yaw)
-        self.stand()
+        self.reset_velocity()
 
-    def stand(self) -> None:
+    def reset_velocity(self) -> None:
         """Reset the velocities, and keep the pose."""
         self._last.clear()
         self.velocity = _STANDING

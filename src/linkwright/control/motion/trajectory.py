@@ -77,7 +77,7 @@ class Trajectory:
         due_ns, state = time_ns, before
         for point in self.points:
             next_ns = self._start_ns + point.time_ns
-            point.state = _deduced(state, point.state, max(next_ns - due_ns, 0) / NANOSECONDS_PER_SECOND)
+            point.state = _with_positions(state, point.state, max(next_ns - due_ns, 0) / NANOSECONDS_PER_SECOND)
             due_ns, state = next_ns, point.state
         for joint, turns in enumerate(wrapped):
             if turns:
@@ -127,7 +127,7 @@ def shortest_turn(start: float, end: float) -> float:
     return turn - tau if turn > pi else turn
 
 
-def _deduced(before: MotionState, state: MotionState, seconds: float) -> MotionState:
+def _with_positions(before: MotionState, state: MotionState, seconds: float) -> MotionState:
     """Return a state with positions, which are integrated from its derivatives if they are missing."""
     if state.positions:
         return state

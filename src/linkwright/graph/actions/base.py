@@ -56,6 +56,6 @@ class ActionEndpoint(ABC):
     def __exit__(self, *_: object) -> None:
         self.destroy()
 
-    def _below(self, name: str) -> str:
+    def _full_name(self, name: str) -> str:
         """Return the full name of one of the action's services or topics."""
         return f"{self._action_name}/_action/{name}"

@@ -106,21 +106,21 @@ class ActionClient(ActionEndpoint):
         impl = self._action_type.Impl
 
         def client(kind: Any, name: str, qos: QoSProfile) -> Client[Any, Any]:
-            return node.create_client(kind, self._below(name), qos_profile=qos, callback_group=callback_group)
+            return node.create_client(kind, self._full_name(name), qos_profile=qos, callback_group=callback_group)
 
         self._goal_client = client(impl.SendGoalService, "send_goal", goal_service_qos_profile)
         self._cancel_client = client(impl.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
         self._result_client = client(impl.GetResultService, "get_result", result_service_qos_profile)
         self._feedback = node.create_subscription(
             impl.FeedbackMessage,
-            self._below("feedback"),
+            self._full_name("feedback"),
             self._on_feedback,
             feedback_sub_qos_profile,
             callback_group=callback_group,
         )
         self._status = node.create_subscription(
             impl.GoalStatusMessage,
-            self._below("status"),
+            self._full_name("status"),
             self._on_status,
             status_sub_qos_profile,
             callback_group=callback_group,

@@ -65,7 +65,7 @@ _NEXT = {
 }
 
 
-class GoalKeeper(Protocol):
+class GoalOwner(Protocol):
     """The interface through which a goal calls its action server."""
 
     @property
@@ -96,7 +96,7 @@ class ServerGoalHandle:
 
     __class_getitem__: Any = classmethod(GenericAlias)  # as in rclpy, annotations may name the action type
 
-    def __init__(self, action_server: GoalKeeper, goal_info: Any, goal_request: Any) -> None:
+    def __init__(self, action_server: GoalOwner, goal_info: Any, goal_request: Any) -> None:
         self._server = action_server
         self._status = GoalStatus.ACCEPTED
         self._destroyed = False

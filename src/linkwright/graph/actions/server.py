@@ -46,7 +46,7 @@ def default_cancel_callback(cancel_request: ServerGoalHandle) -> CancelResponse:
     return CancelResponse.REJECT
 
 
-async def outcome_of(value: Any) -> Any:
+async def awaited_result(value: Any) -> Any:
     """Return the result of a callback, awaiting it first if it is a coroutine."""
     return await value if isawaitable(value) else value
 
@@ -114,15 +114,19 @@ class ActionServer(ActionEndpoint):
         self._executions = self._handle.add(_Executions(self._handle))
         impl = self._action_type.Impl
         self._services = [
-            node.create_service(kind, self._below(name), answer, qos_profile=qos, callback_group=group, replying=True)
+            node.create_service(
+                kind, self._full_name(name), answer, qos_profile=qos, callback_group=group, replying=True
+            )
             for kind, name, answer, qos, group in (
                 (impl.SendGoalService, "send_goal", self._on_goal, goal_service_qos_profile, callback_group),
                 (impl.CancelGoalService, "cancel_goal", self._on_cancel, cancel_service_qos_profile, callback_group),
                 (impl.GetResultService, "get_result", self._on_result, result_service_qos_profile, FREE_GROUP),
             )
         ]
-        self._feedback = node.create_publisher(impl.FeedbackMessage, self._below("feedback"), feedback_pub_qos_profile)
-        self._status = node.create_publisher(impl.GoalStatusMessage, self._below("status"), status_pub_qos_profile)
+        self._feedback = node.create_publisher(
+            impl.FeedbackMessage, self._full_name("feedback"), feedback_pub_qos_profile
+        )
+        self._status = node.create_publisher(impl.GoalStatusMessage, self._full_name("status"), status_pub_qos_profile)
         self._handle.add_cleanup(self.destroy)
 
     def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:
@@ -201,7 +205,7 @@ class ActionServer(ActionEndpoint):
         response = self._action_type.Impl.SendGoalService.Response()
         goal = None
         if uuid not in self._goal_handles:
-            answer = await outcome_of(self._goal_callback(request.goal))
+            answer = await awaited_result(self._goal_callback(request.goal))
             if not isinstance(answer, GoalResponse):
                 logger.warning("Goal request callback did not return a GoalResponse type. Rejecting goal.")
             elif answer is GoalResponse.ACCEPT:
@@ -214,7 +218,7 @@ class ActionServer(ActionEndpoint):
             return
         logger.debug(f"New goal accepted: {request.goal_id.uuid}")
         self._publish_status()
-        await outcome_of(self._handle_accepted_callback(goal))
+        await awaited_result(self._handle_accepted_callback(goal))
 
     def _accept(self, request: Any) -> ServerGoalHandle:
         info = self._goal_info()
@@ -227,10 +231,10 @@ class ActionServer(ActionEndpoint):
 
     async def _on_cancel(self, request: Any, reply: Callable[[Any], None]) -> None:
         response = self._action_type.Impl.CancelGoalService.Response()
-        response.return_code, goals = self._to_cancel(request.goal_info)
+        response.return_code, goals = self._goals_to_cancel(request.goal_info)
         canceling = []
         for goal in goals:
-            answer = await outcome_of(self._cancel_callback(goal))
+            answer = await awaited_result(self._cancel_callback(goal))
             if answer is CancelResponse.ACCEPT and GoalStatus(goal.status) in CANCELABLE:
                 goal.update(GoalEvent.CANCEL_GOAL)
                 canceling.append(goal.goal_info)
@@ -239,7 +243,7 @@ class ActionServer(ActionEndpoint):
         response.goals_canceling = canceling
         reply(response)
 
-    def _to_cancel(self, info: Any) -> tuple[int, list[ServerGoalHandle]]:
+    def _goals_to_cancel(self, info: Any) -> tuple[int, list[ServerGoalHandle]]:
         """Return the preliminary return code of a cancel request, and the goals that it selects.
 
         As in rcl_action's ``process_cancel_request``: an ID selects that goal, a stamp selects all goals accepted up to
@@ -280,7 +284,7 @@ class ActionServer(ActionEndpoint):
     async def _execute(self, callback: Callable[[ServerGoalHandle], Any], goal: ServerGoalHandle) -> None:
         result = None
         try:
-            result = await outcome_of(callback(goal))
+            result = await awaited_result(callback(goal))
         except Exception as error:  # noqa: BLE001  # the client of the goal must learn that it failed
             self._executions.report(error)
         kind = self._action_type.Result

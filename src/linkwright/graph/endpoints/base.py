@@ -292,7 +292,7 @@ class ServiceEndpoint(Endpoint):
         """The class of the service."""
         return self.interface
 
-    def check_half(self, message: Any, half: str) -> None:
+    def check_message(self, message: Any, half: str) -> None:
         """Check that a request or a response can be sent.
 
         Args:

@@ -249,7 +249,7 @@ def report_to_subscription(subscription: Subscription[Any], policy: str, sides: 
         policy: the name of the incompatible policy.
         sides: the values that the two nodes offer and request; see `describe_mismatch`.
     """
-    if subscription.events is not None and subscription.events.incompatible(policy):
+    if subscription.events is not None and subscription.events.report_incompatible(policy):
         return
     subscription.node.logger.warning(
         f"New publisher discovered on topic '{subscription.name}', offering incompatible QoS. "
@@ -262,7 +262,7 @@ def report_to_publisher(publisher: Publisher[Any], policy: str, sides: str) -> N
 
     See `report_to_subscription`.
     """
-    if publisher.events is not None and publisher.events.incompatible(policy):
+    if publisher.events is not None and publisher.events.report_incompatible(policy):
         return
     publisher.node.logger.warning(
         f"New subscription discovered on topic '{publisher.name}', requesting incompatible QoS. "

@@ -27,7 +27,7 @@ class Commander:
 
     Args:
         revoke: called with the lost publisher, after its last command, in the same way as the subscription's callback.
-        drivers: receives each command that arrives through `accepting`, to warn of several publishers that send
+        drivers: receives each command that arrives through `tracking_callback`, to warn of several publishers that send
             commands
             at the same time; None for no warning.
     """
@@ -37,25 +37,25 @@ class Commander:
         self._drivers = drivers
         self._gid: bytes | None = None
 
-    def accepting(self, callback: Callable[[Any], object]) -> Callable[[Any, MessageInfo], object]:
+    def tracking_callback(self, callback: Callable[[Any], object]) -> Callable[[Any, MessageInfo], object]:
         """Return a subscription callback that notes the publisher of a command and passes the command on."""
         return partial(self._accept, callback)
 
     def note_publisher(self, info: MessageInfo) -> None:
-        """Note the publisher of a command that did not arrive through a callback of `accepting`."""
+        """Note the publisher of a command that did not arrive through a callback of `tracking_callback`."""
         self._gid = info.publisher_gid
 
     def watch(self, subscription: Subscription[Any]) -> None:
         """Watch for lost publishers of a subscription.
 
-        Its callback must come from `accepting` or call `note_publisher`.
+        Its callback must come from `tracking_callback` or call `note_publisher`.
         """
         subscription.watch_lost(self._lost)
 
     def _accept(self, callback: Callable[[Any], object], message: Any, info: MessageInfo) -> None:
         self.note_publisher(info)
         if self._drivers is not None:
-            self._drivers.hear(message, info)
+            self._drivers.note_command(message, info)
         callback(message)
 
     def _lost(self, publisher: EndpointInfo) -> None:

@@ -44,7 +44,7 @@ class Dispute:
         self._took: Counter[Hashable] = Counter()
         self.parties: frozenset[Hashable] = frozenset()
 
-    def hear(self, publisher: Hashable, command: object, now_s: float) -> bool:
+    def note_command(self, publisher: Hashable, command: object, now_s: float) -> bool:
         """Note a command, and return whether it starts a dispute.
 
         Args:
@@ -123,10 +123,10 @@ class DriverWatch:
         """Return a watch that uses the clock of a node and warns in its log."""
         return cls(node.get_logger(), node.graph, node.get_clock().now_ns)
 
-    def hear(self, message: Any, info: MessageInfo) -> None:
+    def note_command(self, message: Any, info: MessageInfo) -> None:
         """Note a command message; if it has a header, only its twist is compared."""
         command = getattr(message, "twist", message)
-        if self._dispute.hear(info.publisher_gid, command, self._now_ns() / NANOSECONDS_PER_SECOND):
+        if self._dispute.note_command(info.publisher_gid, command, self._now_ns() / NANOSECONDS_PER_SECOND):
             self._warn()
 
     def _warn(self) -> None:

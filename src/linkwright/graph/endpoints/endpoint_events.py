@@ -44,7 +44,7 @@ class _Watch:
         self._alarm: Alarm | None = None
         self._lock = threading.Lock()
 
-    def sign(self) -> None:
+    def restart(self) -> None:
         """Note a sign of life, from any thread, which restarts the time limit."""
         with self._lock:
             self._last_ns = self._owner.node.timebase.steady_ns()
@@ -108,7 +108,7 @@ class EndpointEvents(Entity):
         total = self._count("matched", max(change, 0))
         self._notify(self._callbacks.matched, QoSMatchedInfo(total, max(change, 0), self._current, change))
 
-    def incompatible(self, policy: str) -> bool:
+    def report_incompatible(self, policy: str) -> bool:
         """Note that an endpoint of the other side has incompatible QoS.
 
         Returns:
@@ -181,13 +181,13 @@ class SubscriptionEvents(EndpointEvents):
     def received(self) -> None:
         """Note that a message arrived, from this process or another."""
         if self._deadline is not None:
-            self._deadline.sign()
+            self._deadline.restart()
 
-    def lost(self, count: int) -> None:
+    def count_lost(self, count: int) -> None:
         """Count lost messages, and notify the callback."""
         self._notify(self._message_lost, QoSMessageLostInfo(self._count("lost", count), count))
 
-    def outside(self, alive: int, not_alive: int) -> None:
+    def set_outside_liveliness(self, alive: int, not_alive: int) -> None:
         """Set how many publishers of other processes are alive, and how many have lost their liveliness."""
         (alive_before, not_alive_before), self._outside = self._outside, (alive, not_alive)
         self.liveliness(alive - alive_before, not_alive - not_alive_before)
@@ -236,13 +236,13 @@ class PublisherEvents(EndpointEvents):
     def published(self) -> None:
         """Note that a message was published."""
         if self._deadline is not None:
-            self._deadline.sign()
+            self._deadline.restart()
         self.assert_liveliness()
 
     def assert_liveliness(self) -> None:
         """Note that the publisher asserted its liveliness."""
         if self._lease is not None:
-            self._lease.sign()
+            self._lease.restart()
             if not self._is_alive:
                 self._is_alive = True
                 self._liveliness_changed(1)
@@ -254,7 +254,7 @@ class PublisherEvents(EndpointEvents):
         """
         super().set_dispatcher(dispatcher)
         if self._lease is not None:
-            self._lease.sign()
+            self._lease.restart()
 
     def _liveliness_lost(self) -> None:
         if self._is_alive:

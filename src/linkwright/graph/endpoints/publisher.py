@@ -147,7 +147,7 @@ class Publisher(TopicEndpoint[M]):
         receive = subscription.receiver(self, self.lifespan_ns)
         with self._lock:
             if self._kept and subscription.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-                for message in self._still_valid():
+                for message in self._unexpired_messages():
                     receive(message)
             self._matched[subscription] = receive
             self._receivers = tuple(self._matched.values())
@@ -181,7 +181,7 @@ class Publisher(TopicEndpoint[M]):
             self.disconnect(subscription)
         self.outside = None
 
-    def matched(self) -> tuple[Subscription[Any], ...]:
+    def local_subscriptions(self) -> tuple[Subscription[Any], ...]:
         """Return the subscriptions of this process that receive the messages."""
         return tuple(self._matched)
 
@@ -223,7 +223,7 @@ class Publisher(TopicEndpoint[M]):
         with self._lock:
             held, self._held = self._held, None
             if send is not None and (self.outside is None or held is not None):
-                for message in self._still_valid() if held is None else held:
+                for message in self._unexpired_messages() if held is None else held:
                     what = f"sending the messages of topic '{self.name}'"
                     run_logged(self.node.logger, what, partial(send, message))  # `publish` has returned
             self.outside = send
@@ -246,11 +246,11 @@ class Publisher(TopicEndpoint[M]):
 
     def _liveliness_changed(self, change: int) -> None:
         self.is_alive = change > 0
-        for subscription in self.matched():
+        for subscription in self.local_subscriptions():
             if subscription.events is not None:
                 subscription.events.liveliness(change, -change)
 
-    def _still_valid(self) -> list[Any]:
+    def _unexpired_messages(self) -> list[Any]:
         """Return the messages kept for late joiners whose lifespan has not expired."""
         if not self._kept:
             return []

@@ -226,7 +226,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         Raises:
             TypeError: the response is not of the service's type.
         """
-        self.check_half(response, "Response")
+        self.check_message(response, "Response")
         header(copy_of(response) if self.node.copies_messages else response)
 
     def retire(self) -> None:
@@ -353,12 +353,12 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
             InvalidHandleError: the client was destroyed.
         """
         self.check_alive()
-        self.check_half(request, "Request")
+        self.check_message(request, "Request")
         if self.node.copies_messages:
             request = copy_of(request)
         future: Future[Response] = Future()
         future.source = self
-        self._pending[future] = _nothing
+        self._pending[future] = _do_nothing
         if not self._send(future, request):
             with self._lock:
                 self._unsent.append((future, request))
@@ -488,5 +488,5 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         future.hand_over(response, self.dispatcher)
 
 
-def _nothing() -> None:
+def _do_nothing() -> None:
     """Do nothing: a request to a service of this process needs no cancellation."""

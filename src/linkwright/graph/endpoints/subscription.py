@@ -26,7 +26,7 @@ M = TypeVar("M")
 
 
 @dataclass(slots=True)
-class Detailed:
+class QueuedMessage:
     """A queued message with its metadata.
 
     Attributes:
@@ -179,7 +179,7 @@ class Subscription(TopicEndpoint[M], Entity):
             self._lost.append(publisher)
             self.announce()
 
-    def take_together(self) -> None:
+    def deliver_in_batches(self) -> None:
         """From now on, pass all queued messages to the callback, one after the other, in a single call.
 
         This is for short callbacks with many messages, such as those of tf. With one message per call, a loop that has
@@ -194,31 +194,31 @@ class Subscription(TopicEndpoint[M], Entity):
         The transport calls this.
         """
         if self.events is not None:
-            self.events.outside(alive, not_alive)
+            self.events.set_outside_liveliness(alive, not_alive)
 
     def lost_outside(self, count: int) -> None:
         """Count lost messages of other processes. Called by the transport."""
         if self.events is not None:
-            self.events.lost(count)
+            self.events.count_lost(count)
 
-    def receive(self, message: M | bytes | Detailed, info: MessageInfo | None = None) -> None:
+    def receive(self, message: M | bytes | QueuedMessage, info: MessageInfo | None = None) -> None:
         """Queue a message for the callback, from any thread.
 
         Args:
             message: the message, or its CDR bytes, which are deserialized just before the callback is called.
             info: its metadata; required for messages of other processes.
         """
-        intake = self.node.intake
+        intake = self.node.message_filter
         if intake is None or intake(self, message):
             self.enqueue(message, info)
 
-    def enqueue(self, message: M | bytes | Detailed, info: MessageInfo | None = None) -> None:
-        """Queue a message for the callback without asking the node's `intake`; see `receive`."""
-        if self._filter is not None and not self._is_wanted(message, self._filter):
+    def enqueue(self, message: M | bytes | QueuedMessage, info: MessageInfo | None = None) -> None:
+        """Queue a message for the callback without asking the node's `message_filter`; see `receive`."""
+        if self._filter is not None and not self._passes_filter(message, self._filter):
             return
         if self.events is not None:
             self.events.received()
-        self._waiting.append(message if info is None else Detailed(message, info))
+        self._waiting.append(message if info is None else QueuedMessage(message, info))
         if not self._announced:
             dispatcher = self.dispatcher
             if dispatcher is not None:
@@ -242,8 +242,8 @@ class Subscription(TopicEndpoint[M], Entity):
                 info = MessageInfo(now_ns, now_ns, publisher.gid)
             expires_ns = None if lifespan_ns is None else self.node.timebase.steady_ns() + lifespan_ns
             if self.events is not None and len(self._waiting) == self._waiting.maxlen:
-                self.events.lost(1)
-            self.receive(Detailed(message, info, expires_ns))
+                self.events.count_lost(1)
+            self.receive(QueuedMessage(message, info, expires_ns))
 
         return receive
 
@@ -313,9 +313,9 @@ class Subscription(TopicEndpoint[M], Entity):
     def _call_for(self, item: Any) -> Callable[[], object] | None:
         if type(item) is self._as_it_is:
             return partial(self._callback, item)
-        return self._prepared(item)
+        return self._prepare_call(item)
 
-    def _prepared(self, item: Any) -> Callable[[], object] | None:
+    def _prepare_call(self, item: Any) -> Callable[[], object] | None:
         """Return the call of the callback for CDR bytes or for a message with metadata.
 
         The result is None if there is nothing to call.
@@ -323,7 +323,7 @@ class Subscription(TopicEndpoint[M], Entity):
         if type(item) is bytes and not self._wants_info and not self.raw:
             message = self._read(item)
             return None if message is None else partial(self._callback, message)
-        detailed = item if type(item) is Detailed else Detailed(item)
+        detailed = item if type(item) is QueuedMessage else QueuedMessage(item)
         if detailed.expires_ns is not None and self.node.timebase.steady_ns() > detailed.expires_ns:
             return None
         message = detailed.message
@@ -344,12 +344,12 @@ class Subscription(TopicEndpoint[M], Entity):
             return message
         return serialize(message)
 
-    def _is_wanted(self, message: Any, content_filter: ContentFilter) -> bool:
+    def _passes_filter(self, message: Any, content_filter: ContentFilter) -> bool:
         """Return whether the content filter accepts a message.
 
         A message that cannot be decoded is accepted, and reported later.
         """
-        inner = message.message if type(message) is Detailed else message
+        inner = message.message if type(message) is QueuedMessage else message
         if isinstance(inner, (bytes, bytearray, memoryview)):
             try:
                 inner = deserialize(inner, self.msg_type)

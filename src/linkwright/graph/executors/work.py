@@ -34,7 +34,7 @@ class ScheduledCall:
         """Cancel the call."""
         if self.callback is not None:
             self.callback = None
-            self._queue.forget_one()
+            self._queue.note_cancelled()
 
     def __lt__(self, other: ScheduledCall) -> bool:
         return (self.steady_ns, self.number) < (other.steady_ns, other.number)
@@ -117,7 +117,7 @@ class WorkQueue:
             self._rouse()
         return call
 
-    def forget_one(self) -> None:
+    def note_cancelled(self) -> None:
         """Count a cancelled alarm; when there are many, remove them."""
         self._cancelled += 1
         if self._cancelled > _MANY_CANCELLED:

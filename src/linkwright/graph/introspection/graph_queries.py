@@ -183,11 +183,11 @@ class GraphQueries:
 
     def endpoints(self) -> list[EndpointInfo]:
         """Return the endpoints of this process, and those discovered so far in other processes."""
-        return self._those(lambda _: True)
+        return self._matching_endpoints(lambda _: True)
 
     def publishers(self) -> list[EndpointInfo]:
         """Return the publishers of all topics, in this process and outside."""
-        return self._those(lambda endpoint: endpoint.kind is _PUBLISHER)
+        return self._matching_endpoints(lambda endpoint: endpoint.kind is _PUBLISHER)
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
         """Return the endpoints of other processes that have been discovered so far."""
@@ -267,11 +267,11 @@ class GraphQueries:
 
     def get_publishers_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
         """Return the publishers of a topic, given by its absolute name."""
-        return [TopicEndpointInfo.of(_hashed(endpoint)) for endpoint in self._of_name(topic, _PUBLISHER)]
+        return [TopicEndpointInfo.of(_with_type_hash(endpoint)) for endpoint in self._of_name(topic, _PUBLISHER)]
 
     def get_subscriptions_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
         """Return the subscriptions to a topic, given by its absolute name."""
-        return [TopicEndpointInfo.of(_hashed(endpoint)) for endpoint in self._of_name(topic, _SUBSCRIPTION)]
+        return [TopicEndpointInfo.of(_with_type_hash(endpoint)) for endpoint in self._of_name(topic, _SUBSCRIPTION)]
 
     def count_publishers(self, topic: str) -> int:
         """Return the number of publishers of a topic, given by its absolute name."""
@@ -354,9 +354,9 @@ class GraphQueries:
         ]
 
     def _of_name(self, name: str, kind: EndpointKind) -> list[EndpointInfo]:
-        return self._those(lambda endpoint: endpoint.kind is kind and endpoint.name == name)
+        return self._matching_endpoints(lambda endpoint: endpoint.kind is kind and endpoint.name == name)
 
-    def _those(self, are_asked_for: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
+    def _matching_endpoints(self, are_asked_for: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
         """Return the endpoints that meet a condition, in this process and outside.
 
         Only these are described, because describing an endpoint takes time.
@@ -368,7 +368,7 @@ class GraphQueries:
 _LONGEST_WAIT_S = 0.1
 
 
-def _hashed(endpoint: EndpointInfo) -> EndpointInfo:
+def _with_type_hash(endpoint: EndpointInfo) -> EndpointInfo:
     """Return the description of an endpoint with its type hash, which is computed only on request."""
     if endpoint.type_hash or not endpoint.local:
         return endpoint

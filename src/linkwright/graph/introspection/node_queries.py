@@ -24,7 +24,7 @@ _TYPE = "type_description_interfaces/srv/GetTypeDescription"
 _HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
 
 
-def is_usual(variables: Mapping[str, str] = os.environ) -> bool:
+def is_enabled_by_default(variables: Mapping[str, str] = os.environ) -> bool:
     """Return whether nodes of the distribution in ``ROS_DISTRO`` have the type description service.
 
     If ``ROS_DISTRO`` is not set, the distribution is taken to be Humble.
@@ -51,7 +51,7 @@ class TypeDescriptions:
         if not _HASH.fullmatch(request.type_hash):
             response.failure_reason = "Failed to parse type hash"
             return response
-        found = next((name for name in self._in_use() if _is_asked_for(name, request)), None)
+        found = next((name for name in self._types_in_use() if _is_asked_for(name, request)), None)
         if found is None:
             response.failure_reason = "Type not currently in use by this node"
             return response
@@ -71,7 +71,7 @@ class TypeDescriptions:
         response.successful = True
         return response
 
-    def _in_use(self) -> Iterator[str]:
+    def _types_in_use(self) -> Iterator[str]:
         """Iterate over the type names in use, without duplicates."""
         return iter(dict.fromkeys(endpoint.type_name for endpoint in self._handle.parts(Endpoint)))
 

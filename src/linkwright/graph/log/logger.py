@@ -63,11 +63,11 @@ class LogLevels:
         self._own.clear()
         self.revision += 1
 
-    def own(self, name: str) -> LogLevel:
+    def own_level(self, name: str) -> LogLevel:
         """Return the level that was set for the logger itself; UNSET if none was set."""
         return self._own.get(name, LogLevel.UNSET) if name else self._default
 
-    def effective(self, name: str) -> LogLevel:
+    def effective_level(self, name: str) -> LogLevel:
         """Return the level in force for a logger: its own, that of its nearest ancestor, or the default."""
         while name:
             level = self._own.get(name)
@@ -160,7 +160,7 @@ class Logger:
     def get_effective_level(self) -> LogLevel:
         """Return the level in force: the logger's own, that of its nearest ancestor, or the default."""
         if self._revision != self._levels.revision:
-            self._effective = self._levels.effective(self.name)
+            self._effective = self._levels.effective_level(self.name)
             self._revision = self._levels.revision
         return self._effective
 

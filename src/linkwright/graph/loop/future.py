@@ -30,7 +30,7 @@ _OURS = str(Path(__file__).parents[2]) + os.sep
 _reported: set[tuple[CodeType, str]] = set()
 
 
-class Waited(Protocol):
+class WaitableFuture(Protocol):
     """The part of a future that this check needs.
 
     Attributes:
@@ -43,7 +43,7 @@ class Waited(Protocol):
         """Return whether the wait is over."""
 
 
-def report_self_wait(future: Waited) -> None:
+def report_self_wait(future: WaitableFuture) -> None:
     """Log an error if the calling thread is in a callback that would wait forever on a robot.
 
     Each place in the code is reported once.

@@ -142,7 +142,7 @@ class Handle:
         self._users -= 1
 
 
-class Handled:
+class HasHandle:
     """An object with a `handle`, and with an attribute ``destroyed``."""
 
     __slots__ = ()
@@ -162,7 +162,7 @@ class Handled:
         return found
 
 
-_handles: weakref.WeakKeyDictionary[Handled, Handle] = weakref.WeakKeyDictionary()
+_handles: weakref.WeakKeyDictionary[HasHandle, Handle] = weakref.WeakKeyDictionary()
 
 
 P = TypeVar("P", bound="Part")
@@ -208,7 +208,7 @@ class HomeGraph(Protocol):
         """Start to notify subscriptions of lost publishers of their topics."""
 
 
-class Part(Handled):
+class Part(HasHandle):
     """A part of a node, such as an endpoint or a timer. Leaving its ``with`` block destroys it.
 
     Attributes:
@@ -291,7 +291,7 @@ class NodeHandle(Handle):
         self.timebase = graph.timebase
         self.default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self.is_destroyed = False
-        self.intake: Callable[[Any, Any], bool] | None = None
+        self.message_filter: Callable[[Any, Any], bool] | None = None
         self.strict_callback_groups = False
         self._parts: dict[Part, None] = {}
         self._cleanups: dict[Callable[[], object], None] = {}

@@ -59,7 +59,7 @@ class Expression:
         except TimeoutError:
             raise TooCostlyError("it takes too long to find") from None
 
-    def among(self, names: Iterable[str]) -> set[str]:
+    def found_in(self, names: Iterable[str]) -> set[str]:
         """Return the names in which the expression is found, as by C++'s `regex_search`.
 
         Raises:

@@ -204,9 +204,9 @@ class _Reader:
             note = Note(phrase("the parameter is left out"))
             warning = finding.but(severity=Severity.WARNING, notes=(note,))
             self._rules.left_out.append((pattern, warning))
-            self._pass_rest_of_list()
+            self._skip_rest_of_list()
 
-    def _pass_rest_of_list(self) -> None:
+    def _skip_rest_of_list(self) -> None:
         """Advance to the end of a list; the current event is the start of a nested list or mapping."""
         depth = 2
         while depth:

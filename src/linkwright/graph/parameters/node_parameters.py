@@ -206,7 +206,7 @@ class NodeParameters:
         """
         from linkwright.graph.parameters.parameter import result_message
 
-        return result_message(self.__parameters.set_together(parameter_list))
+        return result_message(self.__parameters.set_atomically(parameter_list))
 
     def list_parameters(self, prefixes: list[str], depth: int) -> Any:
         """List the names and prefixes of parameters, as rcl_interfaces/msg/ListParametersResult.
@@ -247,7 +247,7 @@ class NodeParameters:
         descriptor = self.__parameters.descriptor(name)
         message = descriptor_message(descriptor)
         if message is not descriptor and name in self.__parameters:
-            self.__parameters.keep_descriptor(name, message)
+            self.__parameters.replace_descriptor(name, message)
         return message
 
     def describe_parameters(self, names: Sequence[str]) -> list[Any]:

@@ -63,11 +63,11 @@ class ParameterRules:
         """The patterns, in order."""
         return list(self._values)
 
-    def fit(self, full_name: str) -> bool:
+    def matches_node(self, full_name: str) -> bool:
         """Return whether any pattern matches a node."""
         return any(_expression(pattern).fullmatch(full_name) for pattern in self._values)
 
-    def without_node(self, full_names: Iterable[str]) -> list[str]:
+    def unmatched_patterns(self, full_names: Iterable[str]) -> list[str]:
         """Return the patterns that match none of the given nodes."""
         names = list(full_names)
         return [value for value in self._values if not any(map(_expression(value).fullmatch, names))]

@@ -191,7 +191,7 @@ class ParameterStore:
         if only_name:
             warnings.warn(_ONLY_A_NAME.format(name), stacklevel=4)
             descriptor.dynamic_typing = True
-        value = self._settle_type(name, default, descriptor)
+        value = self._determine_type(name, default, descriptor)
         if not ignore_override and name in self.overrides:
             value = self.overrides[name]
         parameter = _parameter(name, value, descriptor)
@@ -252,7 +252,7 @@ class ParameterStore:
             return ParameterDescriptor()
         raise ParameterNotDeclaredException(name, self._parameters)
 
-    def keep_descriptor(self, name: str, descriptor: Any) -> None:
+    def replace_descriptor(self, name: str, descriptor: Any) -> None:
         """Store a descriptor object in place of another one with the same content."""
         self._descriptors[name] = descriptor
 
@@ -275,7 +275,7 @@ class ParameterStore:
                 return candidate
         raise InvalidParameterValueException(name, fallback.value, reason or "")
 
-    def set_together(self, parameters: Sequence[Parameter]) -> Any:
+    def set_atomically(self, parameters: Sequence[Parameter]) -> Any:
         """Set either all parameters or none; see ``Node.set_parameters_atomically``."""
         chosen = list(parameters)
         if self.pre_set:
@@ -300,7 +300,7 @@ class ParameterStore:
         declared = ParameterType(descriptor.type)
         return Parameter(parameter.name, declared, []) if declared.is_array else parameter
 
-    def _settle_type(self, name: str, default: Any, descriptor: Any) -> Any:
+    def _determine_type(self, name: str, default: Any, descriptor: Any) -> Any:
         """Fill in the descriptor's type, and return the default value, or None if only a type is given."""
         if isinstance(default, ParameterType):
             if default is ParameterType.NOT_SET:

@@ -228,7 +228,7 @@ def _word(value: QoSPolicyEnum) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Fitting:
+class FittedProfile:
     """A profile that fits the publishers of a topic.
 
     Attributes:
@@ -241,7 +241,7 @@ class Fitting:
     mixed: tuple[tuple[str, str], ...] = ()
 
 
-def fit(wanted: QoSProfile, offers: Sequence[QoSProfile]) -> Fitting:
+def fit(wanted: QoSProfile, offers: Sequence[QoSProfile]) -> FittedProfile:
     """Return a profile with the strongest reliability and durability that all publishers offer.
 
     Args:
@@ -250,7 +250,7 @@ def fit(wanted: QoSProfile, offers: Sequence[QoSProfile]) -> Fitting:
     """
     chosen = copy(wanted)
     if not offers:
-        return Fitting(chosen)
+        return FittedProfile(chosen)
     reliable = sum(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
     lasting = sum(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
     everybody = len(offers)
@@ -261,4 +261,4 @@ def fit(wanted: QoSProfile, offers: Sequence[QoSProfile]) -> Fitting:
         mixed.append(("QoSReliabilityPolicy.RELIABLE", "QoSReliabilityPolicy.BEST_EFFORT"))
     if 0 < lasting < everybody:
         mixed.append(("QoSDurabilityPolicy.TRANSIENT_LOCAL", "QoSDurabilityPolicy.VOLATILE"))
-    return Fitting(chosen, tuple(mixed))
+    return FittedProfile(chosen, tuple(mixed))

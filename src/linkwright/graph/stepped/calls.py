@@ -33,7 +33,7 @@ class Calls:
         self._count = 0
         self._failed = failed
 
-    def make(self, function: Callable[[], object]) -> None:
+    def call(self, function: Callable[[], object]) -> None:
         """Call a function; `failed` receives an exception that it raises."""
         if self.is_closed:
             return

@@ -38,7 +38,7 @@ class Exchange:
     """
 
     def __init__(self) -> None:
-        self.come = threading.Event()
+        self.has_commands = threading.Event()
         self._out: list[tuple[Outlet, Any]] = []
         self._in: deque[Command] = deque()
         self._free: SimpleQueue[None] = SimpleQueue()  # free slots for batches; a semaphore is much slower
@@ -68,12 +68,12 @@ class Exchange:
     def post(self, command: Command) -> None:
         """Queue a function for the simulation's thread, from any thread."""
         self._in.append(command)
-        self.come.set()
+        self.has_commands.set()
 
-    def work(self) -> None:
+    def run_commands(self) -> None:
         """Call the functions that were posted."""
-        if self.come.is_set():
-            self.come.clear()
+        if self.has_commands.is_set():
+            self.has_commands.clear()
         while self._in:
             self._in.popleft()()
 
@@ -82,7 +82,7 @@ class Exchange:
         self._closed = True
         self._in.clear()
         self._make_room()
-        self.come.set()
+        self.has_commands.set()
 
     def _deliver(self, batch: list[tuple[Outlet, Any]]) -> None:
         self._free.put(None)

@@ -92,8 +92,8 @@ class Output:
         """Publish a message, which must not change afterwards."""
         self.exchange.send(self._outlet, message)
 
-    def making(self, make: Callable[..., Any]) -> Callable[..., None]:
-        """Return a function that publishes the message that `make` creates from its arguments.
+    def deferred_publisher(self, make: Callable[..., Any]) -> Callable[..., None]:
+        """Return a function that publishes the message that `call` creates from its arguments.
 
         The message is created where it is published, so a simulation with its own thread need not wait for it.
 
@@ -218,7 +218,7 @@ class SteppedNode:
 
     def post(self, command: Callable[[], object]) -> None:
         """Queue a function to be called between two steps; callable from any thread."""
-        self._exchange.post(partial(self.calls.make, command))
+        self._exchange.post(partial(self.calls.call, command))
 
     def parameter(self, name: str, default: Any) -> Any:
         """Return the value of a parameter of the node, after declaring it with a default if necessary."""
@@ -250,9 +250,9 @@ class SteppedNode:
     ) -> Callable[..., object]:
         """Return the callback of a subscription, which passes messages to the callback between the steps."""
         if rest is not None:
-            callback = partial(self._sound, callback, rest, topic)
+            callback = partial(self._pass_if_finite, callback, rest, topic)
         received: Callable[..., object] = partial(self._received, callback)
-        return received if commander is None else commander.accepting(received)
+        return received if commander is None else commander.tracking_callback(received)
 
     def _subscribe_to(
         self,
@@ -286,7 +286,9 @@ class SteppedNode:
         if rest():
             self.logger.warning(phrase("{who}: the motion stops", who=describe_lost_publisher(publisher)))
 
-    def _sound(self, callback: Callable[[Any], object], rest: Callable[[], object], topic: str, message: Any) -> None:
+    def _pass_if_finite(
+        self, callback: Callable[[Any], object], rest: Callable[[], object], topic: str, message: Any
+    ) -> None:
         """Pass a command on if all its numbers are finite.
 
         Otherwise stop the motion and log a warning.

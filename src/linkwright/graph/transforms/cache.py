@@ -40,7 +40,7 @@ class NoDataError(Exception):
     """
 
 
-def shown_time(stamp_ns: int) -> str:
+def format_time(stamp_ns: int) -> str:
     """Format a time as tf2 does: in seconds with six decimal places."""
     return f"{stamp_ns / NANOSECONDS_PER_SECOND:.6f}"
 
@@ -174,7 +174,7 @@ class MovingCache(FrameCache):
 
         The pose is interpolated between the neighbouring transforms.
         """
-        place = self._place(time_ns)
+        place = self._index_at(time_ns)
         sample = self._samples[place]
         if time_ns in (0, self._stamps[place]):
             return sample.parent, sample.pose()
@@ -186,7 +186,7 @@ class MovingCache(FrameCache):
 
     def parent_at(self, time_ns: int) -> int:
         """Return the number of the parent at a time."""
-        return self._samples[self._place(time_ns)].parent
+        return self._samples[self._index_at(time_ns)].parent
 
     def latest(self) -> tuple[int, int] | None:
         """Return the stamp and the parent's number of the latest transform; None if there is none."""
@@ -205,7 +205,7 @@ class MovingCache(FrameCache):
         """Remove all transforms."""
         self._stamps, self._samples, self._first = [], [], 0
 
-    def _place(self, time_ns: int) -> int:
+    def _index_at(self, time_ns: int) -> int:
         """Return the index of the last transform at or before a time."""
         stamps: Sequence[int] = self._stamps
         if len(stamps) == self._first:
@@ -218,8 +218,8 @@ class MovingCache(FrameCache):
                 phrase(
                     "Lookup would require extrapolation at time {shown_time}, but only time"
                     " {other_shown_time} is in the buffer",
-                    shown_time=shown_time(time_ns),
-                    other_shown_time=shown_time(latest),
+                    shown_time=format_time(time_ns),
+                    other_shown_time=format_time(latest),
                 )
             )
         if time_ns > latest:
@@ -227,8 +227,8 @@ class MovingCache(FrameCache):
                 phrase(
                     "Lookup would require extrapolation into the future.  Requested time {shown_time} but"
                     " the latest data is at time {other_shown_time}",
-                    shown_time=shown_time(time_ns),
-                    other_shown_time=shown_time(latest),
+                    shown_time=format_time(time_ns),
+                    other_shown_time=format_time(latest),
                 )
             )
         if time_ns < oldest:
@@ -236,8 +236,8 @@ class MovingCache(FrameCache):
                 phrase(
                     "Lookup would require extrapolation into the past.  Requested time {shown_time} but the"
                     " earliest data is at time {other_shown_time}",
-                    shown_time=shown_time(time_ns),
-                    other_shown_time=shown_time(oldest),
+                    shown_time=format_time(time_ns),
+                    other_shown_time=format_time(oldest),
                 )
             )
         return bisect_right(stamps, time_ns, self._first) - 1

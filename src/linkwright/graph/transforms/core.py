@@ -18,7 +18,7 @@ from linkwright.geometry.single import IDENTITY, Transform, Vector3, compose
 from linkwright.graph.log.console import print_to_console
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.time.values import Duration, Time
-from linkwright.graph.transforms.cache import FrameCache, MovingCache, Sample, StaticCache, shown_time
+from linkwright.graph.transforms.cache import FrameCache, MovingCache, Sample, StaticCache, format_time
 from linkwright.graph.transforms.errors import (
     ConnectivityException,
     ExtrapolationException,
@@ -156,7 +156,7 @@ class BufferCore:
                 return IDENTITY, latest[0] if latest else time_ns
             target_number = self._number("lookupTransform argument target_frame", target)
             source_number = self._number("lookupTransform argument source_frame", source)
-            way = self._walker.way(target_number, source_number, time_ns)
+            way = self._walker.find_path(target_number, source_number, time_ns)
             return way.pose(), way.time_ns
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[bool, str]:
@@ -316,7 +316,7 @@ class BufferCore:
                 self._authorities[number] = authority
                 return
         self._logger.warning(
-            f"TF_OLD_DATA ignoring data from the past for frame {child} at time {shown_time(stamp_ns)} according to "
+            f"TF_OLD_DATA ignoring data from the past for frame {child} at time {format_time(stamp_ns)} according to "
             f"authority {authority}\nPossible reasons are listed at http://wiki.ros.org/tf/Errors%20explained",
             throttle_duration_sec=_OLD_DATA_PERIOD_S,
         )
@@ -383,7 +383,7 @@ class BufferCore:
         if target_number == source_number:
             return True, ""
         try:
-            self._walker.way(target_number, source_number, time_ns, poses=False)
+            self._walker.find_path(target_number, source_number, time_ns, poses=False)
         except (ConnectivityException, ExtrapolationException, LookupException) as error:
             return False, str(error)
         return True, ""
@@ -393,7 +393,7 @@ class BufferCore:
         source_number = self._number("_chainAsVector argument source_frame", source)
         if target_number == source_number:
             return [target]
-        way = self._walker.way(target_number, source_number, time_ns, poses=False)
+        way = self._walker.find_path(target_number, source_number, time_ns, poses=False)
         return [self._names[number] for number in way.chain()]
 
     def _facts(self, *, with_empty: bool = False) -> list[FrameFacts]:

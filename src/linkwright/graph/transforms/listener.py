@@ -60,7 +60,7 @@ class TransformListener:
                 node.create_subscription(TFMessage, tf_topic, self.callback, TF_QOS if qos is None else qos)
             )
         for subscription in self._subscriptions:
-            subscription.take_together()
+            subscription.deliver_in_batches()
 
     def unregister(self) -> None:
         """Destroy the subscriptions; the buffer keeps its transforms."""

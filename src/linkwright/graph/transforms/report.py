@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from linkwright.graph.transforms.cache import shown_time
+from linkwright.graph.transforms.cache import format_time
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _SHORTEST_SPAN_NS = 100_000
@@ -60,8 +60,8 @@ def frames_as_yaml(frames: Sequence[FrameFacts], now_ns: int) -> str:
             f"  parent: '{frame.parent}'",
             f"  broadcaster: '{frame.authority}'",
             f"  rate: {frame.rate:.3f}",
-            f"  most_recent_transform: {shown_time(frame.latest_ns)}",
-            f"  oldest_transform: {shown_time(frame.oldest_ns)}",
+            f"  most_recent_transform: {format_time(frame.latest_ns)}",
+            f"  oldest_transform: {format_time(frame.oldest_ns)}",
         ]
         if now_ns:
             lines.append(f"  transform_delay: {(now_ns - frame.latest_ns) / NANOSECONDS_PER_SECOND:.3f}")
@@ -78,17 +78,17 @@ def frames_as_dot(frames: Sequence[FrameFacts], now_ns: int) -> str:
         age = f"( {(now_ns - frame.latest_ns) / NANOSECONDS_PER_SECOND:.3f} sec old)" if now_ns else ""
         lines.append(
             f'"{frame.parent}" -> "{frame.name}"[label="Broadcaster: {frame.authority}\\n'
-            f"Average rate: {frame.rate:.3f} Hz\\nMost recent transform: {shown_time(frame.latest_ns)} {age}\\n"
+            f"Average rate: {frame.rate:.3f} Hz\\nMost recent transform: {format_time(frame.latest_ns)} {age}\\n"
             f'Buffer length: {frame.length_s:.3f} sec\\n"];'
         )
     lines.append("edge [style=invis];")
     if now_ns:
         lines += [
             ' subgraph cluster_legend { style=bold; color=black; label ="view_frames Result";',
-            f'"Recorded at time: {shown_time(now_ns)}"[ shape=plaintext ] ;',
+            f'"Recorded at time: {format_time(now_ns)}"[ shape=plaintext ] ;',
             " }",
         ]
         names = {frame.name for frame in frames}
         roots = dict.fromkeys(frame.parent for frame in frames if frame.parent not in names)
-        lines += [f'"Recorded at time: {shown_time(now_ns)}"->"{root}";' for root in roots]
+        lines += [f'"Recorded at time: {format_time(now_ns)}"->"{root}";' for root in roots]
     return "\n".join(lines) + "\n}\n"

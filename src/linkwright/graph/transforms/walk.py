@@ -19,7 +19,7 @@ MAX_DEPTH = 1000
 
 
 @dataclass(slots=True)
-class Way:
+class FramePath:
     """A path from a source frame to a target frame.
 
     Attributes:
@@ -70,7 +70,7 @@ class Walker:
         self._names = names
         self._shape = shape
 
-    def way(self, target: int, source: int, time_ns: int, *, poses: bool = True) -> Way:
+    def find_path(self, target: int, source: int, time_ns: int, *, poses: bool = True) -> FramePath:
         """Find the path from a source frame to a target frame.
 
         Args:
@@ -86,7 +86,7 @@ class Walker:
         """
         if time_ns == 0:
             time_ns = self.latest_common_time(target, source)
-        way = Way(time_ns)
+        way = FramePath(time_ns)
         trouble = self._climb_from_source(way, source, target, poses)
         if way.top == target:
             return way
@@ -131,7 +131,7 @@ class Walker:
             frame = latest[1]
         raise self._loop()
 
-    def _climb_from_source(self, way: Way, source: int, target: int, poses: bool) -> str | None:
+    def _climb_from_source(self, way: FramePath, source: int, target: int, poses: bool) -> str | None:
         """Climb to the target or the root; return the reason if missing data ended the climb early."""
         frame, pose = source, IDENTITY
         trouble = None
@@ -155,7 +155,7 @@ class Walker:
         way.top, way.source_pose = frame, pose
         return trouble
 
-    def _climb_from_target(self, way: Way, source: int, target: int, poses: bool, trouble: str | None) -> None:
+    def _climb_from_target(self, way: FramePath, source: int, target: int, poses: bool, trouble: str | None) -> None:
         frame, pose = target, IDENTITY
         for depth in range(MAX_DEPTH + 2):
             if frame == way.top:

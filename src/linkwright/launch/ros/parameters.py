@@ -80,7 +80,7 @@ class NodeParameters:
             rules = source.file.rules(context)
             for finding in rules.left_out_for(node) if node else [omission for _, omission in rules.left_out]:
                 context.warn(finding)
-            if node is None or not rules or rules.fit(node):
+            if node is None or not rules or rules.matches_node(node):
                 continue
             names = rules.patterns
             message = phrase("no section of '{path}' is for node '{node}'", path=display_path(source.path), node=node)

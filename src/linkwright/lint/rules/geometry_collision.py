@@ -243,7 +243,7 @@ def _is_moved_to_a_child(subject: Subject, link: Link, felt: Bounds) -> bool:
     return False
 
 
-def _doubly_shaped(subject: Subject) -> Iterator[Link]:
+def _links_with_both_shapes(subject: Subject) -> Iterator[Link]:
     """Return the links that have visuals and collisions."""
     return (link for link in subject.links if link.visuals and link.collisions)
 
@@ -251,7 +251,7 @@ def _doubly_shaped(subject: Subject) -> Iterator[Link]:
 def _comparable(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]:
     """Yield links with the boxes of their visuals and collisions, except specks and meshes in millimetres."""
     largest = math.inf if is_scenery(subject) else Millimetres().option(subject, "largest", float)
-    for link in _doubly_shaped(subject):
+    for link in _links_with_both_shapes(subject):
         seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
         if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < MARKER:
             continue

@@ -44,7 +44,7 @@ class PlaceholderInertia(Rule):
     options = (Option("links", 3, "how many links must share a tensor to be reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for sharing in _copies(subject, self.option(subject, "links", int)):
+        for sharing in _shared_tensors(subject, self.option(subject, "links", int)):
             link, inertial = sharing[0]
             others = name_others([other.name for other, _ in sharing[1:]])
             yield self.report(
@@ -67,10 +67,10 @@ LEFT_TO_PLACEHOLDERS = frozenset({"LW322", "LW323", "LW324", "LW325"})
 def placeholders(subject: Subject) -> set[str]:
     """Return the names of the links whose inertia `PlaceholderInertia` reports."""
     least = PlaceholderInertia().option(subject, "links", int)
-    return {link.name for sharing in _copies(subject, least) for link, _ in sharing}
+    return {link.name for sharing in _shared_tensors(subject, least) for link, _ in sharing}
 
 
-def _copies(subject: Subject, least: int) -> Iterator[list[tuple[Link, Inertial]]]:
+def _shared_tensors(subject: Subject, least: int) -> Iterator[list[tuple[Link, Inertial]]]:
     """Yield groups of links that share a tensor of three equal moments, but differ in shape.
 
     A group has at least `least` links and shapes, and at least half of all links with an inertia.

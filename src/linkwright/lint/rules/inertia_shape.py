@@ -73,17 +73,17 @@ class DensityTooHigh(Rule):
     name = "density-too-high"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        if not subject.extents.heavy:
+        if not subject.extents.links_with_relevant_mass:
             return
         from linkwright.geometry.validity import HEAVIEST_DENSITY
 
-        for link, inertial in subject.extents.heavy:
+        for link, inertial in subject.extents.links_with_relevant_mass:
             bounds, volume = subject.extents.link_bounds(link), subject.extents.volume(link)
             if bounds is None or volume is None or bounds.diagonal <= MARKER or inertial.mass < _SLIP:
                 continue
             if min(bounds.size) < _ALMOST_NOTHING / 10:
                 continue  # a sheet, whose thickness is not meaningful
-            if subject.bodies.stands_for_others(link):
+            if subject.bodies.includes_massless_links(link):
                 around = subject.extents.body_bounds(link)
                 if around is None:
                     continue
@@ -268,7 +268,7 @@ class CenterForgotten(Rule):
             element = inertial.element
             if element is None or not _is_at_the_joint(subject, link, inertial):
                 continue
-            if all(map(_lies_to_one_side, subject.extents.kinds_of_bounds(link))):
+            if all(map(_is_origin_off_center, subject.extents.kinds_of_bounds(link))):
                 x, y, z = (round(part, 4) + 0.0 for part in bounds.center)
                 yield self.report(
                     phrase(
@@ -327,7 +327,7 @@ class InertiaTooLarge(Rule):
     ) -> Diagnostic:
         name = max(DIAGONAL, key=lambda item: getattr(inertial, item))
         largest = getattr(inertial, name)
-        usual = _uniform(bounds, inertial.mass)
+        usual = _largest_uniform_moment(bounds, inertial.mass)
         possible = phrase("{mass:g} kg within them have at most {limit:.2g} kg m2", mass=inertial.mass, limit=limit)
         return self.report(
             phrase(
@@ -378,7 +378,7 @@ class InertiaTooSmall(Rule):
             largest = max(inertial.ixx, inertial.iyy, inertial.izz)
             if not boxes or largest <= 0:
                 continue
-            usual = min(_uniform(box, inertial.mass) for box in boxes)
+            usual = min(_largest_uniform_moment(box, inertial.mass) for box in boxes)
             if largest * factor < usual and ((flaw := flaw_of(inertial)) is None or flaw.kind == "triangle"):
                 yield self.report(
                     phrase(
@@ -413,7 +413,7 @@ def _is_at_the_joint(subject: Subject, link: Link, inertial: Inertial) -> bool:
     return is_alone and inertial.element is not None and inertial.element.first("origin") is None
 
 
-def _lies_to_one_side(bounds: Bounds) -> bool:
+def _is_origin_off_center(bounds: Bounds) -> bool:
     """Return whether the origin is more than 0.45 of an edge from a box's middle: near a side or outside."""
     ends = zip(bounds.center, bounds.size, strict=True)
     return any(abs(middle) - 0.45 * size > _ALMOST_NOTHING for middle, size in ends)
@@ -422,7 +422,7 @@ def _lies_to_one_side(bounds: Bounds) -> bool:
 _COMPUTE = phrase("`linkwright inertia` computes it from the link's shapes")
 
 
-def _uniform(bounds: Bounds, mass: float) -> float:
+def _largest_uniform_moment(bounds: Bounds, mass: float) -> float:
     """Return the largest moment of a solid box of this mass about its middle, in kg m2."""
     squares = sorted(edge**2 for edge in bounds.size)
     return mass * (squares[1] + squares[2]) / 12

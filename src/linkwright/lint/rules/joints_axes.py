@@ -10,7 +10,7 @@ from linkwright.lint.fix import add_attribute, remove_element, replace_value
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import joints, parts, shown, values
+from linkwright.lint.walk import format_number, joints, parts, values
 from linkwright.urdf import Joint
 from linkwright.urdf.values import plain
 
@@ -112,7 +112,7 @@ class AxisNotUnit(Rule):
                 phrase(
                     "the axis of joint '{name}' is not of length 1 but {length}: '{xyz}'",
                     name=joint.name,
-                    length=shown(length),
+                    length=format_number(length),
                     xyz=axis.attributes["xyz"].strip(),
                 ),
                 axis,

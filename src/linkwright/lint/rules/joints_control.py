@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, remove_element, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import parts, shown, value
+from linkwright.lint.walk import format_number, parts, value
 from linkwright.urdf import Joint
 from linkwright.xmltree import Element
 
@@ -70,16 +70,16 @@ class SoftLimitsOutside(Rule):
                 name=name,
                 joint_name=joint.name,
                 side=phrase("below") if below else phrase("above"),
-                soft=shown(soft),
+                soft=format_number(soft),
                 end=end,
-                limit=shown(limit),
+                limit=format_number(limit),
             ),
             safety,
             name,
             hint=phrase(
                 "it acts before the limit: {side} than {limit}",
                 side=phrase("more") if below else phrase("less"),
-                limit=shown(limit),
+                limit=format_number(limit),
             ),
         )
 
@@ -127,8 +127,8 @@ class SoftLimitsInverted(Rule):
                     phrase(
                         "the soft limits of joint '{name}' leave no range: {soft_lower_limit} to {soft_upper_limit}",
                         name=joint.name,
-                        soft_lower_limit=shown(soft.soft_lower_limit),
-                        soft_upper_limit=shown(soft.soft_upper_limit),
+                        soft_lower_limit=format_number(soft.soft_lower_limit),
+                        soft_upper_limit=format_number(soft.soft_upper_limit),
                     ),
                     safety,
                     "soft_lower_limit",
@@ -175,11 +175,11 @@ class SafetyGainNegative(Rule):
                             "'{name}' of joint '{joint_name}' is negative: {gain}",
                             name=name,
                             joint_name=joint.name,
-                            gain=shown(gain),
+                            gain=format_number(gain),
                         ),
                         safety,
                         name,
-                        hint=phrase("it drives the joint towards its limit: write {value}", value=shown(-gain)),
+                        hint=phrase("it drives the joint towards its limit: write {value}", value=format_number(-gain)),
                     )
 
 
@@ -220,11 +220,11 @@ class DynamicsNegative(Rule):
                             "'{name}' of joint '{joint_name}' is negative: {size}",
                             name=name,
                             joint_name=joint.name,
-                            size=shown(size),
+                            size=format_number(size),
                         ),
                         dynamics,
                         name,
-                        hint=phrase("it feeds energy into the joint: write {value}", value=shown(-size)),
+                        hint=phrase("it feeds energy into the joint: write {value}", value=format_number(-size)),
                         fix=Fix((edit,), safe=False) if edit else None,
                     )
 
@@ -306,9 +306,9 @@ class CalibrationOutside(Rule):
                             " {lower} to {upper}",
                             name=name,
                             joint_name=joint.name,
-                            place=shown(place),
-                            lower=shown(lower),
-                            upper=shown(upper),
+                            place=format_number(place),
+                            lower=format_number(lower),
+                            upper=format_number(upper),
                         ),
                         calibration,
                         name,

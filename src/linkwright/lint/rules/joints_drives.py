@@ -9,10 +9,10 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import BOUNDED, bounds, is_for_simulation, limits, parts, shown, value
+from linkwright.lint.walk import BOUNDED, bounds, format_number, is_for_simulation, limits, parts, value
 
 
-class _Zero(Rule):
+class _ZeroLimitRule(Rule):
     """The base of the rules about a joint whose `effort` or `velocity` is zero."""
 
     attribute: str
@@ -45,7 +45,7 @@ class _Zero(Rule):
                 )
 
 
-class EffortZero(_Zero):
+class EffortZero(_ZeroLimitRule):
     """A moving joint of a simulated robot with an effort limit of 0.
 
     ## Why
@@ -72,7 +72,7 @@ class EffortZero(_Zero):
     only_in_simulation = True
 
 
-class VelocityZero(_Zero):
+class VelocityZero(_ZeroLimitRule):
     """A moving joint with a velocity limit of 0.
 
     ## Why
@@ -97,7 +97,7 @@ class VelocityZero(_Zero):
     consequence = phrase("planners and controllers hold it still")
 
 
-class _Negative(Rule):
+class _NegativeLimitRule(Rule):
     """The base of the rules about a joint whose `effort` or `velocity` is negative."""
 
     attribute: str
@@ -114,16 +114,18 @@ class _Negative(Rule):
                         "'{attribute}' in <limit> of joint '{name}' is negative: {size}",
                         attribute=self.attribute,
                         name=joint.name,
-                        size=shown(size),
+                        size=format_number(size),
                     ),
                     limit,
                     self.attribute,
-                    hint=phrase("it applies in both directions: give its magnitude, {value}", value=shown(-size)),
+                    hint=phrase(
+                        "it applies in both directions: give its magnitude, {value}", value=format_number(-size)
+                    ),
                     fix=Fix((edit,), safe=False) if edit else None,
                 )
 
 
-class EffortNegative(_Negative):
+class EffortNegative(_NegativeLimitRule):
     """A joint with a negative effort limit.
 
     ## Why
@@ -150,7 +152,7 @@ class EffortNegative(_Negative):
     attribute = "effort"
 
 
-class VelocityNegative(_Negative):
+class VelocityNegative(_NegativeLimitRule):
     """A joint with a negative velocity limit.
 
     ## Why
@@ -216,14 +218,14 @@ class VelocityInDegrees(Rule):
                 phrase(
                     "'velocity' in <limit> of revolute joint '{name}' looks like degrees per second: {speed}",
                     name=joint.name,
-                    speed=shown(speed),
+                    speed=format_number(speed),
                 ),
                 limit,
                 "velocity",
                 hint=phrase(
                     "speeds are in rad/s: {radians}; {speed} rad/s are {degrees} revolutions a minute",
-                    radians=shown(radians(speed)),
-                    speed=shown(speed),
-                    degrees=shown(degrees(speed) / 6),
+                    radians=format_number(radians(speed)),
+                    speed=format_number(speed),
+                    degrees=format_number(degrees(speed) / 6),
                 ),
             )

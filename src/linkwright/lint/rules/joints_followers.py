@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.lint.fix import is_literal, remove_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import joints, shown, value
+from linkwright.lint.walk import format_number, joints, value
 from linkwright.urdf import Joint
 from linkwright.xmltree import Element
 
@@ -192,16 +192,16 @@ class MimicBeyondLimits(Rule):
                     " {lower} to {upper}",
                     name=leader.name,
                     joint_name=joint.name,
-                    least=shown(ends[0]),
-                    most=shown(ends[1]),
-                    lower=shown(own[0]),
-                    upper=shown(own[1]),
+                    least=format_number(ends[0]),
+                    most=format_number(ends[1]),
+                    lower=format_number(own[0]),
+                    upper=format_number(own[1]),
                 ),
                 mimic,
                 hint=phrase(
                     'its limits would have to be lower="{ends}" upper="{other_ends}"',
-                    ends=shown(ends[0]),
-                    other_ends=shown(ends[1]),
+                    ends=format_number(ends[0]),
+                    other_ends=format_number(ends[1]),
                 ),
                 notes=_here(leader),
             )
@@ -253,8 +253,8 @@ class MimicChain(Rule):
                 hint=phrase(
                     'write <mimic joint="{name}" multiplier="{factor}" offset="{offset}"/>',
                     name=first.name,
-                    factor=shown(factor),
-                    offset=shown(offset),
+                    factor=format_number(factor),
+                    offset=format_number(offset),
                 ),
                 notes=_here(leader),
             )

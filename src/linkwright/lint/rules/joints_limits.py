@@ -10,7 +10,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, remove_element, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import BOUNDED, UNBOUNDED, bounds, limits, shown
+from linkwright.lint.walk import BOUNDED, UNBOUNDED, bounds, format_number, limits
 from linkwright.loading.lean_patterns import lazy_pattern
 
 _SENSOR = lazy_pattern(
@@ -62,13 +62,15 @@ class LimitInverted(Rule):
                 phrase(
                     "'lower' in <limit> of joint '{name}' is above 'upper': {ends} > {other_ends}",
                     name=joint.name,
-                    ends=shown(ends[0]),
-                    other_ends=shown(ends[1]),
+                    ends=format_number(ends[0]),
+                    other_ends=format_number(ends[1]),
                 ),
                 limit,
                 "lower" if "lower" in limit.attributes else "upper",
                 hint=phrase(
-                    'write lower="{ends}" upper="{other_ends}"', ends=shown(ends[1]), other_ends=shown(ends[0])
+                    'write lower="{ends}" upper="{other_ends}"',
+                    ends=format_number(ends[1]),
+                    other_ends=format_number(ends[0]),
                 ),
                 fix=Fix(tuple(whole), safe=False) if len(whole) == 2 else None,
             )
@@ -110,7 +112,7 @@ class LimitEmpty(Rule):
                         "{type} joint '{name}' cannot move: 'lower' and 'upper' are both {ends}",
                         type=joint.type,
                         name=joint.name,
-                        ends=shown(ends[0]),
+                        ends=format_number(ends[0]),
                     ),
                     limit,
                     "lower" if "lower" in limit.attributes else "upper",
@@ -252,8 +254,8 @@ class LimitOnContinuous(Rule):
                 phrase(
                     "continuous joint '{name}' has limits from {ends} to {other_ends}, which nothing enforces",
                     name=joint.name,
-                    ends=shown(ends[0]),
-                    other_ends=shown(ends[1]),
+                    ends=format_number(ends[0]),
+                    other_ends=format_number(ends[1]),
                 ),
                 limit,
                 "lower" if "lower" in limit.attributes else "upper",
@@ -331,8 +333,8 @@ class ZeroOutsideLimits(Rule):
                     phrase(
                         "joint '{name}' cannot be at 0: it goes from {ends} to {other_ends}",
                         name=joint.name,
-                        ends=shown(ends[0]),
-                        other_ends=shown(ends[1]),
+                        ends=format_number(ends[0]),
+                        other_ends=format_number(ends[1]),
                     ),
                     limit,
                     "lower" if ends[0] > 0 else "upper",

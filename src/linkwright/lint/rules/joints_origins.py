@@ -10,7 +10,7 @@ from linkwright.lint.fix import Fix, value_edit
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import SURROUNDINGS, joints, parts, shown, values
+from linkwright.lint.walk import SURROUNDINGS, format_number, joints, parts, values
 from linkwright.loading.lean_patterns import lazy_pattern
 from linkwright.urdf.values import looks_like_degrees
 from linkwright.xmltree import Element
@@ -51,12 +51,12 @@ class OriginFar(Rule):
                 continue
             distance = sqrt(sum(part * part for part in xyz))
             if distance > farthest:
-                metres = " ".join(shown(part / 1000) for part in xyz)
+                metres = " ".join(format_number(part / 1000) for part in xyz)
                 yield self.report(
                     phrase(
                         "joint '{name}' is {distance} m from the frame of '{parent}'",
                         name=joint.name,
-                        distance=shown(distance),
+                        distance=format_number(distance),
                         parent=joint.parent,
                     ),
                     origin,
@@ -105,7 +105,7 @@ class AngleInDegrees(Rule):
                     origin,
                     "rpy",
                     hint=phrase(
-                        "if it is in degrees, write {rpy}", rpy=" ".join(shown(radians(angle)) for angle in rpy)
+                        "if it is in degrees, write {rpy}", rpy=" ".join(format_number(radians(angle)) for angle in rpy)
                     ),
                 )
 
@@ -145,7 +145,7 @@ class AngleRounded(Rule):
             written = origin.attributes.get("rpy", "").split()
             if len(values(origin, "rpy")) != 3 or len(written) != 3:
                 continue
-            exact = [_exact(word) for word in written]
+            exact = [_pi_fraction(word) for word in written]
             if any(exact):
                 better = " ".join(new or old for new, old in zip(exact, written, strict=True))
                 edit = value_edit(origin, "rpy", better)
@@ -214,7 +214,7 @@ _PARTS_OF_PI = (1.0, 1 / 2, 1 / 3, 2 / 3, 1 / 4, 3 / 4, 3 / 2, 2.0)
 _DECIMAL = lazy_pattern(r"[+-]?[0-9]+\.[0-9]{2,5}")
 
 
-def _exact(word: str) -> str | None:
+def _pi_fraction(word: str) -> str | None:
     """Return the fraction of pi that a rounded number approximates, with its sign, or None."""
     if not _DECIMAL.fullmatch(word):
         return None

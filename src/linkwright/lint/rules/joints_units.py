@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import UNBOUNDED, bounds, limits, shown, value
+from linkwright.lint.walk import UNBOUNDED, bounds, format_number, limits, value
 from linkwright.urdf.values import looks_like_degrees
 
 
@@ -55,12 +55,12 @@ class LimitInDegrees(Rule):
                             "'{name}' in <limit> of joint '{joint_name}' is {angle} turns: {other_angle} rad",
                             name=name,
                             joint_name=joint.name,
-                            angle=shown(abs(angle) / (2 * pi)),
-                            other_angle=shown(angle),
+                            angle=format_number(abs(angle) / (2 * pi)),
+                            other_angle=format_number(angle),
                         ),
                         limit,
                         name,
-                        hint=phrase("if it is in degrees, write {radians}", radians=shown(radians(angle))),
+                        hint=phrase("if it is in degrees, write {radians}", radians=format_number(radians(angle))),
                     )
 
 
@@ -101,8 +101,8 @@ class LimitEndless(Rule):
                     phrase(
                         "revolute joint '{name}' turns from {ends} to {other_ends} rad",
                         name=joint.name,
-                        ends=shown(ends[0]),
-                        other_ends=shown(ends[1]),
+                        ends=format_number(ends[0]),
+                        other_ends=format_number(ends[1]),
                     ),
                     limit,
                     "lower",
@@ -152,9 +152,9 @@ class LimitInMillimetres(Rule):
                             "'{name}' in <limit> of prismatic joint '{joint_name}' is {way} m",
                             name=name,
                             joint_name=joint.name,
-                            way=shown(way),
+                            way=format_number(way),
                         ),
                         limit,
                         name,
-                        hint=phrase("if it is in millimetres, write {way}", way=shown(way / 1000)),
+                        hint=phrase("if it is in millimetres, write {way}", way=format_number(way / 1000)),
                     )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, counted, joined, nearest, phrase, quoted, quoted_names
-from linkwright.lint.dependencies import brings, is_always_installed, would_make_a_circle
+from linkwright.lint.dependencies import depends_indirectly_on, is_always_installed, would_form_cycle
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
@@ -83,7 +83,7 @@ class LaunchedPackageUnknown(Rule):
             return
         for file in package.launch_files.values():
             for place in [*(node.package for node in file.nodes), *file.shares]:
-                like = None if place is None else _meant(place.text, package, subject)
+                like = None if place is None else _intended_package(place.text, package, subject)
                 if place is not None and like is not None:
                     message = phrase("there is no package '{text}'", text=place.text)
                     yield self.report(
@@ -178,9 +178,13 @@ class UndeclaredLaunchDependency(Rule):
         missing = {
             name: note
             for name, note in _used_packages(package).items()
-            if not (is_always_installed(name) or manifest.declares(name) or brings(manifest, name, subject.finder))
-            and _meant(name, package, subject) is None
-            and not would_make_a_circle(manifest, name, subject.finder)
+            if not (
+                is_always_installed(name)
+                or manifest.declares(name)
+                or depends_indirectly_on(manifest, name, subject.finder)
+            )
+            and _intended_package(name, package, subject) is None
+            and not would_form_cycle(manifest, name, subject.finder)
         }
         if not missing:
             return
@@ -194,7 +198,7 @@ class UndeclaredLaunchDependency(Rule):
         hint = counted(
             "add <exec_depend>{name}</exec_depend>", "add an <exec_depend> for each", len(names), name=names[0]
         )
-        fix = _declare(manifest, names)
+        fix = _dependency_fix(manifest, names)
         yield self.report(message, manifest.root, notes=[missing[name] for name in names], hint=hint, fix=fix)
 
 
@@ -220,7 +224,7 @@ def _used_packages(package: PackageContext) -> dict[str, Note]:
     return {name: note for name, note in found.items() if re.fullmatch(r"[a-zA-Z]\w*", name)}
 
 
-def _declare(manifest: Manifest, names: list[str]) -> Fix | None:
+def _dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
     """Return the fix that adds dependencies after the last one that is not only for tests.
 
     The new lines have its indentation. The result is None if the fix is not possible.
@@ -272,7 +276,7 @@ def _is_known(name: str, package: PackageContext, subject: Subject) -> bool:
     return name == package.name or (manifest is not None and manifest.declares(name)) or bool(subject.finder.find(name))
 
 
-def _meant(name: str, package: PackageContext, subject: Subject) -> str | None:
+def _intended_package(name: str, package: PackageContext, subject: Subject) -> str | None:
     """Return the package that a misspelt name probably means, or None."""
     if not name or name in WELL_KNOWN or _is_known(name, package, subject):
         return None

@@ -78,7 +78,7 @@ class CommandWithoutBlank(LaunchRule):
             message = phrase("there is no blank between the program and its argument")
             hint = phrase("Command joins its parts as they are: write 'xacro ' with a blank at its end")
             yield self.report(
-                message, span=python.span(program), source=file.source, hint=hint, fix=_blank(program, python)
+                message, span=python.span(program), source=file.source, hint=hint, fix=_blank_fix(program, python)
             )
 
 
@@ -117,7 +117,7 @@ class DescriptionNotTyped(Rule):
             return
         for file in package.launch_files.values():
             found = [] if file.python is None else list(_untyped(file.python))
-            refused = _refused_as_yaml(file, package, subject) if found else None
+            refused = _first_invalid_yaml_description(file, package, subject) if found else None
             if refused is None:
                 continue
             path, reason = refused
@@ -304,7 +304,9 @@ def _is_command(call: ast.Call) -> bool:
     return called_name(call).rpartition(".")[2] == "Command"
 
 
-def _refused_as_yaml(file: LaunchFile, package: PackageContext, subject: Subject) -> tuple[str, str] | None:
+def _first_invalid_yaml_description(
+    file: LaunchFile, package: PackageContext, subject: Subject
+) -> tuple[str, str] | None:
     """Return the first description named by a launch file that YAML cannot read, with the reason; or None."""
     for shared in file.paths:
         share = package.folder if shared.package == package.name else subject.finder.find(shared.package)
@@ -314,13 +316,13 @@ def _refused_as_yaml(file: LaunchFile, package: PackageContext, subject: Subject
             text = examine(share / shared.path, packages=subject.finder).text
         except LinkwrightError:
             continue  # the check of that file reports the error
-        reason = _trouble_as_yaml(text)
+        reason = _yaml_problem(text)
         if reason is not None:
             return shared.path, reason
     return None
 
 
-def _trouble_as_yaml(text: str) -> str | None:
+def _yaml_problem(text: str) -> str | None:
     """Return why a text is not a string when it is parsed as YAML, as launch does; None if it is one."""
     import yaml
 
@@ -353,7 +355,7 @@ def _begins_with_blank(node: ast.expr, python: PythonFile) -> bool:
     )
 
 
-def _blank(program: ast.expr, python: PythonFile) -> Fix | None:
+def _blank_fix(program: ast.expr, python: PythonFile) -> Fix | None:
     """Return the fix that adds a blank to the name of the program.
 
     The blank is added before the closing quote of the name, or as a separate part after it.

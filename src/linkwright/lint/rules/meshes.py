@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from linkwright.geometry.outlines import Outline
 
 
-def loaded(subject: Subject, kind: str | None = None) -> Iterator[tuple[MeshUse, Outline]]:
+def readable_meshes(subject: Subject, kind: str | None = None) -> Iterator[tuple[MeshUse, Outline]]:
     """Yield the uses of readable meshes with their scaled outlines, for one or both kinds of shape."""
     for use in subject.meshes.uses:
         if kind is None or use.kind == kind:
@@ -193,7 +193,7 @@ class Millimetres(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         largest = self.option(subject, "largest", float)
-        for use, mesh in () if is_scenery(subject) else loaded(subject):
+        for use, mesh in () if is_scenery(subject) else readable_meshes(subject):
             edge = max(mesh.bounds.size)
             if edge > largest:
                 scale = " ".join(f"{factor * 0.001:g}" for factor in use.mesh.scale)
@@ -240,7 +240,7 @@ class TooSmall(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         smallest = self.option(subject, "smallest", float)
-        for use, mesh in loaded(subject):
+        for use, mesh in readable_meshes(subject):
             edge = max(mesh.bounds.size)
             if edge < smallest and all(use.mesh.scale):
                 shrunk = max(map(abs, use.mesh.scale)) < 0.1

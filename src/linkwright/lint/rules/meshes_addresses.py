@@ -66,7 +66,7 @@ class MalformedUri(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for use in subject.meshes.uses:
             uri = use.mesh.filename
-            problem, better = malformed(uri)
+            problem, better = uri_problem(uri)
             if problem:
                 yield self.report(
                     phrase("the mesh address '{uri}' {problem}", uri=uri, problem=problem),
@@ -208,7 +208,7 @@ class UnknownEnding(Rule):
         for use in subject.meshes.uses:
             name = use.mesh.filename.rpartition("/")[2]
             ending = Path(name).suffix
-            if not name or ending.lower() in KNOWN or malformed(use.mesh.filename)[0]:
+            if not name or ending.lower() in KNOWN or uri_problem(use.mesh.filename)[0]:
                 continue
             yield self.report(
                 phrase(
@@ -266,13 +266,13 @@ class AwkwardName(Rule):
                 )
 
 
-def malformed(uri: str) -> tuple[str | None, str | None]:
+def uri_problem(uri: str) -> tuple[str | None, str | None]:
     """Return the mistake in a URI, as the end of a sentence, and a correct URI, or None for either."""
     if not uri.strip():
         return phrase("is empty"), None
     if "\\" in uri:
         better = uri.replace("\\", "/")
-        return phrase("has backslashes"), better if malformed(better)[0] is None else None
+        return phrase("has backslashes"), better if uri_problem(better)[0] is None else None
     if uri != uri.strip():
         return phrase("has blanks around it"), uri.strip()
     match = _SCHEME.match(uri)
@@ -302,7 +302,7 @@ def _as_package_uri(path: Path | None) -> str | None:
     """Return the ``package://`` URI of an existing file, or None."""
     if path is None or not path.is_file():
         return None
-    resolved = Path(normal(path))
+    resolved = Path(normalized_path(path))
     package = enclosing_package(resolved.parent)
     return None if package is None else f"package://{package[0]}/{resolved.relative_to(package[1]).as_posix()}"
 
@@ -334,6 +334,6 @@ def file_hint(path: Path, endings: Sequence[str]) -> Phrase:
     return phrase("available: {names}", names=joined(shown))
 
 
-def normal(path: Path) -> str:
+def normalized_path(path: Path) -> str:
     """Return a path without ``..`` and ``.``, without resolving symbolic links."""
     return os.path.normpath(path)

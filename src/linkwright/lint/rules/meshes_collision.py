@@ -8,7 +8,7 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.meshes import file_name, loaded
+from linkwright.lint.rules.meshes import file_name, readable_meshes
 from linkwright.lint.subject import Subject
 
 
@@ -38,7 +38,7 @@ class HeavyCollision(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         most = self.option(subject, "triangles", int)
         reported: set[Path] = set()
-        for use, mesh in loaded(subject, "collision"):
+        for use, mesh in readable_meshes(subject, "collision"):
             path = subject.meshes.path(use)
             count = mesh.count
             if count > most and path is not None and path not in reported:
@@ -86,7 +86,7 @@ class VisualAsCollision(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         most = self.option(subject, "triangles", int)
         seen = {(use.link.name, path) for use, path in subject.meshes.files if use.kind == "visual"}
-        for use, mesh in loaded(subject, "collision"):
+        for use, mesh in readable_meshes(subject, "collision"):
             if (use.link.name, subject.meshes.path(use)) in seen and mesh.count > most:
                 yield self.report(
                     phrase(
@@ -127,7 +127,7 @@ class OpenMesh(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         reported: set[Path] = set()
-        for use, mesh in loaded(subject, "collision"):
+        for use, mesh in readable_meshes(subject, "collision"):
             path = subject.meshes.path(use)
             if path is not None and path not in reported and not mesh.is_watertight:
                 reported.add(path)

@@ -12,7 +12,7 @@ from linkwright.lint.made_files import is_ignored_by_git
 from linkwright.lint.meshes import MeshUse
 from linkwright.lint.missing_packages import is_declared
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.meshes_addresses import HOME, KNOWN, file_hint, malformed, normal, written
+from linkwright.lint.rules.meshes_addresses import HOME, KNOWN, file_hint, normalized_path, uri_problem, written
 from linkwright.lint.subject import Subject
 from linkwright.packages import PackageNotFoundError, enclosing_package
 
@@ -99,7 +99,7 @@ class UnknownPackage(Rule):
         reported: dict[str, list[MeshUse]] = {}
         hints: dict[str, Phrase | None] = {}
         for use in subject.meshes.uses:
-            if not use.mesh.filename.startswith("package://") or malformed(use.mesh.filename)[0]:
+            if not use.mesh.filename.startswith("package://") or uri_problem(use.mesh.filename)[0]:
                 continue
             package = use.mesh.filename[len("package://") :].partition("/")[0]
             if package in reported:
@@ -151,7 +151,7 @@ class MissingFile(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         missing: dict[Path, list[tuple[MeshUse, Path]]] = {}
         for use, path in subject.meshes.files:
-            if malformed(use.mesh.filename)[0] or HOME.match(written(use.element, "filename")):
+            if uri_problem(use.mesh.filename)[0] or HOME.match(written(use.element, "filename")):
                 continue  # reported already
             if path.is_file() or case_twin(path) is not None or is_ignored_by_git(path):
                 continue
@@ -268,12 +268,12 @@ class OutsidePackage(Rule):
             uri = use.mesh.filename
             if HOME.match(written(use.element, "filename")):
                 continue  # reported already
-            resolved = Path(normal(path))
+            resolved = Path(normalized_path(path))
             message = None
             if uri.startswith("package://"):
                 package = uri[len("package://") :].partition("/")[0]
                 share = subject.finder.find(package)
-                if share is not None and not resolved.is_relative_to(normal(share)):
+                if share is not None and not resolved.is_relative_to(normalized_path(share)):
                     message = phrase("the mesh '{uri}' leaves package '{package}'", uri=uri, package=package)
             elif resolved.is_file() and enclosing_package(resolved.parent) is None:
                 message = phrase("the mesh '{uri}' is not in a package", uri=uri)

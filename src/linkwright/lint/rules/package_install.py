@@ -136,7 +136,7 @@ class FolderNotInstalled(PackageRule):
         empty = [item for item in setup.installed if item.is_pattern and not item.files(package.folder)]
         meant = {near_folder(package, item.text.rpartition("/")[0]) for item in empty}  # LW821 reports these folders
         lacking: dict[str, list[str]] = {}
-        for folder in _left_out(package, lambda folder: folder in installed or folder in meant):
+        for folder in _uninstalled_folders(package, lambda folder: folder in installed or folder in meant):
             lacking.setdefault(_top(folder), []).append(folder)
         for folder, *others in lacking.values():
             message = phrase("setup.py does not install the folder '{folder}'", folder=folder)
@@ -157,7 +157,9 @@ class FolderNotInstalled(PackageRule):
             return covered or any(item.text.startswith(f"{folder}/") for item in cmake.files)
 
         kept = {_top(folder) for folder in filter(is_installed, shared_folders(package))}
-        lacking = (folder if _top(folder) in kept else _top(folder) for folder in _left_out(package, is_installed))
+        lacking = (
+            folder if _top(folder) in kept else _top(folder) for folder in _uninstalled_folders(package, is_installed)
+        )
         for folder in dict.fromkeys(lacking):
             message = phrase("CMakeLists.txt does not install the folder '{folder}'", folder=folder)
             hint = phrase("add install(DIRECTORY {folder} DESTINATION share/${{PROJECT_NAME}})", folder=folder)
@@ -169,7 +171,7 @@ class FolderNotInstalled(PackageRule):
         """Return the severity: an information for settings that no launch file of the package reads."""
         inside = tuple(f"{folder}/" for folder in folders)
         held = [file for file in package.files if file.startswith(inside) and _is_shared(file)]
-        is_unread = not any(path.startswith(inside) for path in _asked(package))
+        is_unread = not any(path.startswith(inside) for path in _paths_named_by_launch_files(package))
         return Severity.INFO if is_unread and all(map(_SETTINGS.search, held)) else self.severity
 
 
@@ -252,7 +254,11 @@ class InstalledFileMissing(PackageRule):
         setup, cmake = package.setup, package.cmake
         if setup is not None:
             for item in setup.installed:
-                if item.is_pattern or _is_there(package, item.text) or item.text == f"resource/{package.name}":
+                if (
+                    item.is_pattern
+                    or _exists_or_is_generated(package, item.text)
+                    or item.text == f"resource/{package.name}"
+                ):
                     continue
                 message = phrase("setup.py installs '{text}', which does not exist", text=item.text)
                 hint = checkout_hint(package, item.text) or near_file(package, item.text)
@@ -260,7 +266,7 @@ class InstalledFileMissing(PackageRule):
         if cmake is not None:
             for argument in cmake.required:
                 text = argument.text.rstrip("/")
-                if text and not text.startswith("/") and "<" not in text and not _is_there(package, text):
+                if text and not text.startswith("/") and "<" not in text and not _exists_or_is_generated(package, text):
                     message = phrase("CMakeLists.txt installs '{text}', which does not exist", text=argument.text)
                     like = near_folder(package, text)
                     near = phrase("did you mean {names}?", names=quoted(like)) if like else near_file(package, text)
@@ -268,7 +274,7 @@ class InstalledFileMissing(PackageRule):
                     yield self.report(message, span=cmake.span(argument), source=argument.source, hint=hint)
 
 
-def _is_there(package: PackageContext, path: str) -> bool:
+def _exists_or_is_generated(package: PackageContext, path: str) -> bool:
     """Return whether a file or folder is among the sources, or is created before the package is installed."""
     place = package.folder / path
     is_ignored = is_ignored_by_git(place) or is_ignored_by_git(place / "_")
@@ -280,9 +286,9 @@ def shared_folders(package: PackageContext) -> list[str]:
     return sorted({file.rpartition("/")[0] for file in package.files if "/" in file and _is_shared(file)})
 
 
-def _left_out(package: PackageContext, is_installed: Callable[[str], bool]) -> list[str]:
+def _uninstalled_folders(package: PackageContext, is_installed: Callable[[str], bool]) -> list[str]:
     """Return the folders that are not installed although they are common or used by a launch file."""
-    asked = _asked(package)
+    asked = _paths_named_by_launch_files(package)
     return [
         folder
         for folder in shared_folders(package)
@@ -290,7 +296,7 @@ def _left_out(package: PackageContext, is_installed: Callable[[str], bool]) -> l
     ]
 
 
-def _asked(package: PackageContext) -> set[str]:
+def _paths_named_by_launch_files(package: PackageContext) -> set[str]:
     """Return the paths in share folders that the package's launch files name."""
     return {shared.path for file in package.launch_files.values() for shared in file.paths}
 

@@ -97,7 +97,7 @@ class WheelsNotLevel(Rule):
         driven = [contact for contact in found if contact.is_wheel]
         ground = min(contact.place[2] for contact in driven)
         lowest = min(driven, key=lambda item: item.place[2]).link
-        springing = _springing(subject)
+        springing = _lifted_wheels(subject)
         for contact in found:
             gap = contact.place[2] - ground
             if abs(gap) > tolerance and springing.isdisjoint((contact.link.name, lowest.name)):
@@ -117,7 +117,7 @@ class WheelsNotLevel(Rule):
                 )
 
 
-def _springing(subject: Subject) -> set[str]:
+def _lifted_wheels(subject: Subject) -> set[str]:
     """Return the wheels and casters that a joint between them and the body can lift.
 
     A joint that steers, which turns about z, does not count.

@@ -13,9 +13,9 @@ from linkwright.lint.unread import (
     HOMES,
     INNER_EXTENSIONS,
     hints_of_reader,
-    inside,
     is_expected_element,
     is_misspelt,
+    location_phrase,
     meant_element,
 )
 from linkwright.lint.walk import values
@@ -57,7 +57,7 @@ class MisspeltElement(Rule):
             if meant is None or child.span() in reported:
                 continue
             yield self.report(
-                phrase("<{tag}> in {place} is not read", tag=child.tag, place=inside(place)),
+                phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(place)),
                 child,
                 hint=phrase("did you mean <{tag}>?", tag=meant),
                 fix=rename_element(child, meant, safe=False) if is_misspelt(child.tag, meant) else None,
@@ -108,7 +108,7 @@ class MisplacedElement(Rule):
                 continue
             listed = " or ".join(f"<{home}>" for home in _nearest_homes(homes, place))
             yield self.report(
-                phrase("<{tag}> in {place} is not read", tag=child.tag, place=inside(place)),
+                phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(place)),
                 child,
                 hint=phrase("it belongs directly in {listed}", listed=listed),
             )
@@ -167,7 +167,7 @@ class UnknownElement(Rule):
             if meant_element(place.rule, child) is None and child.span() not in reported:
                 known = ", ".join(f"<{rule.tag}>" for rule in place.rule.children)
                 yield self.report(
-                    phrase("<{tag}> in {place} is not read", tag=child.tag, place=inside(place)),
+                    phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(place)),
                     child,
                     hint=phrase("known here: {known}", known=known)
                     if known

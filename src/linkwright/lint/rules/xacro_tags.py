@@ -306,7 +306,7 @@ class UndeclaredPackage(Rule):
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         if subject.expansion is None:
             return
-        from linkwright.lint.dependencies import would_make_a_circle
+        from linkwright.lint.dependencies import would_form_cycle
         from linkwright.xacro.faults import attribute_part
 
         facts = subject.xacro
@@ -322,7 +322,7 @@ class UndeclaredPackage(Rule):
                     if name in reported or package.manifest.declares(name) or use.attribute is None:
                         continue
                     reported.add(name)
-                    if would_make_a_circle(package.manifest, name, subject.finder):
+                    if would_form_cycle(package.manifest, name, subject.finder):
                         continue
                     span = attribute_part(use.element, use.attribute, at, at + len(name))
                     message = phrase(

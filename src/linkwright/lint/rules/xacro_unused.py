@@ -73,7 +73,7 @@ class UnusedProperty(XacroRule):
         for file in facts.own.values():
             for definition in file.properties:
                 name, element = definition.name, definition.element
-                if "$" in name or not name or name in facts.names or _is_remove(element) or _speaks(element):
+                if "$" in name or not name or name in facts.names or _is_remove(element) or _shows_message(element):
                     continue
                 if _is_mathematics(element.attributes.get("value", "")):
                     continue
@@ -320,7 +320,7 @@ def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], b
     return names, blocks, is_open
 
 
-def _speaks(element: Element) -> bool:
+def _shows_message(element: Element) -> bool:
     """Return whether a property is evaluated where it is defined and then shows a message to the user."""
     lazy = element.attributes.get("lazy_eval", "true").strip() not in ("false", "False", "0")
     return (not lazy or "scope" in element.attributes) and bool(_SPEAKING.search(element.attributes.get("value", "")))

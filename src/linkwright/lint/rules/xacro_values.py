@@ -50,7 +50,7 @@ class LiteralChangesType(XacroRule):
                 yield from self._of_call(call, facts)
             for definition in file.properties:
                 value = definition.element.attributes.get("value")
-                if value is not None and _changes(value):
+                if value is not None and _is_changed_by_literal_rule(value):
                     use = _use_in_name(definition.name, facts, None)
                     if use is not None:
                         yield self._found(definition.element, "value", definition.name, value, use, quotes="''")
@@ -65,7 +65,7 @@ class LiteralChangesType(XacroRule):
             return
         _, macro = macros[0]
         for name, value in call.element.attributes.items():
-            if _changes(value):
+            if _is_changed_by_literal_rule(value):
                 use = _use_in_name(name, facts, macro.element)
                 if use is not None:
                     yield self._found(call.element, name, name, value, use, quotes="'")
@@ -258,7 +258,7 @@ class ParameterHidesGlobal(XacroRule):
                         yield self.report(message, macro.element, "params", span=span, hint=hint)
 
 
-def _changes(value: str) -> bool:
+def _is_changed_by_literal_rule(value: str) -> bool:
     """Return whether the conversion of literals changes the text that is written for a value."""
     return "$" not in value and "'" not in value and str(literal(value)) != value
 

@@ -58,7 +58,7 @@ class Bond:
         self.broken = False
         self._publisher = node.create_publisher(status, TOPIC, _DEPTH)
         self._subscription = node.create_subscription(status, TOPIC, self._receive, _DEPTH)
-        self._subscription.take_together()  # this topic carries the heartbeats of all bonds of a system
+        self._subscription.deliver_in_batches()  # this topic carries the heartbeats of all bonds of a system
         self._timer = node.create_timer(period, self._tick, clock=self._clock)
         self._send(active=True)
 

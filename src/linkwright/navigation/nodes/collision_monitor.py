@@ -91,7 +91,7 @@ class MonitorNode(ManagedNode):
         topic = given.cmd_vel_in_topic
         for kind in velocity_types(self, topic, self._stamped):
             commander = Commander(self._on_lost, DriverWatch.of(self))
-            callback = commander.accepting(self._on_velocity)
+            callback = commander.tracking_callback(self._on_velocity)
             heard: Subscription[Any] = self.create_subscription(kind, topic, callback, _DEPTH)
             commander.watch(self.register(heard))
 

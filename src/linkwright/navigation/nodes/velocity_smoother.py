@@ -77,7 +77,7 @@ class _ManagedSmoother(ManagedNode):
         commander = Commander(self._lose, DriverWatch.of(self))
         for kind in velocity_types(self, "cmd_vel", stamped):
             heard: Subscription[Any] = self.create_subscription(
-                kind, "cmd_vel", commander.accepting(self._receive), _DEPTH
+                kind, "cmd_vel", commander.tracking_callback(self._receive), _DEPTH
             )
             commander.watch(self.register(heard))
         if self._value("feedback") == "CLOSED_LOOP":

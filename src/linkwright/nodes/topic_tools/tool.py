@@ -95,7 +95,7 @@ class TopicTool(SingleNode, ABC):
         if kind not in VELOCITIES:
             return self._node.create_subscription(kind, self._input, self._receive, qos)
         commander = Commander(self._stop_output, DriverWatch.of(self._node))
-        callback = commander.accepting(self._receive)
+        callback = commander.tracking_callback(self._receive)
         subscription: Subscription[Any] = self._node.create_subscription(kind, self._input, callback, qos)
         commander.watch(subscription)
         return subscription

@@ -16,7 +16,7 @@ _environment: Environment | None = None
 _python_command: Command | None = None
 
 
-def provide(environment: Environment, python_command: Command) -> None:
+def register_launcher(environment: Environment, python_command: Command) -> None:
     """Register how processes are started.
 
     Args:

@@ -129,14 +129,14 @@ def _read_setup_py(found: SourcePrograms) -> None:
         found.entry_points[entry.executable] = EntryPoint(entry.module, entry.function or "main")
     computed = facts.call and not facts.entry_points_complete
     if computed or re.search(r"\bscripts\s*=", text):
-        entries, scripts = _asked(found.folder)
+        entries, scripts = _computed_programs(found.folder)
         for line in entries:
             _add_entry(found, line)
         for name in scripts:
             _add_script(found, name)
 
 
-def _asked(folder: Path) -> tuple[list[str], list[str]]:
+def _computed_programs(folder: Path) -> tuple[list[str], list[str]]:
     """Return the entry points and scripts that a ``setup.py`` reports when it runs; empty if it fails."""
     try:
         done = subprocess.run(  # noqa: S603 - the user runs a program of this very package

@@ -25,7 +25,7 @@ from linkwright.packages.readers.cmake_conditions import YES, Condition, Word
 from linkwright.packages.readers.cmake_syntax import ENDS, Statement, Token, branches, end_of_block, is_open, statements
 from linkwright.packages.readers.cmake_values import (
     UNKNOWN,
-    calculated,
+    evaluate_math,
     items_of,
     list_command,
     part_of_name,
@@ -143,13 +143,13 @@ class CMakeProgram:
             self.unknown.append(str(error))
 
     def _run_file(self, source: SourceText) -> Iterator[Command]:
-        with self._leaves("return"):
+        with self._leavable_block("return"):
             yield from self._run_block(list(statements(source)))
 
     # --- blocks ------------------------------------------------------------------------------------------------------
 
     @contextmanager
-    def _leaves(self, *commands: str) -> Iterator[None]:
+    def _leavable_block(self, *commands: str) -> Iterator[None]:
         """Define a block that these commands leave."""
         before = self._around
         self._around = {**before, **dict.fromkeys(commands, self._conditions)}
@@ -200,7 +200,7 @@ class CMakeProgram:
     def _holds(self, condition: Statement) -> bool | None:
         words = list[Word]()
         for token in condition.tokens:
-            text = self._filled(token)
+            text = self._substituted(token)
             parts = [text] if token.is_quoted else items_of(text)
             words += [Word(part, token.is_quoted) for part in parts]
         return Condition(words, self.variables, self._is_there).answer()
@@ -212,7 +212,7 @@ class CMakeProgram:
         return found.is_dir() if what == "IS_DIRECTORY" else found.exists()
 
     def _run_while(self, opening: Statement, body: list[Statement]) -> Iterator[Command]:
-        with self._leaves("break"):
+        with self._leavable_block("break"):
             while not self._leaving:
                 self._tick("while")
                 answer = self._holds(opening)
@@ -229,7 +229,7 @@ class CMakeProgram:
             return
         names, rounds = loop
         before = {name: self.variables.get(name) for name in names}
-        with self._leaves("break"):
+        with self._leavable_block("break"):
             for values in rounds:
                 self._tick("foreach")
                 self.variables.update(zip(names, values, strict=True))
@@ -240,7 +240,7 @@ class CMakeProgram:
             _restore(self.variables, name, value)
 
     def _run_once(self, body: list[Statement]) -> Iterator[Command]:
-        with self._leaves("continue"):
+        with self._leavable_block("continue"):
             yield from self._run_block(body)
 
     def _loop(self, words: list[str]) -> tuple[list[str], list[tuple[str, ...]]] | None:
@@ -305,7 +305,7 @@ class CMakeProgram:
         for_parent = self._for_parent
         if routine.has_scope:
             self._for_parent = {}
-        with self._leaves("return"):
+        with self._leavable_block("return"):
             yield from self._run_block(routine.body)
         self._depth -= 1
         if routine.has_scope:
@@ -373,7 +373,7 @@ class CMakeProgram:
             for target, value in string_command(words, self._value).items():
                 self._set(target, value)
         elif name == "math" and len(words) > 2:
-            self._set(words[1], calculated(words[2]))
+            self._set(words[1], evaluate_math(words[2]))
         elif name == "get_filename_component" and len(words) > 2:
             self._set(words[0], part_of_name(words[1], words[2]))
         elif name == "file" and len(words) > 1 and words[0] in ("GLOB", "GLOB_RECURSE"):
@@ -455,12 +455,12 @@ class CMakeProgram:
 
     def _arguments(self, statement: Statement) -> Iterator[Argument]:
         for token in statement.tokens:
-            text = self._filled(token)
+            text = self._substituted(token)
             self._count += len(text) // _OF_A_COMMAND
             for item in [text] if token.is_quoted else items_of(text):
                 yield Argument(item, token.start, token.end, statement.source)
 
-    def _filled(self, token: Token) -> str:
+    def _substituted(self, token: Token) -> str:
         """Return the text of an argument with the values of known variables substituted."""
         text, room = token.text, _LONGEST_TEXT
 

@@ -164,7 +164,7 @@ def _replaced(pattern: str, new: str, text: str) -> str:
         raise _NotKnownError from error
 
 
-def calculated(expression: str) -> str:
+def evaluate_math(expression: str) -> str:
     """Return the value of ``math(EXPR ...)``, in decimal digits."""
     try:
         return str(_number(ast.parse(expression.strip().replace("/", "//"), mode="eval").body))

@@ -17,13 +17,13 @@ from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_typing import Union
 
 
-class Nothing(Enum):
+class UnknownType(Enum):
     """The type of `UNKNOWN`, the value of an expression that cannot be evaluated."""
 
     UNKNOWN = "unknown"
 
 
-UNKNOWN = Nothing.UNKNOWN
+UNKNOWN = UnknownType.UNKNOWN
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Pattern:
     recursive: bool
 
 
-Value = Union[Nothing, str, int, float, None, SharePath, Pattern, tuple["Value", ...]]  # noqa: UP007 - it names itself
+Value = Union[UnknownType, str, int, float, None, SharePath, Pattern, tuple["Value", ...]]  # noqa: UP007 - it names itself
 
 _DEEPEST = 40
 _JOINS = frozenset({"os.path.join", "path.join", "join", "Path", "PurePath", "pathlib.Path", "PathJoinSubstitution"})

@@ -128,7 +128,7 @@ def read_setup(source: SourceText) -> SetupFile:
     if name is not None and text is not None:
         facts.name = text, python.span(name)
     try:
-        _Installing(python, facts).read(argument_of(call, "data_files"), call)
+        _DataFilesReader(python, facts).read(argument_of(call, "data_files"), call)
     except RecursionError:  # lists that contain each other, or a thousand terms
         facts.is_complete = False
     _read_packages(python, facts, argument_of(call, "packages"))
@@ -144,7 +144,7 @@ def syntax_mistake(source: SourceText, error: SyntaxError | ValueError) -> Synta
     return SyntaxMistake(error.msg, source.span(start, start + 1))
 
 
-class _Installing:
+class _DataFilesReader:
     """The reader of ``data_files``."""
 
     def __init__(self, python: PythonFile, facts: SetupFile) -> None:

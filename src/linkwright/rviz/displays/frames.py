@@ -119,7 +119,7 @@ class FrameFilter:
             from linkwright.graph.names.expressions import TooCostlyError
 
             try:
-                found = self._expression.among(name for name in names if name not in self._known)
+                found = self._expression.found_in(name for name in names if name not in self._known)
                 self._found = found | self._found.intersection(names)
                 self._known = set(names)
             except TooCostlyError:

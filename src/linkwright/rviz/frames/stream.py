@@ -247,7 +247,7 @@ class FrameStream:
         for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
             self._node.create_subscription(
                 TFMessage, topic, partial(self._add_transforms, static=static), qos
-            ).take_together()
+            ).deliver_in_batches()
         self._history.on_own.append(self._wake)
         self._age()
 

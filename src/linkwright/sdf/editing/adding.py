@@ -10,7 +10,7 @@ from linkwright.diagnostics import phrase
 from linkwright.sdf.editing import writing
 from linkwright.sdf.editing.changing import pose_in_world
 from linkwright.sdf.editing.errors import EditError
-from linkwright.sdf.editing.shapes import ShapeKind, geometry, inertial, is_size, lengths, made
+from linkwright.sdf.editing.shapes import ShapeKind, geometry, inertial, is_size, lengths, new_element
 from linkwright.sdf.editing.text import WorldText
 from linkwright.sdf.includes import resolve_includes
 from linkwright.sdf.lights import Light
@@ -40,23 +40,29 @@ USUAL: dict[ShapeKind, NewShape] = {
 }
 _LIGHTS: dict[LightKind, tuple[Element, ...]] = {
     "point": (
-        made("diffuse", "0.8 0.8 0.8 1"),
-        made("specular", "0.2 0.2 0.2 1"),
-        made("attenuation", made("range", "20"), made("constant", "0.5"), made("linear", "0.1")),
+        new_element("diffuse", "0.8 0.8 0.8 1"),
+        new_element("specular", "0.2 0.2 0.2 1"),
+        new_element(
+            "attenuation", new_element("range", "20"), new_element("constant", "0.5"), new_element("linear", "0.1")
+        ),
     ),
     "directional": (
-        made("cast_shadows", "true"),
-        made("diffuse", "0.8 0.8 0.8 1"),
-        made("specular", "0.2 0.2 0.2 1"),
-        made("direction", "-0.5 0.1 -0.9"),
+        new_element("cast_shadows", "true"),
+        new_element("diffuse", "0.8 0.8 0.8 1"),
+        new_element("specular", "0.2 0.2 0.2 1"),
+        new_element("direction", "-0.5 0.1 -0.9"),
     ),
     "spot": (
-        made("cast_shadows", "true"),
-        made("diffuse", "0.8 0.8 0.8 1"),
-        made("specular", "0.2 0.2 0.2 1"),
-        made("attenuation", made("range", "20"), made("constant", "0.5"), made("linear", "0.1")),
-        made("direction", "0 0 -1"),
-        made("spot", made("inner_angle", "0.4"), made("outer_angle", "0.8"), made("falloff", "1")),
+        new_element("cast_shadows", "true"),
+        new_element("diffuse", "0.8 0.8 0.8 1"),
+        new_element("specular", "0.2 0.2 0.2 1"),
+        new_element(
+            "attenuation", new_element("range", "20"), new_element("constant", "0.5"), new_element("linear", "0.1")
+        ),
+        new_element("direction", "0 0 -1"),
+        new_element(
+            "spot", new_element("inner_angle", "0.4"), new_element("outer_angle", "0.8"), new_element("falloff", "1")
+        ),
     ),
 }
 _THINGS = ("model", "include", "light", "actor")
@@ -89,19 +95,19 @@ def add_shape(
     name = world.free_name(kind)
     colour = lengths((*usual.colour, 1.0))
     parts = [
-        made("collision", *geometry(kind, wanted), name="collision"),
-        made(
+        new_element("collision", *geometry(kind, wanted), name="collision"),
+        new_element(
             "visual",
             *geometry(kind, wanted),
-            made("material", made("ambient", colour), made("diffuse", colour)),
+            new_element("material", new_element("ambient", colour), new_element("diffuse", colour)),
             name="visual",
         ),
     ]
     if usual.mass is not None:
         parts.insert(0, inertial(kind, wanted, usual.mass))
-    static = [] if usual.mass is not None else [made("static", "true")]
-    link = made("link", *parts, name=kind if kind in ("wall", "ramp") else "link")
-    model = made("model", writing.pose_element(pose_in_world(pose)), *static, link, name=name)
+    static = [] if usual.mass is not None else [new_element("static", "true")]
+    link = new_element("link", *parts, name=kind if kind in ("wall", "ramp") else "link")
+    model = new_element("model", writing.pose_element(pose_in_world(pose)), *static, link, name=name)
     return _with(world, model), name
 
 
@@ -115,7 +121,7 @@ def add_light(world: WorldText, kind: LightKind, pose: Sequence[float]) -> tuple
         EditError: the pose is invalid.
     """
     name = world.free_name(f"{kind}_light")
-    light = made("light", writing.pose_element(pose_in_world(pose)), *_LIGHTS[kind], name=name, type=kind)
+    light = new_element("light", writing.pose_element(pose_in_world(pose)), *_LIGHTS[kind], name=name, type=kind)
     return _with(world, light), name
 
 
@@ -146,7 +152,9 @@ def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[
         raise EditError(phrase("there is no model in '{address}'", address=address))
     name = world.free_name(entities[0].name)
     pose_of_it = writing.pose_element(pose_in_world(pose))
-    return _with(world, made("include", made("uri", address), made("name", name), pose_of_it)), name
+    return _with(
+        world, new_element("include", new_element("uri", address), new_element("name", name), pose_of_it)
+    ), name
 
 
 def _with(world: WorldText, new: Element) -> WorldText:

@@ -19,7 +19,7 @@ from linkwright.sdf.editing.shapes import (
     inertial,
     is_size,
     lengths,
-    made,
+    new_element,
     number,
     solid,
     tensor,
@@ -246,7 +246,9 @@ def _resized(entity: Entity, size: tuple[float, ...]) -> list[Replacement]:
             edits += writing.set_pose(old, Pose((x, y, z)))
         inertia = found.element.first("inertia")
         if inertia is None:
-            new = made("inertia", *(made(tag, text) for tag, text in tensor(properties).items() if text != "0"))
+            new = new_element(
+                "inertia", *(new_element(tag, text) for tag, text in tensor(properties).items() if text != "0")
+            )
             edits.append(writing.inserted_in(found.element, [new]))
         else:
             for tag, text in tensor(properties).items():
@@ -293,15 +295,15 @@ def _coloured(entity: Entity, colour: Sequence[float]) -> list[Replacement]:
         material = visual.element.first("material")
         if material is None:
             text = lengths(tuple(colour))
-            parts = (made("ambient", text), made("diffuse", text))
-            edits.append(writing.inserted_in(visual.element, [made("material", *parts)]))
+            parts = (new_element("ambient", text), new_element("diffuse", text))
+            edits.append(writing.inserted_in(visual.element, [new_element("material", *parts)]))
             continue
         script = material.first("script")  # the script would override the colours
         missing = [tag for tag in ("ambient", "diffuse") if material.first(tag) is None]
         for tag in ("ambient", "diffuse"):
             if tag not in missing:
                 edits += writing.set_child(material, tag, colour)
-        new = [made(tag, lengths(tuple(colour))) for tag in missing]
+        new = [new_element(tag, lengths(tuple(colour))) for tag in missing]
         if script is not None:
             edits.append(writing.exchanged(script, new))
         elif new:
@@ -319,7 +321,7 @@ def _static(entity: Entity, static: bool, size: Sequence[float] | None) -> list[
     else:
         after = ("uri", "name", "pose") if isinstance(entity.written, Include) else ("pose",)
         first = entity.element.first("pose") is None and not isinstance(entity.written, Include)
-        edits = [writing.inserted_in(entity.element, [made("static", text)], after=after, first=first)]
+        edits = [writing.inserted_in(entity.element, [new_element("static", text)], after=after, first=first)]
     if not static and entity.shape is not None and isinstance(entity.written, Model):
         link = entity.written.links[0]
         if link.inertial is None and link.element is not None:

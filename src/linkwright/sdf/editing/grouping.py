@@ -10,7 +10,7 @@ from linkwright.geometry.single import Pose, Transform, compose
 from linkwright.sdf.editing import writing
 from linkwright.sdf.editing.changing import named_in, place, pose_of_entity, renamed_references, state_of
 from linkwright.sdf.editing.errors import EditError
-from linkwright.sdf.editing.shapes import lengths, made
+from linkwright.sdf.editing.shapes import lengths, new_element
 from linkwright.sdf.editing.text import Entity, WorldText
 from linkwright.sdf.frames import transform_of
 from linkwright.sdf.models import Include, Model
@@ -202,7 +202,7 @@ def _let_out(
         edits += (
             writing.set_text(child, "true")
             if child is not None
-            else [writing.inserted_in(element, [made("static", "true")], after=after, first=True)]
+            else [writing.inserted_in(element, [new_element("static", "true")], after=after, first=True)]
         )
     pose = element.first("pose")
     base = model.pose.relative_to

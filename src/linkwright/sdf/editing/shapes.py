@@ -20,7 +20,7 @@ from linkwright.sdf.links import Collision, Visual
 from linkwright.sdf.materials import Material
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import AT_ORIGIN, RawPose
-from linkwright.sdf.scripts import gazebo_look, painted
+from linkwright.sdf.scripts import gazebo_look, with_look
 from linkwright.sdf.shapes import Polyline, Shape
 from linkwright.sdf.values import Color, plain
 from linkwright.xmltree import Element, Text
@@ -94,7 +94,7 @@ def _colour(material: Material | None) -> Color | None:
         return None
     look = gazebo_look(material.script.name) if material.script else None
     if look is not None:
-        material = painted(material, look)
+        material = with_look(material, look)
     return material.diffuse or material.ambient
 
 
@@ -155,7 +155,7 @@ def lengths(values: tuple[float, ...]) -> str:
     return " ".join(map(length, values))
 
 
-def made(tag: str, *children: Element | str, **attributes: str) -> Element:
+def new_element(tag: str, *children: Element | str, **attributes: str) -> Element:
     """Return a new element with a text or with children."""
     element = Element(tag, attributes)
     element.children.extend(Text(child) if isinstance(child, str) else child for child in children)
@@ -165,11 +165,13 @@ def made(tag: str, *children: Element | str, **attributes: str) -> Element:
 def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
     """Return the ``<inertial>`` of a solid shape with a mass in kg."""
     properties = solid(kind, size).with_mass(mass)
-    parts = [made("mass", number(mass))]
+    parts = [new_element("mass", number(mass))]
     if properties.center.any():
-        parts.append(made("pose", f"{lengths(tuple(properties.center.tolist()))} 0 0 0"))
-    parts.append(made("inertia", *(made(tag, text) for tag, text in tensor(properties).items() if text != "0")))
-    return made("inertial", *parts)
+        parts.append(new_element("pose", f"{lengths(tuple(properties.center.tolist()))} 0 0 0"))
+    parts.append(
+        new_element("inertia", *(new_element(tag, text) for tag, text in tensor(properties).items() if text != "0"))
+    )
+    return new_element("inertial", *parts)
 
 
 def geometry(kind: str, size: tuple[float, ...]) -> list[Element]:
@@ -179,13 +181,18 @@ def geometry(kind: str, size: tuple[float, ...]) -> list[Element]:
     """
     if kind == "ramp":
         outline = wedge(size)
-        points = (made("point", lengths(point)) for point in outline.points)
-        shape = made("polyline", *points, made("height", length(outline.height)))
+        points = (new_element("point", lengths(point)) for point in outline.points)
+        shape = new_element("polyline", *points, new_element("height", length(outline.height)))
         pose = ramp_pose(size)
         text = f"{lengths(pose.xyz)} {' '.join(map(plain, pose.rpy))}"
-        return [made("pose", text), made("geometry", shape)]
+        return [new_element("pose", text), new_element("geometry", shape)]
     if kind == "cylinder":
-        return [made("geometry", made("cylinder", made("radius", length(size[0])), made("length", length(size[1]))))]
+        return [
+            new_element(
+                "geometry",
+                new_element("cylinder", new_element("radius", length(size[0])), new_element("length", length(size[1]))),
+            )
+        ]
     if kind == "sphere":
-        return [made("geometry", made("sphere", made("radius", length(size[0]))))]
-    return [made("geometry", made("box", made("size", lengths(size))))]
+        return [new_element("geometry", new_element("sphere", new_element("radius", length(size[0]))))]
+    return [new_element("geometry", new_element("box", new_element("size", lengths(size))))]

@@ -9,7 +9,7 @@ from math import atan2, degrees, hypot
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Pose, Quaternion, Transform, quaternion_of
 from linkwright.sdf.editing.errors import EditError
-from linkwright.sdf.editing.shapes import length, lengths, made
+from linkwright.sdf.editing.shapes import length, lengths, new_element
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import (
     Replacement,
@@ -106,7 +106,7 @@ def set_child(
     child = owner.first(tag)
     if child is not None:
         return set_text(child, value) if isinstance(value, str) else set_numbers(child, value)
-    new = made(tag, value if isinstance(value, str) else lengths(tuple(value)))
+    new = new_element(tag, value if isinstance(value, str) else lengths(tuple(value)))
     return [inserted_in(owner, [new], after=after)]
 
 
@@ -214,7 +214,7 @@ def pose_from(transform: Transform) -> Pose:
 
 def pose_element(pose: Pose) -> Element:
     """Return a new ``<pose>`` element."""
-    return made("pose", lengths((*pose.xyz, *pose.rpy)))
+    return new_element("pose", lengths((*pose.xyz, *pose.rpy)))
 
 
 def references(world: Element) -> Iterator[tuple[Element, str | None]]:

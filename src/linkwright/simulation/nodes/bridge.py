@@ -27,7 +27,7 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node, start
 from linkwright.nodes.standstill import VELOCITIES, send_stop
 from linkwright.perception.nodes.compressed import compressed
 from linkwright.simulation.nodes.conversions import TYPES_OF_GZ, conversion
-from linkwright.simulation.plugins.bridged import gz_side
+from linkwright.simulation.plugins.bridged import hidden_gz_topic
 
 _DIRECTIONS = {"[": "GZ_TO_ROS", "]": "ROS_TO_GZ", "@": "BIDIRECTIONAL"}
 _IMAGE = ("sensor_msgs/msg/Image", "gz.msgs.Image")
@@ -65,7 +65,7 @@ class BridgedTopic:
     lazy: bool | None = None
 
 
-class _Way:
+class _BridgeDirection:
     """One direction of a bridge, which forwards messages from a topic of one node to a topic of another.
 
     Args:
@@ -118,7 +118,7 @@ class _Bridge(SingleNode):
             self._announce(topic, to_ros=to_ros, to_gz=to_gz)
             return
         if same_name and to_gz:  # the name belongs to the topic of ROS, with its type
-            gz_topic = gz_side(gz_topic)
+            gz_topic = hidden_gz_topic(gz_topic)
         ros, gz = (self._node, topic.ros_topic, topic.ros_type), (self._gz_node, gz_topic, gz_type)
         if to_ros and not (same_name and to_gz):
             self._hand_on(topic, gz, ros)
@@ -157,7 +157,7 @@ class _Bridge(SingleNode):
             if all(info.publisher_gid != publisher.gid for publisher in self._publishers):
                 if commander is not None and drivers is not None:
                     commander.note_publisher(info)
-                    drivers.hear(message, info)
+                    drivers.note_command(message, info)
                 publishers[0].publish(convert(message))
 
         def listen() -> Subscription[Any]:
@@ -167,7 +167,7 @@ class _Bridge(SingleNode):
                 commander.watch(subscription)
             return subscription
 
-        way = _Way(listen, lazy=lazy)
+        way = _BridgeDirection(listen, lazy=lazy)
         events = PublisherEventCallbacks(matched=way.matched) if lazy else None
         publisher: Publisher[Any] = sending.create_publisher(
             target_type,
@@ -195,8 +195,8 @@ class ParameterBridge(_Bridge):
             path = str(self._node.declare_parameter("config_file", "").value)
             self._lazy = bool(self._node.declare_parameter("lazy", False).value)
             self._expands = bool(self._node.declare_parameter("expand_gz_topic_names", False).value)
-            topics = [topic_of_word(word) for word in words if not self._is_service(word)]
-            topics += topics_of_file(path) if path else []
+            topics = [parse_bridge_argument(word) for word in words if not self._is_service(word)]
+            topics += read_bridge_file(path) if path else []
             self._connect(graph, topics)
 
     def _is_service(self, word: str) -> bool:
@@ -254,11 +254,11 @@ class ImageBridge(_Bridge):
             profile = QoSProfile(1, reliability=ReliabilityPolicy.BEST_EFFORT)
             return self._gz_node.create_subscription(_IMAGE[0], "/" + topic.lstrip("/"), forward, profile)
 
-        events = PublisherEventCallbacks(matched=_Way(listen, lazy=True).matched)
+        events = PublisherEventCallbacks(matched=_BridgeDirection(listen, lazy=True).matched)
         publisher: Publisher[Any] = self._node.create_publisher(_COMPRESSED, name, _QUEUE, event_callbacks=events)
 
 
-def topic_of_word(word: str) -> BridgedTopic:
+def parse_bridge_argument(word: str) -> BridgedTopic:
     """Parse an argument ``TOPIC@ROS_TYPE@GZ_TYPE``, where ``[`` or ``]`` restricts the direction.
 
     Raises:
@@ -275,7 +275,7 @@ def topic_of_word(word: str) -> BridgedTopic:
     return BridgedTopic(name, name, _full(ros_type), _modern(gz_type), _DIRECTIONS[mark])
 
 
-def topics_of_file(path: str) -> list[BridgedTopic]:
+def read_bridge_file(path: str) -> list[BridgedTopic]:
     """Read the bridged topics from a YAML file.
 
     Raises:

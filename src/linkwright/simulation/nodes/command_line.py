@@ -39,7 +39,7 @@ def simulator_command(words: Sequence[str]) -> NodeCommand | None:
 
 def classic_server(words: Sequence[str], *, window: bool = False) -> NodeCommand:
     """Parse the words after ``gzserver``, or after ``gazebo``, which has a window."""
-    own, ros = _divided(words)
+    own, ros = _split_ros_arguments(words)
     options, others = _read(own, _CLASSIC_VALUES.split())
     parameters = _seed(options) | ({"gui": True} if window else {})
     if others and others[0]:
@@ -51,7 +51,7 @@ def classic_server(words: Sequence[str], *, window: bool = False) -> NodeCommand
 
 def gz_server(words: Sequence[str]) -> NodeCommand:
     """Parse the words after ``gz sim``; without ``-r`` the simulation starts paused."""
-    own, ros = _divided(words)
+    own, ros = _split_ros_arguments(words)
     options, others = _read(own, _GZ_VALUES.split())
     if "-g" in options:
         return NodeCommand("ros_gz_sim", "gzclient")
@@ -61,7 +61,7 @@ def gz_server(words: Sequence[str]) -> NodeCommand:
     return NodeCommand("ros_gz_sim", "gzserver", parameters, ros)
 
 
-def _divided(words: Sequence[str]) -> tuple[list[str], list[str]]:
+def _split_ros_arguments(words: Sequence[str]) -> tuple[list[str], list[str]]:
     """Split a command line into the program's own arguments and the ROS arguments."""
     at = words.index(_ROS_ARGUMENTS) if _ROS_ARGUMENTS in words else len(words)
     return list(words[:at]), list(words[at:])

@@ -8,7 +8,7 @@ from typing import Any
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import Graph, Parameter
 from linkwright.nodes.options import NodeOptions, create_node, starting
-from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, text_at
+from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, read_description
 
 _TEXTS = ("world", "file", "topic", "string", "param", "name")
 _NUMBERS = ("x", "y", "z", "R", "P", "Y")
@@ -49,7 +49,7 @@ class Create(EntitySpawner):
         elif "string" in source:
             self._spawn(source["string"])
         elif "file" in source:
-            self._spawn(text_at(source["file"], environment))
+            self._spawn(read_description(source["file"], environment))
         elif "param" in source:
             self._spawn(self._parameter(source["param"]))
         else:
@@ -67,13 +67,13 @@ class Create(EntitySpawner):
             return
 
         def name_and_spawn(names: list[str]) -> None:
-            self._entity = _renamed(self._entity, names)
+            self._entity = _with_free_name(self._entity, names)
             super(Create, self)._spawn(text)
 
         self._ask_for_names(name_and_spawn)
 
 
-def _renamed(entity: Entity, names: Sequence[str]) -> Entity:
+def _with_free_name(entity: Entity, names: Sequence[str]) -> Entity:
     """Return the entity with a free name, numbered as gz numbers it."""
     name, number = entity.name, 0
     while name in names:

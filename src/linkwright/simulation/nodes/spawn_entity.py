@@ -10,7 +10,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Graph
 from linkwright.messages import get_service
 from linkwright.nodes.options import NodeOptions, create_node, starting
-from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, text_at, text_of_stdin
+from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, read_description, text_of_stdin
 
 
 class SpawnEntity(EntitySpawner):
@@ -55,9 +55,9 @@ class SpawnEntity(EntitySpawner):
         if wanted.topic is not None:
             self._wait_for(wanted.topic)
         elif wanted.file is not None:
-            self._spawn(text_at(wanted.file, self._environment))
+            self._spawn(read_description(wanted.file, self._environment))
         elif wanted.database is not None:
-            self._spawn(text_at(f"model://{wanted.database}", self._environment))
+            self._spawn(read_description(f"model://{wanted.database}", self._environment))
         else:
             self._spawn(text_of_stdin())
 

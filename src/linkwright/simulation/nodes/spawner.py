@@ -156,7 +156,7 @@ class EntitySpawner(SimulatorClient):
         self._end(0)
 
 
-def text_at(address: str, environment: Mapping[str, str]) -> str:
+def read_description(address: str, environment: Mapping[str, str]) -> str:
     """Read the description at a path or URI (``file://``, ``package://``, ``model://``), or of a model on Fuel.
 
     Args:

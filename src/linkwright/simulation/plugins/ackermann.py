@@ -103,7 +103,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
     def _radius_of(self, joint: str) -> float:
         radius = self.simulation.wheel_radius(self.simulation.scene.joints[joint].child)
         if radius is None:
-            raise self.refused(
+            raise self.parameter_error(
                 phrase(
                     "plugin '{plugin}': the wheel on '{joint}' has no collision that is round",
                     plugin=self.place.name,
@@ -124,7 +124,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
             [(a + b) / 2.0 for a, b in zip(back_left, back_right, strict=True)],
         )
         if not (self._separation > 0.0 and self._base > 0.0):
-            raise self.refused(phrase("plugin '{plugin}': its wheels are in one place", plugin=self.place.name))
+            raise self.parameter_error(phrase("plugin '{plugin}': its wheels are in one place", plugin=self.place.name))
 
     def _commanded(self, twist: Any) -> None:
         parameters = self.parameters

@@ -15,7 +15,7 @@ from linkwright.graph.stepped.exchange import Exchange
 _HIDDEN = "/_gz"
 
 
-def gz_side(topic: str) -> str:
+def hidden_gz_topic(topic: str) -> str:
     """Return the hidden name under which a gz topic has its own type; both names are absolute."""
     return _HIDDEN + topic
 
@@ -73,4 +73,8 @@ class BridgedTopics:
             for remote_endpoint in self._graph.remote_endpoints()
             if remote_endpoint.kind is EndpointKind.PUBLISHER
         }
-        return [topic for topic in topics if gz_side(topic) in outside or self._graph.bus.publishers(gz_side(topic))]
+        return [
+            topic
+            for topic in topics
+            if hidden_gz_topic(topic) in outside or self._graph.bus.publishers(hidden_gz_topic(topic))
+        ]

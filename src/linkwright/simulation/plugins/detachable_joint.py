@@ -57,7 +57,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         self.node.subscribe("std_msgs/msg/Empty", parameters.attach_topic or f"{begin}/attach", self._hold)
         if self._is_wanted and self._found_child():
             self._attach()
-        self.every(_LOOKS, self._look)
+        self.every(_LOOKS, self._attach_if_found)
 
     def reset(self) -> None:
         """Restore the initial state, attached or detached."""
@@ -81,12 +81,12 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
     def _hold(self, _: Any) -> None:
         if not self._is_attached:
             self._is_wanted = True
-            self._look()
+            self._attach_if_found()
 
     def _let_go(self, _: Any) -> None:
         self._detach()
 
-    def _look(self) -> None:
+    def _attach_if_found(self) -> None:
         """Attach the child, if requested, once it is in the world, or again after it was replaced."""
         if self._is_attached and not self.simulation.scene.is_welded(self._parent, self._child):
             self._is_attached, self._is_wanted = False, True

@@ -33,7 +33,7 @@ from linkwright.simulation.plugins.gz_drive import (
     MOTOR_GAIN,
     DriveCommands,
     GzDriveParameters,
-    connected,
+    connect_drive,
 )
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
@@ -111,9 +111,9 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
                 left=len(left),
                 right=len(right),
             )
-            raise self.refused(message)
+            raise self.parameter_error(message)
         if any(not (separation > 0.0 and radius > 0.0) for separation, radius in sizes):
-            raise self.refused(
+            raise self.parameter_error(
                 phrase("plugin '{plugin}': distance and size of wheels must be positive", plugin=self.place.name)
             )
         pairs = []
@@ -172,8 +172,8 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         parameters, node = self.parameters, self.node
         count = max(len(parameters.left_joint), len(parameters.right_joint))
         separations, diameters = (
-            _as_many(parameters.wheel_separation, count),
-            _as_many(parameters.wheel_diameter, count),
+            _one_per_pair(parameters.wheel_separation, count),
+            _one_per_pair(parameters.wheel_diameter, count),
         )
         sizes = [(a, b / 2.0) for a, b in zip(separations, diameters, strict=True)]
         self._fit_wheels(parameters.left_joint, parameters.right_joint, sizes, parameters.max_wheel_torque)
@@ -239,7 +239,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
                 inf if parameters.max_wheel_acceleration <= 0 else parameters.max_wheel_acceleration * self._interval
             )
             change = greatest / pair.drive.left_radius
-            self._turn(number, _nearer(now[0], wanted[0], change), _nearer(now[1], wanted[1], change))
+            self._turn(number, _step_towards(now[0], wanted[0], change), _step_towards(now[1], wanted[1], change))
 
     def _turn(self, number: int, left: float, right: float) -> None:
         """Set the velocity of a pair of wheels, in rad/s."""
@@ -271,7 +271,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         sizes = [(parameters.wheel_separation, parameters.wheel_radius)] * count
         self._fit_wheels(parameters.left_joint, parameters.right_joint, sizes, GZ_TORQUE)
         self._commands = DriveCommands(parameters)
-        self._topics = connected(self, parameters, self._commands)
+        self._topics = connect_drive(self, parameters, self._commands)
         self.node.subscribe("std_msgs/msg/Bool", f"/model/{self.place.path}/enable", self._commands.enable)
         self.every(GZ_RATE, self._drive)
         self.every(parameters.odom_publish_frequency, self._publish)
@@ -289,7 +289,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
 
     def _drive(self) -> None:
         self._measure()
-        forward, _, angular = self._commands.follow()
+        forward, _, angular = self._commands.next_velocity()
         self._now = (forward, angular)
         self._turn_wheels()
 
@@ -301,11 +301,11 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         self._topics.publish(self.stamp(), self._place.transform, forward, 0.0, angular)
 
 
-def _nearer(now: float, to: float, greatest: float) -> float:
+def _step_towards(now: float, to: float, greatest: float) -> float:
     """Return a value moved towards another one, by no more than the maximum change."""
     return min(max(to, now - greatest), now + greatest)
 
 
-def _as_many(values: tuple[float, ...], count: int) -> tuple[float, ...]:
+def _one_per_pair(values: tuple[float, ...], count: int) -> tuple[float, ...]:
     """Return one value for each pair; the last value is repeated where some are missing."""
     return (*values, *(values[-1:] * count))[:count]

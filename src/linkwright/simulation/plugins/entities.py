@@ -137,7 +137,7 @@ def _nothing(name: str, known: Collection[str]) -> LinkwrightError:
     return LinkwrightError(Diagnostic("SIM141", message, hint=did_you_mean(name, known)))
 
 
-def answered(response: Any, work: Callable[[], str]) -> Any:
+def fill_response(response: Any, work: Callable[[], str]) -> Any:
     """Do the work, and return the response with `success` and `status_message`, the reason for a failure."""
     try:
         response.success, response.status_message = True, work()
@@ -155,11 +155,11 @@ def _answered_without_text(
         response.success = True
     except LinkwrightError as error:
         response.success = False
-        log(refused(service, error))
+        log(refusal_text(service, error))
     return response
 
 
-def refused(service: str, error: LinkwrightError) -> Phrase:
+def refusal_text(service: str, error: LinkwrightError) -> Phrase:
     """Return the reason for refusing a request as one text."""
     finding = error.diagnostics[0]
     if finding.hint:

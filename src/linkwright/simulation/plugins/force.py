@@ -42,7 +42,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         parameters = self.parameters
         self._link = self.link(parameters.link_name)
         if parameters.force_frame not in ("world", "link"):
-            raise self.refused(
+            raise self.parameter_error(
                 phrase("plugin '{plugin}': <force_frame> is either 'world' or 'link'", plugin=self.place.name)
             )
         self.simulation.keep_awake(self._link)

@@ -93,7 +93,7 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
                 simulation.link_velocity(self._reference),
             )
             pose = compose(invert(frame), pose)
-            turned = _turned_on if self.gazebo_mistakes else _turned_back
+            turned = _rotated_by_frame if self.gazebo_mistakes else _in_frame_axes
             linear, angular = turned(frame, linear - base_linear), turned(frame, angular - base_angular)
         x, y, z = (a + b for a, b in zip(pose[:3], parameters.xyz_offset, strict=True))
         moved = (x, y, z, *quaternion_multiply(self._turn, pose[3:]))
@@ -138,7 +138,7 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         pose = compose(simulation.model_pose(self.place.path), self._offset)
         linear, angular = simulation.link_velocity(self.first_link)
         if parameters.dimensions == 3:
-            linear, angular = _turned_back(pose, linear), _turned_back(pose, angular)
+            linear, angular = _in_frame_axes(pose, linear), _in_frame_axes(pose, angular)
         else:
             forward, sideways, yaw_rate = planar_velocity(pose, linear, angular)
             linear, angular = np.array((forward, sideways, 0.0)), np.array((0.0, 0.0, yaw_rate))
@@ -150,13 +150,13 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         self._transforms.publish(transform_message(header, self._child, pose))
 
 
-def _turned_back(frame: Transform, vector: Array) -> Array:
+def _in_frame_axes(frame: Transform, vector: Array) -> Array:
     """Express a vector given in the axes of the world in the axes of a frame."""
     x, y, z = vector
     return np.array(rotate(quaternion_inverse(frame[3:]), (float(x), float(y), float(z))))
 
 
-def _turned_on(frame: Transform, vector: Array) -> Array:
+def _rotated_by_frame(frame: Transform, vector: Array) -> Array:
     """Rotate a vector by the orientation of a frame."""
     x, y, z = vector
     return np.array(rotate(frame[3:], (float(x), float(y), float(z))))

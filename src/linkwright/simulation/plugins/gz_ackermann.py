@@ -19,7 +19,7 @@ from linkwright.simulation.plugins.gz_drive import (
     MOTOR_GAIN,
     DriveCommands,
     GzDriveParameters,
-    connected,
+    connect_drive,
 )
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
@@ -67,7 +67,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         parameters, simulation = self.parameters, self.simulation
         sizes = (parameters.wheel_separation, parameters.wheel_base, parameters.wheel_radius)
         if not (min(sizes) > 0.0 and parameters.left_joint and parameters.right_joint) and not parameters.steering_only:
-            raise self.refused(
+            raise self.parameter_error(
                 phrase("plugin '{plugin}' needs wheel joints and positive dimensions", plugin=self.place.name)
             )
         sides = (parameters.left_joint, parameters.right_joint)
@@ -95,7 +95,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
             self._listen_to_angles()
             self.every(GZ_RATE, self._steer_only)
             return
-        self._topics = connected(self, self._with_topic(), self._commands)
+        self._topics = connect_drive(self, self._with_topic(), self._commands)
         self.every(GZ_RATE, self._drive)
         self.every(parameters.odom_publish_frequency, self._publish)
 
@@ -139,7 +139,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         """Drive and steer as commanded; the inner wheels turn more slowly and are steered further."""
         self._measure()
         parameters = self.parameters
-        forward, _, angular = self._commands.follow()
+        forward, _, angular = self._commands.next_velocity()
         curvature = self._curvature(forward, angular)
         half = parameters.wheel_separation / 2.0 * curvature
         self._turn_wheels(forward * (1.0 - half), forward * (1.0 + half))

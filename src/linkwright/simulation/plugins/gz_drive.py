@@ -58,7 +58,7 @@ class DriveCommands:
         """Take over the velocity of other commands with the same limits."""
         self.is_enabled, self._wanted, self._limiters = before.is_enabled, before._wanted, before._limiters
 
-    def take(self, twist: Any) -> None:
+    def set_command(self, twist: Any) -> None:
         """Set the command from a ``geometry_msgs/msg/Twist``."""
         if self.is_enabled:
             self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
@@ -74,14 +74,16 @@ class DriveCommands:
         if not self.is_enabled:
             self.rest()
 
-    def follow(self) -> tuple[float, float, float]:
+    def next_velocity(self) -> tuple[float, float, float]:
         """Return the next velocity within the limits; call this `GZ_RATE` times per simulated second."""
         pairs = zip(self._limiters, self._wanted, strict=True)
         forward, sideways, angular = (limiter.follow(wanted, 1.0 / GZ_RATE) for limiter, wanted in pairs)
         return forward, sideways, angular
 
 
-def connected(plugin: SimulatedPlugin[Any], parameters: GzDriveParameters, commands: DriveCommands) -> OdometryTopics:
+def connect_drive(
+    plugin: SimulatedPlugin[Any], parameters: GzDriveParameters, commands: DriveCommands
+) -> OdometryTopics:
     """Create the odometry topics of a drive, subscribe to its commands, and return the topics."""
     model, node = plugin.place.path, plugin.node
     frame = parameters.frame_id or f"{model}/odom"
@@ -93,6 +95,11 @@ def connected(plugin: SimulatedPlugin[Any], parameters: GzDriveParameters, comma
     topic = parameters.topic or f"/model/{model}/cmd_vel"
     commander = node.commander(commands.rest)
     node.subscribe(
-        "geometry_msgs/msg/Twist", topic, commands.take, usual="/cmd_vel", commander=commander, rest=commands.rest
+        "geometry_msgs/msg/Twist",
+        topic,
+        commands.set_command,
+        usual="/cmd_vel",
+        commander=commander,
+        rest=commands.rest,
     )
     return OdometryTopics(frame, child, odometry, transforms)

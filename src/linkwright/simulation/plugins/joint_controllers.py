@@ -137,7 +137,7 @@ class GzJointPosition(_JointController[PositionParameters]):
         """Find the joints, and hold them at the initial position."""
         parameters, simulation = self.parameters, self.simulation
         if parameters.joint_index:
-            raise self.refused(
+            raise self.parameter_error(
                 phrase("plugin '{plugin}': only the first axis of a joint is simulated", plugin=self.place.name)
             )
         self._find_joints()

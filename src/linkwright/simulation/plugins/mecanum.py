@@ -18,7 +18,7 @@ from linkwright.simulation.plugins.gz_drive import (
     MOTOR_GAIN,
     DriveCommands,
     GzDriveParameters,
-    connected,
+    connect_drive,
 )
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.planar_move import PlanarDrive
@@ -52,10 +52,10 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         """
         parameters, simulation = self.parameters, self.simulation
         if not (min(parameters.wheel_separation, parameters.wheelbase) > 0.0 and parameters.wheel_radius > 0.0):
-            raise self.refused(
+            raise self.parameter_error(
                 phrase("plugin '{plugin}': distance and size of wheels must be positive", plugin=self.place.name)
             )
-        self.be_free()
+        self.require_free_model()
         corners = (
             parameters.front_left_joint,
             parameters.front_right_joint,
@@ -73,7 +73,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
             (parameters.wheel_separation + parameters.wheelbase) / 2.0, parameters.wheel_radius
         )
         self._commands = DriveCommands(parameters)
-        self._topics = connected(self, parameters, self._commands)
+        self._topics = connect_drive(self, parameters, self._commands)
         self._begin()
         self.every(GZ_RATE, self._drive)
         self.every(0.0, self._move)
@@ -96,7 +96,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         self._commands.resume(before._commands)
 
     def _drive(self) -> None:
-        self._turn_wheels(self._commands.follow())
+        self._turn_wheels(self._commands.next_velocity())
 
     def _turn_wheels(self, velocity: tuple[float, float, float]) -> None:
         for motors, speed in zip(self._motors, self._drive_train.wheel_speeds(*velocity), strict=True):

@@ -76,7 +76,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         """
         parameters = self.parameters
         if parameters.motor_type != "velocity":
-            raise self.refused(
+            raise self.parameter_error(
                 phrase("plugin '{plugin}': <motorType> is 'velocity' here and nothing else", plugin=self.place.name)
             )
         self._link = self.link(parameters.link_name)
@@ -194,7 +194,9 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
             self._joints.append(joint)
         allocation = np.array(columns).T
         if len(rotors) < 4 or np.linalg.matrix_rank(allocation) < 4:
-            raise self.refused(phrase("plugin '{plugin}': its rotors cannot hold the model", plugin=self.place.name))
+            raise self.parameter_error(
+                phrase("plugin '{plugin}': its rotors cannot hold the model", plugin=self.place.name)
+            )
         self._mass, inertia = self._inertial()
         inertias = np.eye(4)
         inertias[:3, :3] = inertia
@@ -208,7 +210,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
             return float(_text(rotor, tag))
         except ValueError as error:
             message = phrase("plugin '{plugin}': a <rotor> has no number in <{tag}>", plugin=self.place.name, tag=tag)
-            raise self.refused(message) from error
+            raise self.parameter_error(message) from error
 
     def _inertial(self) -> tuple[float, Array]:
         """Return the model's mass in kg, and its inertia tensor in kg m2.

@@ -14,7 +14,7 @@ from linkwright.graph.qos.profile import QoSProfile
 from linkwright.graph.stepped.calls import Calls
 from linkwright.graph.stepped.exchange import Exchange
 from linkwright.graph.stepped.node import Output, SteppedNode
-from linkwright.simulation.plugins.bridged import BridgedTopics, gz_side
+from linkwright.simulation.plugins.bridged import BridgedTopics, hidden_gz_topic
 from linkwright.simulation.plugins.ros_element import overridden
 from linkwright.xmltree import Element
 
@@ -94,14 +94,14 @@ class PluginNode(SteppedNode):
         """Subscribe to a topic, or to its hidden name while a bridge offers it under another type."""
         bridged = self._bridged
         if bridged is None or bridged.has(topic):
-            listen(topic if bridged is None else gz_side(topic))
+            listen(topic if bridged is None else hidden_gz_topic(topic))
             return
         subscription = listen(topic)
 
         def move() -> None:
             self._endpoints.remove(subscription)
             subscription.destroy()
-            listen(gz_side(topic))
+            listen(hidden_gz_topic(topic))
 
         bridged.notify(topic, move)
         self._forgetting.append(partial(bridged.forget, topic, move))

@@ -15,7 +15,7 @@ from linkwright.simulation.plugins.plugin import PlacedSensor, PluginPlace
 from linkwright.simulation.plugins.registry import needs_nothing
 
 
-def of_world(world: World, systems: Sequence[Plugin] = ()) -> Iterator[PluginPlace]:
+def world_plugins(world: World, systems: Sequence[Plugin] = ()) -> Iterator[PluginPlace]:
     """Yield the plugins of a world itself.
 
     Args:
@@ -26,7 +26,7 @@ def of_world(world: World, systems: Sequence[Plugin] = ()) -> Iterator[PluginPla
         yield PluginPlace(plugin.name or plugin.filename, plugin, world, None, "", None)
 
 
-def of_model(world: World, model: Model, path: str) -> Iterator[PluginPlace]:
+def model_plugins(world: World, model: Model, path: str) -> Iterator[PluginPlace]:
     """Yield the plugins of a model and of its sensors, and its sensors without plugins.
 
     The plugins and sensors of nested models follow.

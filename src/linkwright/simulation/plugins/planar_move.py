@@ -43,14 +43,14 @@ class PlanarMoveParameters:
 class PlanarDrive(SimulatedPlugin[P], Generic[P]):
     """Sets the velocity of a model in its horizontal plane."""
 
-    def be_free(self) -> None:
+    def require_free_model(self) -> None:
         """Check that the model can move, and keep it awake.
 
         Raises:
             LinkwrightError: SIM160, the model is fixed to the world.
         """
         if not self.simulation.moves_freely(self.place.path):
-            raise self.refused(
+            raise self.parameter_error(
                 phrase("plugin '{plugin}' cannot move a model that is fixed to the world", plugin=self.place.name)
             )
         self.simulation.keep_awake(self.first_link)
@@ -77,7 +77,7 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
             LinkwrightError: SIM160, the model is fixed to the world.
         """
         parameters, node = self.parameters, self.node
-        self.be_free()
+        self.require_free_model()
         self._wanted = (0.0, 0.0, 0.0)
         odometry = (
             node.publisher("nav_msgs/msg/Odometry", parameters.odometry_topic, 1) if parameters.publish_odom else None

@@ -203,7 +203,7 @@ class SimulatedPlugin(Generic[P]):
     def every(self, rate: float, function: Callable[[], None]) -> None:
         """Register a function to be called `rate` times per simulated second; 0 means after each step."""
         period = round(NANOSECONDS_PER_SECOND / rate) if rate > 0 else 0
-        self._tasks.append(self.simulation.call_every(period, partial(self.node.calls.make, function)))
+        self._tasks.append(self.simulation.call_every(period, partial(self.node.calls.call, function)))
 
     def stamp(self) -> Time:
         """Return the simulated time, for headers."""
@@ -231,7 +231,7 @@ class SimulatedPlugin(Generic[P]):
         top, _, _ = self.place.path.partition(SEPARATOR)
         return self.simulation.scene.models[top].structure.links[0].link.name
 
-    def refused(self, message: Phrase) -> LinkwrightError:
+    def parameter_error(self, message: Phrase) -> LinkwrightError:
         """Return the error (SIM160) to raise in `start` if the parameters contradict each other or the model."""
         element = self.place.element
         if element is None:

@@ -17,7 +17,7 @@ from linkwright.messages import Vector3
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.worlds import physics_of
-from linkwright.simulation.plugins.entities import Entities, answered, numbers, pose_message
+from linkwright.simulation.plugins.entities import Entities, fill_response, numbers, pose_message
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.scene.bodies import set_first
@@ -60,7 +60,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             response.is_static = model.static
             return "GetModelProperties: got properties"
 
-        return answered(response, read)
+        return fill_response(response, read)
 
     def _link(self, request: Any, response: Any) -> Any:
         def read() -> str:
@@ -74,7 +74,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             response.ixx, response.iyy, response.izz = body.inertia.tolist()
             return "GetLinkProperties: got properties"
 
-        return answered(response, read)
+        return fill_response(response, read)
 
     def _joint(self, request: Any, response: Any) -> Any:
         def read() -> str:
@@ -87,7 +87,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
                 response.damping = [float(simulation.model.joint(placed.name).damping[0])]
             return "GetJointProperties: got properties"
 
-        return answered(response, read)
+        return fill_response(response, read)
 
     def _set_link(self, request: Any, response: Any) -> Any:
         def put() -> str:
@@ -102,7 +102,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             self.simulation.set_altered()
             return "SetLinkProperties: properties set"
 
-        return answered(response, put)
+        return fill_response(response, put)
 
     def _set_joint(self, request: Any, response: Any) -> Any:
         """Set the damping and the limits of the first axis.
@@ -124,7 +124,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             self.simulation.set_altered()
             return "SetJointProperties: properties set"
 
-        return answered(response, put)
+        return fill_response(response, put)
 
     def _physics(self, _: Any, response: Any) -> Any:
         self.simulation.refresh()

@@ -11,7 +11,7 @@ from typing import Any
 
 from linkwright.messages import get_message
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.simulation.plugins.entities import Entities, answered
+from linkwright.simulation.plugins.entities import Entities, fill_response
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
@@ -70,4 +70,4 @@ class ClassicState(SimulatedPlugin[StateParameters]):
                 self.simulation.set_joint_position(joint, float(position))
             return "set_joint_positions: success"
 
-        return answered(response, put)
+        return fill_response(response, put)

@@ -35,7 +35,7 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         Raises:
             LinkwrightError: SIM160, the model is fixed to the world.
         """
-        self.be_free()
+        self.require_free_model()
         self.reset()
         topic = self.parameters.topic or f"/model/{self.place.path}/cmd_vel"
         commander = self.node.commander(self._rest)

@@ -74,7 +74,7 @@ class MovableGeoms:
         moved = (poses != self._poses).any(axis=1) | (self._since > now)  # simulated time may have restarted
         self._poses = poses
         self._since[moved] = now
-        self._hollow |= self._around(origin)
+        self._hollow |= self._contain_point(origin)
         rests = (now - self._since >= _REST) & ~self._hollow
         if (rests == self._rests).all():
             return False
@@ -88,7 +88,7 @@ class MovableGeoms:
         Returns:
             For each geom the corners of its bounding box: to the right, down and ahead in m, shape (8, 3).
         """
-        data, chosen = self._simulation.data, np.flatnonzero(~(self._rests | self._around(view.origin)))
+        data, chosen = self._simulation.data, np.flatnonzero(~(self._rests | self._contain_point(view.origin)))
         geoms = self._geoms[chosen]
         turned = np.einsum("gij,gcj->gci", data.geom_xmat[geoms].reshape(-1, 3, 3), self._corners[chosen])
         placed = (turned + (data.geom_xpos[geoms] - view.origin)[:, None, :]) @ view.axes
@@ -98,7 +98,7 @@ class MovableGeoms:
             outside |= (along - least * ahead < -blur).all(axis=1) | (along - greatest * ahead > blur).all(axis=1)
         return {int(geoms[each]): placed[each] for each in np.flatnonzero(~outside)}
 
-    def _around(self, origin: Array) -> Any:
+    def _contain_point(self, origin: Array) -> Any:
         """Return whether the bounding boxes of the geoms contain a point: shape (geoms,)."""
         model, data, geoms = self._simulation.model, self._simulation.data, self._geoms
         inside = np.einsum("ijk,ij->ik", data.geom_xmat[geoms].reshape(-1, 3, 3), data.geom_xpos[geoms] - origin)

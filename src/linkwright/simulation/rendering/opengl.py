@@ -108,9 +108,9 @@ class OpenGlRenderer:
         if optics.is_pinhole:
             return RenderedImage(colour, depth, geoms)
         return RenderedImage(
-            None if colour is None else _warped(colour, optics),
-            None if depth is None else _picked(depth, optics),
-            None if geoms is None else _picked(geoms, optics),
+            None if colour is None else _resample_interpolated(colour, optics),
+            None if depth is None else _resample_nearest(depth, optics),
+            None if geoms is None else _resample_nearest(geoms, optics),
         )
 
     def close(self) -> None:
@@ -193,7 +193,7 @@ class OpenGlRenderer:
         model, axes = simulation.model, axes_of(pose)
         model.vis.map.zfar = hole.far  # zfar limits the extent of infinite planes
         groups = model.geom_group.copy()
-        model.geom_group[_beside(simulation, hole, np.array(pose[:3]), axes)] = COLLISION_GROUP
+        model.geom_group[_outside_image(simulation, hole, np.array(pose[:3]), axes)] = COLLISION_GROUP
         catches = mujoco.mjtCatBit.mjCAT_ALL.value
         try:
             mujoco.mjv_updateScene(model, simulation.data, self._option, None, self._view, catches, self._scene)
@@ -318,7 +318,7 @@ class OpenGlRenderer:
         return named
 
 
-def _beside(simulation: Simulation, hole: Optics, origin: Array, axes: Array) -> Any:
+def _outside_image(simulation: Simulation, hole: Optics, origin: Array, axes: Array) -> Any:
     """Return which geoms are outside the image, shape (geoms,).
 
     OpenGL would process each of their vertices.
@@ -351,7 +351,7 @@ def _context_class(backend: str) -> Any:
             os.environ.pop("PYOPENGL_PLATFORM", None)
 
 
-def _picked(pixels: Pixels, optics: Optics) -> Pixels:
+def _resample_nearest(pixels: Pixels, optics: Optics) -> Pixels:
     """Resample a pinhole image for a lens with nearest-neighbour interpolation."""
     column, row = optics.sources
     column = np.clip(np.round(column).astype(int), 0, optics.pinhole.width - 1)
@@ -360,7 +360,7 @@ def _picked(pixels: Pixels, optics: Optics) -> Pixels:
     return picked
 
 
-def _warped(pixels: Pixels, optics: Optics) -> Pixels:
+def _resample_interpolated(pixels: Pixels, optics: Optics) -> Pixels:
     """Resample the colours of a pinhole image for a lens with interpolation."""
     column = np.clip(optics.sources[0], 0, optics.pinhole.width - 1.001)
     row = np.clip(optics.sources[1], 0, optics.pinhole.height - 1.001)

@@ -73,7 +73,7 @@ class BodyWriter:
         """Set the mass properties of a body from its link; 1 kg and 1 kg m2 if it has none, as in SDF."""
         inertial = link.inertial or _USUAL_INERTIAL
         if inertial.auto:
-            inertial = _worked_out(link, frames) or _USUAL_INERTIAL
+            inertial = _inertial_from_shapes(link, frames) or _USUAL_INERTIAL
         placed = transform_of(inertial.pose.pose)
         turn = rotation_matrix(placed[3:])
         about = inertial.inertia
@@ -168,7 +168,7 @@ class BodyWriter:
                 geom.group = VISUAL_GROUP
                 geom.contype = geom.conaffinity = 0
                 if visual.material is not None:
-                    geom.material = self._meshes.worn(visual) if self._meshes.has_room_for_image(geom) else ""
+                    geom.material = self._meshes.material_of(visual) if self._meshes.has_room_for_image(geom) else ""
                 if visual.material is not None or not geom.material:
                     geom.rgba = _colour(visual, _WHITE if geom.material else _GREY)
 
@@ -212,7 +212,7 @@ class BodyWriter:
         self.diagnostics.append(Diagnostic(code, message, severity=Severity.WARNING, span=span, source=source))
 
 
-def _worked_out(link: Link, frames: Frames) -> Inertial | None:
+def _inertial_from_shapes(link: Link, frames: Frames) -> Inertial | None:
     """Return a link's mass properties computed from its collisions; None if they have no volume."""
     assert link.inertial is not None
     parts = []

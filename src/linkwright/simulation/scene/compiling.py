@@ -44,7 +44,7 @@ def _links_in(model: Model) -> int:
     return len(model.links) + sum(_links_in(inner) for inner in model.models)
 
 
-def compiled(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, Any]:
+def compile_scene(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, Any]:
     """Compile a scene to MuJoCo's model and data.
 
     Args:
@@ -88,13 +88,13 @@ def refused_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
 def _refusal(world: World, finder: ResourceFinder) -> Phrase | None:
     """Return MuJoCo's message if it refuses a world; None if it accepts the world."""
     try:
-        compiled(Scene(world, MeshLibrary(finder)))
+        compile_scene(Scene(world, MeshLibrary(finder)))
     except LinkwrightError as error:
         return error.diagnostics[0].message
     return None
 
 
-def whole_step(step: float, world: World) -> int:
+def step_in_nanoseconds(step: float, world: World) -> int:
     """Return a time step given in s as nanoseconds, after checking it.
 
     Raises:

@@ -124,7 +124,7 @@ def connections_of(world: World) -> Connections:
         if not {joint.parent, joint.child} <= there or not {joint.parent, joint.child} & moving:
             continue
         can_hang = len(_models(joint)) > 1 and joint.joint.type != "gearbox"  # links of one model have their own order
-        ways = (joint, _turned_round(joint)) if can_hang else ()
+        ways = (joint, _reversed_joint(joint)) if can_hang else ()
         fit = (way for way in ways if way.child in free and not is_below(holding, way.child, way.parent))
         hung = next(fit, None)
         if hung is None:
@@ -156,7 +156,7 @@ def _placed(world: World, frames: Frames) -> list[PlacedJoint]:
     return list(found.values())
 
 
-def _turned_round(joint: PlacedJoint) -> PlacedJoint:
+def _reversed_joint(joint: PlacedJoint) -> PlacedJoint:
     """Return a joint with its parent and child exchanged; positions keep their signs."""
     axes = tuple((axis, (-x, -y, -z)) for axis, (x, y, z) in reversed(joint.axes))
     return replace(joint, parent=joint.child, child=joint.parent, axes=axes)

@@ -16,14 +16,14 @@ _STEPS = 4.0
 """The time constant of joint couplings, in steps."""
 
 
-def threaded(spec: Any, joint: PlacedJoint) -> Iterator[Any]:
+def screw_coupling(spec: Any, joint: PlacedJoint) -> Iterator[Any]:
     """Yield the coupling of a screw joint's translation with its rotation, by its pitch in m per revolution."""
     if joint.joint.type == "screw" and joint.axes:
         pitch = joint.joint.thread_pitch or 0.0
         yield _coupled(spec, joint.name + THREAD, joint.name, pitch / tau)
 
 
-def geared(spec: Any, gear: PlacedJoint, joints: Iterable[PlacedJoint]) -> Iterator[Any]:
+def gearbox_coupling(spec: Any, gear: PlacedJoint, joints: Iterable[PlacedJoint]) -> Iterator[Any]:
     """Yield the coupling of a gearbox.
 
     The child turns ``-gearbox_ratio`` times as far as the parent (SDFormat).

@@ -148,10 +148,10 @@ def _hips(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
     path = meshes.file(actor.skin.filename, actor.element)
     if path is None:
         return None
-    return skeleton_begins(path) if path.suffix.lower() == ".dae" else (0.0, 0.0, 0.0)
+    return skeleton_origin(path) if path.suffix.lower() == ".dae" else (0.0, 0.0, 0.0)
 
 
-def skeleton_begins(path: Path) -> Vector3:
+def skeleton_origin(path: Path) -> Vector3:
     """Return the origin of the first joint of a COLLADA file's skeleton, in its bind pose, in m."""
     try:
         root = parse_file(path).root

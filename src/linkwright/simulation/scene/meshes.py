@@ -23,7 +23,7 @@ from linkwright.sdf.resources import Missing, ResourceFinder
 from linkwright.sdf.shapes import Cone, Heightmap, Mesh, Plane, Polyline, Shape
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.shapes import cone_corners, set_pose
-from linkwright.simulation.scene.wrapping import wrapped
+from linkwright.simulation.scene.wrapping import textured_mesh
 from linkwright.xmltree import Element
 
 _MOST_PIECES = 300
@@ -59,7 +59,7 @@ class MeshLibrary:
         self._reported: set[str] = set()
         self._mapped: set[str] = set()  # meshes of the specification that have texture coordinates
 
-    def look_in(self, finder: ResourceFinder) -> None:
+    def set_finder(self, finder: ResourceFinder) -> None:
         """Set the finder of files; missing files are searched for again."""
         self._finder = finder
         self._files = {key: path for key, path in self._files.items() if path is not None}
@@ -154,10 +154,10 @@ class MeshLibrary:
         """Add a mesh asset, with texture coordinates if there are any, and return its name."""
         name = f"mesh {len(self.spec.meshes)}"
         mesh = self.spec.add_mesh(name=name, inertia=load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL)
-        mesh.uservert = _flat(_four(positions))
+        mesh.uservert = _flat(_pad_to_four(positions))
         mesh.userface = _flat(faces, np.int32)
         if coordinates is not None:
-            mesh.usertexcoord = _flat(_four(coordinates))
+            mesh.usertexcoord = _flat(_pad_to_four(coordinates))
             self._mapped.add(name)
         return name
 
@@ -167,7 +167,7 @@ class MeshLibrary:
         Nothing is added for a shape that cannot be textured.
         """
         shape = visual.geometry
-        triangles = wrapped(shape) if self.worn(visual) else None
+        triangles = textured_mesh(shape) if self.material_of(visual) else None
         if triangles is None:
             return []
         key = ("wrapped", shape)
@@ -203,7 +203,7 @@ class MeshLibrary:
         """Return whether a geom is a mesh with texture coordinates."""
         return geom.meshname in self._mapped
 
-    def worn(self, visual: Visual) -> str:
+    def material_of(self, visual: Visual) -> str:
         """Return the name of MuJoCo's material with the texture of a visual; empty for none.
 
         An emissive map replaces a missing colour map.
@@ -349,7 +349,7 @@ def _area(positions: Array, faces: Any) -> float:
         return float(np.linalg.norm(np.cross(two - one, three - one), axis=1).sum() / 2)
 
 
-def _four(corners: Array) -> Array:
+def _pad_to_four(corners: Array) -> Array:
     """Return the vertices of a mesh, padded to four by repeating the last one.
 
     MuJoCo requires at least four.

@@ -20,7 +20,7 @@ from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import SECOND_AXIS, BodyWriter, hinge_anchors
 from linkwright.simulation.scene.connections import Connected, connections_of, model_of
-from linkwright.simulation.scene.couplings import geared, threaded
+from linkwright.simulation.scene.couplings import gearbox_coupling, screw_coupling
 from linkwright.simulation.scene.figures import draw, figures_of
 from linkwright.simulation.scene.meshes import MeshLibrary, changed_at
 from linkwright.simulation.scene.shapes import set_pose
@@ -232,11 +232,11 @@ class Scene:
         for held in structure.links:
             added.parts += self._mimicry(held.joint)
             if held.joint is not None and held.joint.name in self.joints:
-                added.parts += threaded(self.spec, held.joint)
+                added.parts += screw_coupling(self.spec, held.joint)
         for joint in (*structure.loops, *connected.loops):
             added.parts += self._closed(joint, poses)
             if joint.joint.type == "gearbox":
-                added.parts += geared(self.spec, joint, self._moving((name, *connected.hangs_on)))
+                added.parts += gearbox_coupling(self.spec, joint, self._moving((name, *connected.hangs_on)))
         added.parts += self._strangers(structure)
         added.parts += self._neighbours(connected)
         return added

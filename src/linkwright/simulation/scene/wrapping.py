@@ -37,7 +37,7 @@ _LEAST_AREA = 1e-15
 """The least area in m2: triangles at poles without area are left out."""
 
 
-def wrapped(shape: Shape) -> Triangles | None:
+def textured_mesh(shape: Shape) -> Triangles | None:
     """Return a shape as a mesh with texture coordinates, or None if it cannot have any.
 
     A plane has the size of its visual, and z as its normal.

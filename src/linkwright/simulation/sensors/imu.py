@@ -77,7 +77,7 @@ class ImuSensor:
         period, self._measured = (simulation.time - self._measured) * 1e-9, simulation.time
         orientation = self._mount.pose()[3:]
         into = quaternion_inverse(orientation)
-        angular, felt = self._mount.felt()
+        angular, felt = self._mount.inertial_motion()
         return Inertial(
             quaternion_multiply(quaternion_inverse(self._reference), orientation),
             self.angular_velocity_noise.on(rotate(into, angular), period),

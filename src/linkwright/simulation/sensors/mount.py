@@ -72,7 +72,7 @@ class Mount:
         """Return the vector from the origin of the link to the sensor, in the axes of the world."""
         return rotate(self.simulation.link_pose(self.link)[3:], self.offset[:3])
 
-    def felt(self) -> tuple[Vector3, Vector3]:
+    def inertial_motion(self) -> tuple[Vector3, Vector3]:
         """Return the angular velocity in rad/s and the proper acceleration in m/s2, in the axes of the world.
 
         The proper acceleration of an accelerometer at rest is the reaction to gravity, upwards.

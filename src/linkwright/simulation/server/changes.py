@@ -137,7 +137,7 @@ def check(
     """
     models = {model.name: model.model for model in simulation.scene.models.values()}
     count_links((models | {change.name: change.model for change in added}).values())
-    trial = simulation.beside(replace(world, models=(), states=()), finder)
+    trial = simulation.separate_simulation(replace(world, models=(), states=()), finder)
     add_models(trial, added)
     return trial.scene.diagnostics
 

@@ -111,7 +111,7 @@ class Runner:
         exchange, dispatcher = self._server.exchange, self._server.node.graph.dispatcher
         self._wake()
         while not self._ends:
-            self._safely(exchange.work)
+            self._safely(exchange.run_commands)
             wait = _IDLE
             if not self.paused:
                 self._safely(self._advance)
@@ -120,7 +120,7 @@ class Runner:
             self._safely(self._watch)
             exchange.deliver(dispatcher)
             if wait > 0:
-                exchange.come.wait(wait)
+                exchange.has_commands.wait(wait)
 
     def _safely(self, work: Callable[[], object]) -> None:
         """Call a function; an error is logged and pauses the simulation, which can then be reset."""

@@ -27,7 +27,7 @@ from linkwright.simulation.plugins.bridged import BridgedTopics
 from linkwright.simulation.plugins.findings import findings_of
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import parameters_from
-from linkwright.simulation.plugins.places import of_model, of_world
+from linkwright.simulation.plugins.places import model_plugins, world_plugins
 from linkwright.simulation.plugins.plugin import PluginClass, PluginPlace, SimulatedPlugin
 from linkwright.simulation.plugins.registry import (
     is_of_gz,
@@ -110,9 +110,9 @@ class SimulationServer:
         """Start the plugins of the world and of its models."""
         self.report(self.simulation.scene.diagnostics)
         self._warn_unsimulated(unsimulated(self.simulation.world))
-        self._load(_WORLD, of_world(self.simulation.world, self._options.systems), "")
+        self._load(_WORLD, world_plugins(self.simulation.world, self._options.systems), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
-            self._load(scene_model.name, of_model(self.simulation.world, scene_model.model, scene_model.name), "")
+            self._load(scene_model.name, model_plugins(self.simulation.world, scene_model.model, scene_model.name), "")
         self.report(overlaps(self.simulation))  # only now, because plugins attach models that are meant to overlap
         self._changed()
 
@@ -200,7 +200,7 @@ class SimulationServer:
         self._of_world = {model.name for model in wanted.models}
         if not alike(before.plugins, wanted.plugins):
             self._end(self._plugins.pop(_WORLD, []))
-            self._load(_WORLD, of_world(wanted, self._options.systems), "")
+            self._load(_WORLD, world_plugins(wanted, self._options.systems), "")
 
     def _exchange(self, gone: Iterable[str], added: Sequence[AddedModel]) -> None:
         """Remove models and add others.
@@ -225,7 +225,7 @@ class SimulationServer:
         self.report(simulation.scene.diagnostics[count:])
         for change in added:
             self._namespaces[change.name] = change.namespace
-            places = of_model(simulation.world, change.model, change.name)
+            places = model_plugins(simulation.world, change.model, change.name)
             continues = change.here and change.motion is not None
             self._load(change.name, places, change.namespace, before[change.name] if continues else ())
         self._changed()
@@ -262,7 +262,7 @@ class SimulationServer:
         """Restart with the initial poses, time 0, and the same random numbers."""
         self.simulation.reset()
         for plugin in self._running():
-            plugin.node.calls.make(plugin.reset)
+            plugin.node.calls.call(plugin.reset)
         for function in self.on_reset:
             function()
 
@@ -275,7 +275,7 @@ class SimulationServer:
         Raises:
             UnstableError: a value in the simulation is no longer finite.
         """
-        self.exchange.work()
+        self.exchange.run_commands()
         try:
             self.simulation.advance(duration)
         finally:
@@ -374,7 +374,7 @@ class SimulationServer:
             if same is not None:
                 plugin.resume(same)
 
-        calls.make(start)
+        calls.call(start)
         if not made:
             self._forget_node(place, node)
             node.close()
@@ -426,7 +426,7 @@ class SimulationServer:
             remappings=described.remappings,
         )
         self._node_names.add(full_name)
-        node.graph.makers[node.get_logger().name] = self.node.get_logger().name
+        node.graph.creators[node.get_logger().name] = self.node.get_logger().name
         return PluginNode(
             node, self.exchange, owned=True, qos=described.qos, usual=None, now_ns=self._now_ns, calls=calls
         )

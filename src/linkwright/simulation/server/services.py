@@ -18,10 +18,10 @@ from linkwright.sdf.frames import transform_of
 from linkwright.sdf.poses import WORLD
 from linkwright.simulation.plugins.entities import (
     Entities,
-    answered,
+    fill_response,
     in_one_line,
     numbers,
-    refused,
+    refusal_text,
     transform_in,
 )
 from linkwright.simulation.server.entities import Entity, entity_from
@@ -162,14 +162,14 @@ class Services:
                 function(name, request.xml)
             return f"SpawnEntity: Successfully spawned entity [{request.name}]"
 
-        return answered(response, spawn)
+        return fill_response(response, spawn)
 
     def _delete(self, request: Any, response: Any) -> Any:
         def delete() -> str:
             self._server.delete(request.name)
             return f"Successfully deleted entity [{request.name}]"
 
-        return answered(response, delete)
+        return fill_response(response, delete)
 
     def _list(self, _: Any, response: Any) -> Any:
         response.header = Header(Time.from_nanoseconds(self._server.simulation.time), WORLD)
@@ -197,13 +197,13 @@ class Services:
             self._wrenches.add(link, Wrench(force, torque, numbers(request.reference_point), begin, end))
             return ""
 
-        return answered(response, push)
+        return fill_response(response, push)
 
     def _let_go(self, request: Any, response: Any) -> Any:
         try:
             self._wrenches.clear(self._entities.link(request.link_name))
         except LinkwrightError as error:
-            self._server.node.get_logger().error(refused("/clear_link_wrenches", error))
+            self._server.node.get_logger().error(refusal_text("/clear_link_wrenches", error))
         return response
 
     # --- time ---------------------------------------------------------------------------------------------------------

@@ -25,7 +25,7 @@ from linkwright.speech.commands.actions import (
     Slot,
     Stop,
     Values,
-    filled,
+    fill_template,
 )
 from linkwright.speech.commands.command_set import Place
 from linkwright.speech.commands.reading import Keys
@@ -186,7 +186,7 @@ class ActionReader:
         try:
             message = find(kind)()
             at = fields
-            set_fields(message, filled(values, self._samples), expand_header_auto=True, expand_time_now=True)
+            set_fields(message, fill_template(values, self._samples), expand_header_auto=True, expand_time_now=True)
         except LinkwrightError as error:
             found = error.diagnostics[0]
             span = self._document.span(keys.node(at) or keys.node("type"))

@@ -155,7 +155,7 @@ MOTIONS = Drive, GoTo, Launch
 """Actions that replace another motion."""
 
 
-def filled(template: Any, values: Values) -> Any:
+def fill_template(template: Any, values: Values) -> Any:
     """Fill a template with the values of slots.
 
     A text that consists of one slot becomes its value; other texts have values inserted.
@@ -165,15 +165,15 @@ def filled(template: Any, values: Values) -> Any:
         values: the values of the slots.
     """
     if isinstance(template, Mapping):
-        return {key: filled(value, values) for key, value in template.items()}
+        return {key: fill_template(value, values) for key, value in template.items()}
     if isinstance(template, list):
-        return [filled(part, values) for part in template]
+        return [fill_template(part, values) for part in template]
     if not isinstance(template, str):
         return template
     for name, value in values.items():
         if template == f"{{{name}}}":
             return value
-        template = template.replace(f"{{{name}}}", shown(value))
+        template = template.replace(f"{{{name}}}", format_value(value))
     return template
 
 
@@ -182,6 +182,6 @@ def amount(given: Amount | None, values: Values) -> float | None:
     return float(values[given.name]) if isinstance(given, Slot) else given
 
 
-def shown(value: Value) -> str:
+def format_value(value: Value) -> str:
     """Format a value for a sentence or a message; numbers are rounded to thousandths."""
     return value if isinstance(value, str) else f"{round(value, 3):g}"

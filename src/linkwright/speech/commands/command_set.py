@@ -152,7 +152,7 @@ class CommandSet:
         return [template for phrases in every for name in (language, ANY) for template in phrases.get(name, ())]
 
 
-def chosen(texts: ByLanguage, language: str) -> str:
+def choose_text(texts: ByLanguage, language: str) -> str:
     """Return the text in a language, else in English, else in any language; empty if there is none."""
     for name in (language, ANY, "en"):
         if name in texts:

@@ -82,7 +82,7 @@ class EnrolledEngine(SpeechEngine):
             if spoke and not speaks:
                 heard += self._end()
         if self._activity.speaking and self._seen - self._looked >= _STEP:
-            heard += self._look()
+            heard += self._partial_result()
         return heard
 
     def finish(self) -> Sequence[Heard]:
@@ -100,7 +100,7 @@ class EnrolledEngine(SpeechEngine):
         longest = self._recogniser.longest if self._recogniser is not None else 100
         return int(_TOO_LONG * longest) + 2 * _BEFORE
 
-    def _look(self) -> list[Heard]:
+    def _partial_result(self) -> list[Heard]:
         """Return the partial result of an utterance if it has changed, otherwise an empty list."""
         self._looked = self._seen
         guess = self._guess()

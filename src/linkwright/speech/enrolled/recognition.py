@@ -61,7 +61,7 @@ class Recogniser:
         self._takes = [words.takes(name) for name in self.names]
         close = [(word, take) for word, takes in enumerate(self._takes) for take in takes]
         close += [(-1, _backwards(takes)) for takes in self._takes]
-        far = [(word, room.returns(take)) for room in rooms for word, take in close]
+        far = [(word, room.reverberate(take)) for room in rooms for word, take in close]
         self._word = np.array([word for word, _ in (*close, *far)])
         self._is_far = np.arange(len(self._word)) >= len(close)
         self._templates = Templates(tuple(take for _, take in (*close, *far)))

@@ -31,7 +31,7 @@ class Room:
     reverberation: float
     direct: float
 
-    def returns(self, take: Take) -> Take:
+    def reverberate(self, take: Take) -> Take:
         """Return a take as it would sound in this room, extended by the decay."""
         frame = HOP / RATE
         kept = 10.0 ** (-6.0 * frame / self.reverberation)

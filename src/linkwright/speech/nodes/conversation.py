@@ -19,10 +19,10 @@ from linkwright.speech.commands.actions import (
     Slot,
     Stop,
     amount,
-    filled,
-    shown,
+    fill_template,
+    format_value,
 )
-from linkwright.speech.commands.command_set import ANY, CommandSet, Understood, chosen
+from linkwright.speech.commands.command_set import ANY, CommandSet, Understood, choose_text
 from linkwright.speech.nodes.driving import Driver, Ending
 from linkwright.speech.nodes.requests import Requests
 
@@ -87,7 +87,7 @@ class Conversation:
         self._answer_in(found.language)
         if found.command.question:
             self._asked = found, text
-            self._respond(str(filled(chosen(found.command.question, self._language), found.values)))
+            self._respond(str(fill_template(choose_text(found.command.question, self._language), found.values)))
             self._patience.reset()
         else:
             self._carry_out(found, text)
@@ -109,7 +109,7 @@ class Conversation:
             if found is not None:
                 self._answer_in(found.language)
             self._report_command(stop.intent)
-            self._respond(chosen(stop.response, self._language) or text)
+            self._respond(choose_text(stop.response, self._language) or text)
 
     def rest(self, why: Phrase) -> None:
         """Stop driving because the source of the commands is lost, and say why."""
@@ -145,13 +145,13 @@ class Conversation:
             return
         values = found.values
         self._report_command(
-            " ".join([found.command.intent, *(f"{name}={shown(value)}" for name, value in values.items())])
+            " ".join([found.command.intent, *(f"{name}={format_value(value)}" for name, value in values.items())])
         )
         problem = self._done(found)
         if problem is not None:
             self.answer(problem)
         else:
-            self._respond(str(filled(chosen(found.command.response, self._language) or text, values)))
+            self._respond(str(fill_template(choose_text(found.command.response, self._language) or text, values)))
 
     def _done(self, found: Understood) -> Phrase | None:
         """Execute an action; return None, or the reason why it cannot be executed."""

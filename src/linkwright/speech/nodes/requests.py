@@ -15,7 +15,16 @@ from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.messages import get_action, get_message, get_service, set_fields
 from linkwright.packages.programs.child_python import python_command
 from linkwright.process.interruption import interrupt
-from linkwright.speech.commands.actions import CallService, GoTo, Launch, Publish, SendGoal, Values, filled, shown
+from linkwright.speech.commands.actions import (
+    CallService,
+    GoTo,
+    Launch,
+    Publish,
+    SendGoal,
+    Values,
+    fill_template,
+    format_value,
+)
 from linkwright.speech.commands.command_set import Place
 
 NAVIGATE = "nav2_msgs/action/NavigateToPose"
@@ -147,7 +156,7 @@ class Requests:
         if not goals.is_served:
             return False
         goal = get_action(action.type_name).Goal()
-        self._fill(goal, filled(action.goal, values))
+        self._fill(goal, fill_template(action.goal, values))
         goals.send(goal)
         return True
 
@@ -157,7 +166,7 @@ class Requests:
             return False
         client = self._node.create_client(get_service(action.type_name), action.name)
         request = client.srv_type.Request()
-        self._fill(request, filled(action.request, values))
+        self._fill(request, fill_template(action.request, values))
         client.call_async(request).add_done_callback(partial(self._answered, client))
         return True
 
@@ -165,13 +174,13 @@ class Requests:
         """Publish a message."""
         publisher = self._publishers[action.topic]
         message = publisher.msg_type()
-        self._fill(message, filled(action.message, values))
+        self._fill(message, fill_template(action.message, values))
         publisher.publish(message)
 
     def launch(self, action: Launch, values: Values) -> None:
         """Start a launch file in a separate process, which replaces the previous one."""
         self._end_launch()
-        words = [f"{name}:={_word(value)}" for name, value in filled(action.arguments, values).items()]
+        words = [f"{name}:={_word(value)}" for name, value in fill_template(action.arguments, values).items()]
         command = python_command(["-m", "linkwright", "launch", action.package, action.file, *words])
         self._launched = subprocess.Popen(command, stdin=subprocess.DEVNULL)  # noqa: S603 - fixed words, no shell
 
@@ -207,7 +216,7 @@ class Requests:
         if launched is None or launched.poll() is not None:
             return
         interrupt(launched)
-        self._ending = threading.Thread(target=_see_end, args=(launched,), daemon=True)
+        self._ending = threading.Thread(target=_wait_or_kill, args=(launched,), daemon=True)
         self._ending.start()
 
     def _fill(self, message: Any, values: Any) -> None:
@@ -230,10 +239,10 @@ class Requests:
 
 def _word(value: Any) -> str:
     """Return the text of a launch argument's value."""
-    return str(value).lower() if isinstance(value, bool) else shown(value)
+    return str(value).lower() if isinstance(value, bool) else format_value(value)
 
 
-def _see_end(launched: subprocess.Popen[bytes]) -> None:
+def _wait_or_kill(launched: subprocess.Popen[bytes]) -> None:
     """Wait for an interrupted launch file to end, and kill it if it does not."""
     try:
         launched.wait(_GRACE)

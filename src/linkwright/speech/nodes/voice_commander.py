@@ -158,7 +158,7 @@ class VoiceCommander(SingleNode):
 
     def _listen_to_texts(self) -> None:
         commander = Commander(self._lost)
-        callback = commander.accepting(lambda message: self._execute(message.data, by_voice=False))
+        callback = commander.tracking_callback(lambda message: self._execute(message.data, by_voice=False))
         commander.watch(self._node.create_subscription(_STRING, "voice/text_input", callback, _DEPTH))
 
     # --- listening -----------------------------------------------------------------------------------------------

@@ -70,12 +70,12 @@ def set_logger_level(name: str, level: int, detailed_error: bool = False) -> Non
 
 def get_logger_effective_level(name: str) -> LogLevel:
     """Return the level of a logger, its own or inherited."""
-    return LEVELS.effective(name)
+    return LEVELS.effective_level(name)
 
 
 def get_logger_level(name: str) -> LogLevel:
     """Return a logger's own level, or UNSET."""
-    return LEVELS.own(name)
+    return LEVELS.own_level(name)
 
 
 def get_logging_severity_from_string(log_severity: str) -> LogLevel:

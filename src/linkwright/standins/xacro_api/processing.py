@@ -19,7 +19,7 @@ from linkwright.standins.xacro_api.errors import XacroException, translated
 from linkwright.standins.xacro_api.stacks import STATE, StackExpander, StackSession, init_stacks
 from linkwright.xacro.expansion import Expansion, banner
 from linkwright.xacro.inputs import Inputs
-from linkwright.xacro.limits import room_for
+from linkwright.xacro.limits import recursion_limit_for
 from linkwright.xmltree import Document
 from linkwright.xmltree import parse as parse_text
 
@@ -236,7 +236,7 @@ def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None
     if descriptions is not None and call is not None:
         descriptions.begin(call)
     try:
-        with room_for(inputs.limits):
+        with recursion_limit_for(inputs.limits):
             expanded = StackExpander(session, session.directives, session.call).document(tree)
     except LinkwrightError as error:
         session.return_to_mistake()

@@ -71,7 +71,7 @@ class ObjectSeeker(SingleNode):
         node.create_subscription(get_message("sensor_msgs/msg/LaserScan"), "scan", self._feel, SENSOR_DATA_QOS)
         for name, language in (("", None), *((f"/{language}", language) for language in LANGUAGES)):
             for topic, follow in (("vision/go_to", False), ("vision/follow", True)):
-                callback = self._commander.accepting(partial(self._begin, language, follow))
+                callback = self._commander.tracking_callback(partial(self._begin, language, follow))
                 self._commander.watch(node.create_subscription(text, topic + name, callback, _DEPTH))
             answer_in = partial(self._describe, language or self._language)
             node.create_service("std_srvs/srv/Trigger", f"vision/describe{name}", answer_in)

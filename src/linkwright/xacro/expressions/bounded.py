@@ -42,7 +42,7 @@ HASHING = frozenset(
 """Names of functions that put all items of an argument into a table."""
 
 
-def keys(value: Any) -> Any:
+def checked_keys(value: Any) -> Any:
     """Return the value from which a set or dict can be built.
 
     This is the given value, or a list of its items if it is an iterator.

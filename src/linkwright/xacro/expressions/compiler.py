@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
-from linkwright.xacro.expressions.bounded import RefusalError, keys
+from linkwright.xacro.expressions.bounded import RefusalError, checked_keys
 from linkwright.xacro.expressions.functions import Function, bind_parameters, call, charged, cost
 from linkwright.xacro.expressions.scope import Environment
 from linkwright.xacro.expressions.yamldata import COPIED, YamlDict, YamlMapping, wrapped
@@ -258,7 +258,7 @@ class Compiler:
                 fault.hint = fault.hint or self._operand_hint(error, (node.left, a), (node.right, b))
                 raise fault from None
             if result.__class__ is not float and (steps := cost(result)):
-                env.session.budget.step(steps)
+                env.session.budget.charge_steps(steps)
             return result
 
         return binary
@@ -305,7 +305,7 @@ class Compiler:
             for test, operand in rest:
                 right = operand(env)
                 if right.__class__ is not YamlDict and (steps := cost(right)):
-                    env.session.budget.step(steps)
+                    env.session.budget.charge_steps(steps)
                 try:
                     result = test(left, right)
                 except FAILURES as error:
@@ -343,7 +343,7 @@ class Compiler:
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
             if result.__class__ in COPIED and (steps := cost(result)):
-                env.session.budget.step(steps)
+                env.session.budget.charge_steps(steps)
             return result
 
         return attribute
@@ -367,7 +367,7 @@ class Compiler:
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
             if (index.__class__ is slice or result.__class__ in COPIED) and (steps := cost(result)):
-                env.session.budget.step(steps)
+                env.session.budget.charge_steps(steps)
             return result
 
         return subscript
@@ -425,7 +425,7 @@ class Compiler:
         return self._display(node, tuple)
 
     def _set(self, node: ast.Set) -> Closure:
-        return self._display(node, lambda items: set(keys(items)))
+        return self._display(node, lambda items: set(checked_keys(items)))
 
     def _display(self, node: ast.List | ast.Tuple | ast.Set, kind: Callable[[list[Any]], Any]) -> Closure:
         items = [self._argument(item) for item in node.elts]
@@ -450,7 +450,7 @@ class Compiler:
             result: dict[Any, Any] = {}
             try:
                 for key, value in items:
-                    result.update(keys(value(env)) if key is None else {key(env): value(env)})
+                    result.update(checked_keys(value(env)) if key is None else {key(env): value(env)})
                 return charged(env.session.budget, result)
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
@@ -495,7 +495,7 @@ class Compiler:
         item, turns = self.compile(node.elt), self._turns(node.generators)
 
         def generator(env: Environment) -> Iterator[Any]:
-            env.session.budget.step(_GENERATOR)
+            env.session.budget.charge_steps(_GENERATOR)
             return (item(inner) for inner in turns(env))
 
         return generator
@@ -512,7 +512,7 @@ class Compiler:
         def run(env: Environment, depth: int) -> Iterator[Environment]:
             bind, items, conditions = loops[depth]
             for item in items(env):
-                env.session.budget.step(2 + cost(item) if item.__class__ in COPIED else 2)
+                env.session.budget.charge_steps(2 + cost(item) if item.__class__ in COPIED else 2)
                 bind(env, item)
                 if all(condition(env) for condition in conditions):
                     if depth + 1 < len(loops):

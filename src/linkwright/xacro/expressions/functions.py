@@ -13,7 +13,7 @@ from linkwright.diagnostics import phrase
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
-from linkwright.xacro.expressions.bounded import HASHING, check_codec, keys
+from linkwright.xacro.expressions.bounded import HASHING, check_codec, checked_keys
 from linkwright.xacro.expressions.scope import Environment, Local
 from linkwright.xacro.expressions.yamldata import YamlDict, YamlList, YamlMapping
 from linkwright.xacro.limits import Budget
@@ -160,7 +160,7 @@ def call(budget: Budget, function: Any, arguments: list[Any], keywords: dict[str
     steps = _CALL
     name = getattr(function, "__name__", None)
     if name in HASHING:
-        arguments = [keys(argument) for argument in arguments]
+        arguments = [checked_keys(argument) for argument in arguments]
     elif function is str and (len(arguments) > 1 or keywords):
         value = arguments[0] if arguments else keywords.get("object")
         check_codec(value, arguments[1] if len(arguments) > 1 else keywords.get("encoding", "utf-8"))
@@ -170,7 +170,7 @@ def call(budget: Budget, function: Any, arguments: list[Any], keywords: dict[str
         owner = getattr(function, "__self__", None)
         if owner is not None:
             steps += cost(owner)
-    budget.step(steps)
+    budget.charge_steps(steps)
     if (function is map or function is filter) and arguments:
         arguments = [_metered(budget, arguments[0]), *arguments[1:]]
     if "key" in keywords:
@@ -187,7 +187,7 @@ def charged(budget: Budget, value: Any) -> Any:
     """
     weight = sandbox.weight(value)
     if weight:
-        budget.step(weight // (_CHARACTERS_A_STEP if isinstance(value, (str, bytes)) else _ITEMS_A_STEP))
+        budget.charge_steps(weight // (_CHARACTERS_A_STEP if isinstance(value, (str, bytes)) else _ITEMS_A_STEP))
     return value
 
 

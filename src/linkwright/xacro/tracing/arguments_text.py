@@ -29,14 +29,14 @@ def incomplete(examined: Arguments) -> list[Diagnostic]:
         return []
     first = examined.problems[0]
     message = phrase("the file cannot be expanded with the arguments given, so some may be missing from the list")
-    blamed = _blamed(examined.arguments, first.message)
+    blamed = _arguments_causing(examined.arguments, first.message)
     required = [f"{argument.name}:=..." for argument in blamed or examined.arguments if blamed or argument.required]
     hint = phrase("give {required}", required=" ".join(required)) if required else None
     notes = (Note(first.message), *first.notes)
     return [Diagnostic("XAC803", message, first.span, Severity.WARNING, notes, hint, first.source)]
 
 
-def _blamed(arguments: Iterable[Argument], message: str) -> list[Argument]:
+def _arguments_causing(arguments: Iterable[Argument], message: str) -> list[Argument]:
     """Return the arguments whose defaults caused a message, such as one that names a missing file."""
     return [
         argument

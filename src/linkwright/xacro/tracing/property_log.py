@@ -12,7 +12,7 @@ from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.session import Session
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tracing.references import shown
-from linkwright.xacro.tracing.traced import PROBE, TracedSession, echo, expand_traced
+from linkwright.xacro.tracing.traced import PROBE, TracedSession, expand_traced, recorded_probe
 from linkwright.xmltree import Element
 
 
@@ -50,7 +50,7 @@ class _Log:
             for name, value in known.items():
                 scope.values[name] = value
         if not (isinstance(about, Element) and about.tag == "xacro:macro"):
-            site.parent.children.append(echo(None))
+            site.parent.children.append(recorded_probe(None))
 
 
 class _Table(dict[str, Any]):

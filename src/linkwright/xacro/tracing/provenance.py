@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, phrase
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xacro.inputs import Inputs
-from linkwright.xacro.limits import room_for
+from linkwright.xacro.limits import recursion_limit_for
 from linkwright.xacro.tracing.recorder import Moment, Recorder
 from linkwright.xacro.tracing.references import Value, written_attribute
 from linkwright.xacro.tracing.traced import TracedSession, expand_traced
@@ -128,7 +128,7 @@ class Tracer:
         Raises:
             LinkwrightError: XAC802 if the second result differs.
         """
-        with room_for(self._inputs.limits):
+        with recursion_limit_for(self._inputs.limits):
             return self._trace(element)
 
     def _trace(self, element: Element) -> Provenance:

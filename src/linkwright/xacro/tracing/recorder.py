@@ -14,7 +14,7 @@ from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xacro.tracing.references import Reference, Value, references, shown, written_attribute
-from linkwright.xacro.tracing.traced import PROBE, echo
+from linkwright.xacro.tracing.traced import PROBE, recorded_probe
 from linkwright.xmltree import Element, Text
 
 
@@ -111,7 +111,7 @@ class Recorder:
     def _set_attribute(self, expander: Expander, site: Site) -> None:
         node, session = site.node, expander.session
         DIRECTIVES["xacro:attribute"](expander, site)
-        name = _again(expander, node, "name", site.scope)
+        name = _evaluate_again(expander, node, "name", site.scope)
         if name is None or name not in site.parent.attributes:
             return
         values = self._values(expander, node.attributes["value"], site.scope)
@@ -122,7 +122,7 @@ class Recorder:
 
     def _define_property(self, expander: Expander, site: Site) -> None:
         DIRECTIVES["xacro:property"](expander, site)
-        name = _again(expander, site.node, "name", site.scope)
+        name = _evaluate_again(expander, site.node, "name", site.scope)
         where = site.node.attributes.get("scope")
         if name is None:
             return
@@ -162,7 +162,7 @@ class Recorder:
                     moment.values[name] = self._values(expander, text, site.scope)
             about = moment
             self._remember(element, moment)
-        element.children.append(echo(about))
+        element.children.append(recorded_probe(about))
 
     def _remember(self, element: Element, moment: Moment) -> None:
         self._moments[id(element)] = (element, moment)
@@ -242,7 +242,7 @@ def _evaluated(expander: Expander, text: str, scope: Scope) -> Any:
         return _UNKNOWN
 
 
-def _again(expander: Expander, node: Element, attribute: str, scope: Scope) -> str | None:
+def _evaluate_again(expander: Expander, node: Element, attribute: str, scope: Scope) -> str | None:
     """Evaluate a directive's attribute a second time; None if that could change something."""
     text = node.attributes.get(attribute)
     if text is None or ("$" in text and expander.session.changes(text)):

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 
 from linkwright.xacro.expander import Directive, Expander
 from linkwright.xacro.inputs import Inputs, main_document
-from linkwright.xacro.limits import room_for
+from linkwright.xacro.limits import recursion_limit_for
 from linkwright.xacro.session import Session
 from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Document, Element, Node, Text
@@ -66,7 +66,7 @@ def expand_traced(
     document = main_document(session, inputs.text)
     if inputs.text is not None and PROBE in directives:
         document = with_probes(document)
-    with room_for(inputs.limits):
+    with recursion_limit_for(inputs.limits):
         return without_probes(Expander(session, directives, call).document(document))
 
 
@@ -106,7 +106,7 @@ def without_probes(document: Document) -> Document:
     return document
 
 
-def echo(memory: object) -> Element:
+def recorded_probe(memory: object) -> Element:
     """Return a probe that stays in the result; its `origin` is the record of the enclosing element."""
     return Element(PROBE, origin=memory)
 

@@ -53,7 +53,7 @@ class _Source:
         """Whether no message has arrived yet."""
         return self._heard_ns is None
 
-    def described(self, state: str) -> str:
+    def diagnostic_line(self, state: str) -> str:
         """Return the input's line in the diagnostics."""
         return f" {state} (listening to {self.topic} @ {self.timeout:f}s with priority #{self.priority})"
 
@@ -105,7 +105,7 @@ class TwistMux(SingleNode):
         return self._node.get_clock().now().nanoseconds
 
     def _velocity(self, source: _Source, drivers: DriverWatch, message: Any, info: MessageInfo) -> None:
-        drivers.hear(message, info)
+        drivers.note_command(message, info)
         now = self._now_ns()
         source.hear(now)
         lock = self._lock_priority(now)
@@ -128,11 +128,11 @@ class TwistMux(SingleNode):
         now = self._now_ns()
         lock = self._lock_priority(now)
         values = {
-            f"velocity {topic.name}": topic.described("masked" if self._masked(topic, lock, now) else "unmasked")
+            f"velocity {topic.name}": topic.diagnostic_line("masked" if self._masked(topic, lock, now) else "unmasked")
             for topic in self._topics
         }
         values |= {
-            f"lock {lock.name}": lock.described("locked" if lock.locked or lock.expired(now) else "free")
+            f"lock {lock.name}": lock.diagnostic_line("locked" if lock.locked or lock.expired(now) else "free")
             for lock in self._locks
         }
         values["current priority"] = str(lock)

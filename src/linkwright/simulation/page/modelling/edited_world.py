@@ -174,7 +174,7 @@ class EditedWorld:
             self.path = target
             self.world = WorldText(self.world.text, target, self.world.finder, self.world.reserved)
 
-    def keep(self, folder: Path) -> Diagnostic:
+    def store_unsaved(self, folder: Path) -> Diagnostic:
         """Write an unsaved text into a folder, replacing earlier texts of the same world.
 
         Returns:

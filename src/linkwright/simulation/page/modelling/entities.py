@@ -62,7 +62,7 @@ def choices(packages: PackageFinder) -> ModelChoices:
     return ModelChoices([ModelChoice(name, f"model://{name}") for name in names])
 
 
-def changed(world: WorldText, message: PageMessage) -> WorldText:
+def apply_edit(world: WorldText, message: PageMessage) -> WorldText:
     """Return a world with the edit of a page applied.
 
     Raises:

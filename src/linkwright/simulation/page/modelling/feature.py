@@ -70,7 +70,7 @@ class ModellingFeature(PageFeature):
         """Store the text of an unsaved world, and return the findings about it."""
         if self._edited is None or not self._edited.unsaved:
             return []
-        return [self._edited.keep(recovery_folder())]
+        return [self._edited.store_unsaved(recovery_folder())]
 
     def close(self) -> None:
         """Stop the feature permanently."""
@@ -265,10 +265,10 @@ class ModellingFeature(PageFeature):
 
 def _edit(edited: EditedWorld, message: PageMessage) -> Callable[[], None]:
     """Return a function that applies a page's request to a world; it is slow and belongs in a thread."""
-    from linkwright.simulation.page.modelling.entities import changed
+    from linkwright.simulation.page.modelling.entities import apply_edit
 
     if isinstance(message, UndoWorld):
         return edited.undo
     if isinstance(message, RedoWorld):
         return edited.redo
-    return partial(edited.edit, partial(changed, message=message))
+    return partial(edited.edit, partial(apply_edit, message=message))

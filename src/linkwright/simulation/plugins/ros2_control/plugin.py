@@ -74,7 +74,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             allow_undeclared_parameters=True,
             automatically_declare_parameters_from_overrides=True,
         )
-        node.graph.makers[node.get_logger().name] = self.node.logger.name
+        node.graph.creators[node.get_logger().name] = self.node.logger.name
         self._manager_node = SteppedNode(node, self.node.exchange, owned=True, calls=self.node.calls)
         rate = values.get("update_rate", _DEFAULT_RATE)
         self._manager = ControllerManager(

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from linkwright.control.hardware.interfaces import StateInterface
-from linkwright.simulation.plugins.places import of_model
+from linkwright.simulation.plugins.places import model_plugins
 from linkwright.simulation.plugins.plugin import PlacedSensor, PluginPlace
 from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
 from linkwright.simulation.sensors.imu import ImuSensor
@@ -42,7 +42,7 @@ class SimulatedSensor:
 def sensors_of(place: PluginPlace) -> dict[str, PlacedSensor]:
     """Return the sensors of a model that hardware can read, by their names."""
     assert place.model is not None
-    places: Iterator[PluginPlace] = of_model(place.world, place.model, place.path)
+    places: Iterator[PluginPlace] = model_plugins(place.world, place.model, place.path)
     return {
         place.sensor.sensor.name: place.sensor
         for place in places

@@ -28,10 +28,10 @@ from linkwright.simulation.plugins.sensors.images import (
     OF_DEPTHS,
     USUAL_ENCODING,
     PixelNoise,
+    clip_depth,
     fill_camera_info,
     fill_depth,
     fill_image,
-    limited,
 )
 from linkwright.simulation.rendering.renderer import Channels, RenderedImage
 from linkwright.simulation.rendering.sharing import shared_renderer
@@ -217,7 +217,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
             depth.publish(message)
         if cloud.is_wanted and rendered.depth is not None and rendered.colour is not None:
             message = self.message(CLOUD, self._frame)
-            points = points_of(camera.optics, limited(rendered.depth, nearest, farthest))
+            points = points_of(camera.optics, clip_depth(rendered.depth, nearest, farthest))
             fill_camera_cloud(message, points, rendered.colour, swapped=self.gazebo_mistakes)
             cloud.publish(message)
 
@@ -307,7 +307,7 @@ class GzCamera(CameraPlugin[NoParameters]):
             self._depth.publish(message)
         if self._cloud is not None and self._cloud.is_wanted:
             message = self.message(CLOUD, self._frame)
-            points = points_of(camera.optics, limited(rendered.depth, clip.near, clip.far))  # type: ignore[arg-type]  # see above
+            points = points_of(camera.optics, clip_depth(rendered.depth, clip.near, clip.far))  # type: ignore[arg-type]  # see above
             forwards = np.stack([points[:, :, 2], -points[:, :, 0], -points[:, :, 1]], axis=-1)
             fill_camera_cloud(message, forwards, rendered.colour)  # type: ignore[arg-type]  # it was asked for
             self._cloud.publish(message)

@@ -86,10 +86,10 @@ def fill_depth(message: Any, depth: Pixels, nearest: float, farthest: float) -> 
 
     Depths below the minimum become -inf, and depths above the maximum become inf.
     """
-    _fill(message, limited(depth, nearest, farthest), "32FC1")
+    _fill(message, clip_depth(depth, nearest, farthest), "32FC1")
 
 
-def limited(depth: Pixels, nearest: float, farthest: float) -> Pixels:
+def clip_depth(depth: Pixels, nearest: float, farthest: float) -> Pixels:
     """Return depths with -inf below the minimum and inf above the maximum."""
     result: Pixels = np.array(depth, dtype=np.float32)
     np.copyto(result, np.inf, where=depth >= farthest)
