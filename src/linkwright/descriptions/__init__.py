@@ -1,4 +1,4 @@
-"""Read files, or texts that are not saved yet, as robots and worlds, with their origins and findings."""
+"""Reading of files or unsaved texts as robots and worlds, with their origins and findings."""
 
 from linkwright.descriptions.service import (
     Description,

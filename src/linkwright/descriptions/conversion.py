@@ -1,4 +1,4 @@
-"""Convert robots, models and worlds to one SDF without includes."""
+"""Conversion of robots, models and worlds to one SDF without includes."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ _ADDRESSES = {
 
 @dataclass(frozen=True, slots=True)
 class Converted:
-    """A file converted to SDF.
+    """The result of converting a file to SDF.
 
     Attributes:
-        sdf: what it says; None where it cannot be read.
-        diagnostics: what is wrong with it, and what could not be taken over.
-        files: those that were read, the main file first.
+        sdf: the SDF; None if the file cannot be read.
+        diagnostics: the errors of the file, and the parts that could not be converted.
+        files: the files that were read, the main file first.
     """
 
     sdf: Sdf | None
@@ -62,10 +62,10 @@ def as_sdf(
         finder: finds packages.
         arguments: values for the file's ``<xacro:arg>``.
         lump_fixed_joints: for URDF, see `linkwright.sdf.from_urdf.model_from_robot`.
-        folder: the folder of the new SDF, to which paths of meshes are relative; that of the file by default.
+        folder: the folder of the new SDF, to which paths of meshes are relative; by default the folder of the file.
 
     Raises:
-        LinkwrightError: it is not XML, or it cannot be expanded.
+        LinkwrightError: the file is not XML, or cannot be expanded.
     """
     folder = folder or path.parent
     if is_world(path.name):
@@ -88,7 +88,7 @@ def as_sdf(
 
 
 def _as_it_is(world: World) -> World:
-    """Return a world as it was saved, with its gravity in the place that SDF uses since 1.6."""
+    """Return a world as it was saved, with its gravity at the place that SDF has used since 1.6."""
     from linkwright.sdf.saved import as_saved
     from linkwright.sdf.worlds import gravity_of
 
@@ -100,17 +100,17 @@ def _as_it_is(world: World) -> World:
 
 
 def _from_folder(part: Any, written_in: Path, folder: Path) -> Any:
-    """The same with paths that start from a folder in place of the one that they are written in."""
+    """Return a part of SDF with paths relative to a folder instead of the folder in which they are written."""
     return with_addresses(part, written_in, lambda written, beside: _address(written, beside, folder))
 
 
 def with_addresses(part: Any, written_in: Path, change: Callable[[str, Path], str]) -> Any:
-    """Return a part of SDF with other addresses of meshes, textures and the like.
+    """Return a part of SDF with changed addresses of meshes, textures and other files.
 
     Args:
         part: an object of `linkwright.sdf`, or a tuple of them.
-        written_in: the folder of its file, if the object does not know it.
-        change: returns the new address for an address and the folder of the file that has it.
+        written_in: the folder of the part's file, if the object does not contain it.
+        change: returns the new address for an address and the folder of the file that contains it.
     """
     if isinstance(part, tuple):
         return tuple(with_addresses(item, written_in, change) for item in part)
@@ -135,7 +135,7 @@ def with_addresses(part: Any, written_in: Path, change: Callable[[str, Path], st
 
 
 def _address(written: str, written_in: Path, folder: Path) -> str:
-    """Return an address; the path of an existing file becomes relative to a folder, or a file URI if outside."""
+    """Return an address; the path of an existing file becomes relative to a folder, or a file URI if outside it."""
     file = Path(os.path.abspath(written_in / written))  # noqa: PTH100 - links stay what they are
     folder = folder.absolute()
     if not written or "://" in written or Path(written).is_absolute() or not file.exists():

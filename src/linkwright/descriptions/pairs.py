@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Model:
-    """One of the two compared descriptions.
+    """One of two compared descriptions.
 
     Attributes:
         path: the file, absolute.
-        values: those of its ``<xacro:arg>``.
-        finder: where its packages are.
-        revision: the commit that the file is of; None for one of the working tree.
+        values: the values of its ``<xacro:arg>``.
+        finder: finds its packages.
+        revision: the commit that contains the file; None for a file of the working tree.
     """
 
     path: Path
@@ -39,19 +39,19 @@ class Model:
 
     @property
     def title(self) -> str:
-        """The name of the file without its folders, ``HEAD:arm.urdf`` where it is of a commit."""
+        """The name of the file without its folders; ``HEAD:arm.urdf`` for a file of a commit."""
         return self.path.name if self.revision is None else f"{self.revision.name}:{self.path.name}"
 
     def named(self, file: str) -> str:
-        """Return a file's name for users: ``HEAD:robots/arm.urdf``, or a path from the current folder."""
+        """Return the name of a file for users: ``HEAD:robots/arm.urdf``, or a path relative to the current folder."""
         name = file if self.revision is None else self.revision.label(file)
         return display_path(name) if name == file else name
 
     def read(self) -> Description:
-        """The description, with a robot.
+        """Return the description, which has a robot.
 
         Raises:
-            LinkwrightError: it cannot be read or expanded, or urdfdom would refuse it.
+            LinkwrightError: the description cannot be read or expanded, or urdfdom would refuse it.
         """
         try:
             found = examine(self.path, arguments=self.values, packages=self.finder)
@@ -62,7 +62,7 @@ class Model:
         return found
 
     def read_robot(self) -> Robot:
-        """The robot; raises as `read` does."""
+        """Return the robot; raises the same errors as `read`."""
         robot = self.read().robot
         assert robot is not None
         return robot
@@ -71,12 +71,12 @@ class Model:
         """Return the file of a mesh's address.
 
         Raises:
-            LinkwrightError: its package is not found.
+            LinkwrightError: the package of the mesh is not found.
         """
         return self.finder.resolve(address, self.path.parent)
 
     def _relabelled(self, diagnostic: Diagnostic) -> Diagnostic:
-        """A finding that names files of a commit as git does."""
+        """Return a finding in which files of a commit are named as git names them."""
         if self.revision is None:
             return diagnostic
         notes = tuple(note._replace(span=self._span(note.span)) for note in diagnostic.notes)
@@ -91,24 +91,24 @@ class Pair:
     """An old description and a new one.
 
     Attributes:
-        old: the old one.
-        new: the new one.
+        old: the old description.
+        new: the new description.
     """
 
     old: Model
     new: Model
 
     def close(self) -> None:
-        """Remove the files of a commit."""
+        """Remove the temporary files of a commit."""
         if self.old.revision is not None:
             self.old.revision.close()
 
     def label(self, file: str) -> str:
-        """The name of a file of either for readers."""
+        """Return the name of a file of either description for users."""
         return self.old.named(file)
 
     def compared(self) -> Comparison:
-        """How they differ.
+        """Return the differences between the two descriptions.
 
         Raises:
             LinkwrightError: see `Model.read`.
@@ -125,17 +125,20 @@ class Pair:
 
 
 def text_of_old(description: Description) -> str:
-    """Return a text for an old description that no new one has, as readers identify descriptions by their text."""
+    """Return a text for the old description that differs from any new one.
+
+    Descriptions are identified by their text.
+    """
     return f"{description.text}\n<!-- the old one -->\n"
 
 
 def pair_of(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
-    """Two files.
+    """Return a pair of two files.
 
     Args:
-        old: the old one.
-        new: the new one.
-        values: for the ``<xacro:arg>`` of both.
+        old: the old file.
+        new: the new file.
+        values: the values for the ``<xacro:arg>`` of both.
     """
     first, second = (
         Model(path.absolute(), values, PackageFinder(start=[path.absolute().parent, Path.cwd()])) for path in (old, new)
@@ -144,7 +147,9 @@ def pair_of(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
 
 
 def against(path: Path, commit: str, values: Mapping[str, str]) -> Pair:
-    """Return a file and its version in a commit, whose files exist until the pair is closed.
+    """Return the pair of a file's version in a commit and the file.
+
+    The commit's files exist until the pair is closed.
 
     Raises:
         LinkwrightError: see `linkwright.descriptions.revisions.Revision`.

@@ -1,4 +1,4 @@
-"""Files of a git commit, beside the edited ones."""
+"""Files of a git commit, for comparison with the edited ones."""
 
 from __future__ import annotations
 
@@ -21,23 +21,22 @@ _OF_HOOKS = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
 
 
 class Revision:
-    """All files of a commit, in a temporary folder, so that includes and meshes come from the commit, too.
+    """All files of a commit, in a temporary folder, which also provides its includes and meshes.
 
     Neither the repository nor its working tree is changed. A file that was renamed since is found by its old name, as
-    git recognises it. Packages that are not in the commit are looked for where
-    those of the working tree are.
+    git recognises it. Packages that are not in the commit are searched for where the working tree's packages are.
 
     Args:
         path: a file of the working tree.
         name: the commit, as git names it: ``HEAD``, ``main~2``, a tag or a hash.
 
     Attributes:
-        name: the same.
+        name: the commit, as above.
         path: the file in the temporary folder.
 
     Raises:
-        LinkwrightError: CLI341, there is no git; CLI342, the file is in no repository; CLI343, there is no such commit;
-            CLI344, the commit has no such file; CLI345, git cannot write the files.
+        LinkwrightError: CLI341, git is not installed; CLI342, the file is not in a repository; CLI343, there is no such
+            commit; CLI344, the commit has no such file; CLI345, git cannot write the files.
     """
 
     def __init__(self, path: Path, name: str) -> None:
@@ -68,7 +67,7 @@ class Revision:
 
     @cached_property
     def finder(self) -> PackageFinder:
-        """Finds the packages of the commit, and otherwise those that are found from the working tree."""
+        """The finder for packages of the commit, and otherwise for those found from the working tree."""
         return PackageFinder(start=[self.path.parent, self._top, Path.cwd()], extra=self._packages)
 
     @cached_property
@@ -77,7 +76,10 @@ class Revision:
         return {name: share_of_sources(name, folder) for name, folder in found.items()}
 
     def label(self, file: str) -> str:
-        """The name of a file as git writes it, ``HEAD:robots/arm.urdf``; any other file's as it is."""
+        """Return the name of a file as git writes it (``HEAD:robots/arm.urdf``).
+
+        Other files keep their names.
+        """
         try:
             inside = Path(os.path.realpath(file)).relative_to(self._root)
         except ValueError:
@@ -85,7 +87,7 @@ class Revision:
         return f"{self.name}:{inside.as_posix()}"
 
     def normalizers(self, finder: PackageFinder) -> tuple[Callable[[str], str], Callable[[str], str]]:
-        """Functions that make paths in both texts comparable: for the commit's description, and for the other one.
+        """Return two functions that make paths comparable, for the commit's description and for the other one.
 
         Args:
             finder: finds the packages of the other description.
@@ -109,7 +111,7 @@ class Revision:
 
 
 def _top_of(path: Path) -> Path:
-    """The folder of the working tree that a file is in."""
+    """Return the root folder of the working tree that contains a file."""
     done = _git(path.parent, "rev-parse", "--show-toplevel")
     if done.returncode != 0:
         message = phrase("'{path}' is not in a git repository", path=display_path(path))
@@ -132,10 +134,10 @@ def _commit(top: Path, name: str) -> str:
 
 
 def _before_renaming(top: Path, commit: str, inside: Path, name: str) -> Path:
-    """Return the name in a commit of a file of the working tree that was renamed since, staged or not.
+    """Return the name that a file of the working tree had in a commit before it was renamed, staged or not.
 
     Raises:
-        LinkwrightError: CLI344, git recognises it in none of the files that are gone since.
+        LinkwrightError: CLI344, git recognises it in none of the files that were removed since.
     """
     new = inside.as_posix()
     with ScratchFolder("revision") as folder:
@@ -145,7 +147,7 @@ def _before_renaming(top: Path, commit: str, inside: Path, name: str) -> Path:
         own = {"GIT_INDEX_FILE": str(index)}
         _git(top, "add", "--intent-to-add", "--", new, environment=own)
         words = ("diff", "--no-ext-diff", "--find-renames", "--diff-filter=R", "--name-status", "-z", commit)
-        renames = _git(top, *words, environment=own).stdout.split("\0")  # of each: R087, the old name, the new one
+        renames = _git(top, *words, environment=own).stdout.split("\0")  # for each: R087, the old name, the new name
     for old, renamed in zip(renames[1::3], renames[2::3], strict=False):
         if renamed == new:
             return Path(old)

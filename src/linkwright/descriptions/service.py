@@ -1,4 +1,7 @@
-"""Read descriptions and worlds, each text once. Only this module decides whether a file is xacro or plain URDF."""
+"""Reading of descriptions and worlds, each text once.
+
+Only this module decides whether a file is xacro or plain URDF.
+"""
 
 from __future__ import annotations
 
@@ -36,15 +39,15 @@ TRUE_OF_PARTS = frozenset(
 
 @dataclass(frozen=True, eq=False)
 class Description:
-    """A robot description, read.
+    """A parsed robot description.
 
     Attributes:
         name: the path as it was given, or `TEXT_NAME`.
         document: the URDF document, expanded; every element has its source file and place.
         reading: the result of the URDF reader.
-        expansion: xacro's record of making the document; None for plain URDF.
+        expansion: xacro's record of the expansion; None for plain URDF.
         overlay: texts that replaced those of files.
-        problems: mistakes because of which only parts of the description are available; there is no robot then.
+        problems: errors due to which only parts of the description are available; then there is no robot.
     """
 
     name: str
@@ -56,7 +59,10 @@ class Description:
 
     @classmethod
     def of_expansion(cls, name: str, expansion: Expansion, overlay: Overlay | None = None) -> Description:
-        """The description of an expanded file; without `problems` of the expansion it has the whole robot."""
+        """Return the description of an expanded file.
+
+        If the expansion has no `problems`, it has the whole robot.
+        """
         reading = read(expansion.document)
         if expansion.problems:
             reading = Reading(None, tuple(found for found in reading.diagnostics if found.code in TRUE_OF_PARTS))
@@ -69,46 +75,46 @@ class Description:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The problems, the remarks of xacro, and all findings of the reader."""
+        """The problems, the messages of xacro, and all findings of the reader."""
         return (*self.problems, *self.remarks, *self.reading.diagnostics)
 
     @property
     def remarks(self) -> tuple[Diagnostic, ...]:
-        """The warnings of xacro, and the messages of ``xacro.message`` and its like."""
+        """The warnings of xacro, and the messages of ``xacro.message`` and similar functions."""
         return () if self.expansion is None else self.expansion.diagnostics
 
     @cached_property
     def text(self) -> str:
-        """The URDF text, as topics and parameters carry it."""
+        """The URDF text, as published on topics and in parameters."""
         if self.expansion is not None:
             return str(self.expansion)
         return self.document.source.text if self.document.source is not None else ""
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """The files that were read, the main file first; none for a plain text."""
+        """The files that were read, the main file first; empty for a plain text."""
         if self.expansion is not None:
             return self.expansion.dependencies
         return () if self.name.startswith("<") else (Path(self.name),)
 
     @cached_property
     def sources(self) -> Mapping[Path, Document]:
-        """Every XML file that was read, as it is written (not expanded), the main file first."""
+        """Every XML file that was read, as written (not expanded), the main file first."""
         if self.expansion is None:
             return {Path(self.name): self.document}
         from linkwright.xacro import sources
 
         found: dict[Path, Document] = {}
         for path in self.expansion.dependencies:
-            with suppress(LinkwrightError):  # YAML files are among them
+            with suppress(LinkwrightError):  # Skip YAML files, which are among the files.
                 found[path] = sources.read(str(path), self.overlay)
         return found
 
     def provenance(self, element: Element) -> Provenance | None:
-        """Return the macro calls and includes that made an element; None for plain URDF, where it is written as it is.
+        """Return the macro calls and includes that created an element; None for plain URDF.
 
         Raises:
-            LinkwrightError: XAC802, the files are no longer what they were.
+            LinkwrightError: XAC802, the files have changed since.
         """
         return None if self.expansion is None else self.expansion.provenance(element)
 
@@ -117,10 +123,10 @@ _KEPT_TEXTS = 32
 
 
 class DescriptionLibrary:
-    """A cache of descriptions by their expanded texts, so that each is read once.
+    """A cache of descriptions by their expanded texts, so that each text is read once.
 
-    The launcher stores the description that a text was expanded from; the nodes and the viewer, which get the bare
-    text from a parameter or topic, then know where everything was written.
+    The launcher stores the description from which a text was expanded. The nodes and the viewer, which receive only the
+    text from a parameter or topic, can then find where everything was written.
     """
 
     def __init__(self) -> None:
@@ -128,12 +134,12 @@ class DescriptionLibrary:
         self._finders: dict[str, PackageFinder] = {}
 
     def store(self, description: Description, text: str | None = None, packages: PackageFinder | None = None) -> str:
-        """Store a description, to be found by its text.
+        """Store a description, which can then be found by its text.
 
         Args:
             description: a description.
-            text: the text to find it by, if that is not its own.
-            packages: finds its packages, if these may differ from those of the rest of the program.
+            text: the text to find it by, if it is not the description's own text.
+            packages: finds the description's packages, if they may differ from those of the rest of the program.
 
         Returns:
             The text.
@@ -161,16 +167,21 @@ class DescriptionLibrary:
         return () if known is None else known.files
 
     def provenance(self, text: str, element: Element) -> Provenance | None:
-        """Return the macro calls and includes that made an element of a stored description; None for an unknown text.
+        """Return the macro calls and includes that created an element of a stored description.
+
+        Returns None for an unknown text.
 
         Raises:
-            LinkwrightError: XAC802, its files are no longer what they were.
+            LinkwrightError: XAC802, its files have changed since.
         """
         known = self._descriptions.get(text)
         return None if known is None else known.provenance(element)
 
     def read(self, text: str) -> Reading:
-        """Read a description text, plain URDF or SDF; one that is not XML gives no robot, with the reason."""
+        """Read a description text, plain URDF or SDF.
+
+        A text that is not XML gives no robot, and the reason.
+        """
         known = self._descriptions.get(text)
         if known is None:
             known = _read(text)
@@ -198,7 +209,7 @@ _ENDINGS = (".world", ".sdf", ".world.xacro", ".sdf.xacro")
 
 @dataclass(frozen=True, eq=False)
 class WorldDescription:
-    """A world or model in SDF, read.
+    """A parsed world or model in SDF.
 
     Attributes:
         path: the file.
@@ -215,7 +226,7 @@ class WorldDescription:
 
 
 def is_world(name: str) -> bool:
-    """Return whether to read a file as SDF, by its name."""
+    """Return whether to read a file as SDF, according to its name."""
     return name.endswith(_ENDINGS)
 
 
@@ -227,17 +238,17 @@ def examine_world(
     environment: Mapping[str, str] | None = None,
     overlay: Overlay | None = None,
 ) -> WorldDescription:
-    """Read a world or model in SDF, or in SDF that xacro makes, with all findings about it.
+    """Read a world or model in SDF, or in SDF generated by xacro, with all findings about it.
 
     Args:
-        path: the file; one whose name ends in ``.xacro``, or that has tags of xacro, is expanded first.
+        path: the file; a file whose name ends in ``.xacro``, or that contains xacro tags, is expanded first.
         arguments: values for the file's ``<xacro:arg>``.
         packages: package name -> share folder, or a finder.
         environment: the variables with search paths (`linkwright.sdf.resources`); those of the process by default.
         overlay: texts that replace those of files.
 
     Raises:
-        LinkwrightError: it is not XML, it cannot be expanded, or it has more links than are read (SDF163).
+        LinkwrightError: the file is not XML, cannot be expanded, or has more links than are read (SDF163).
     """
     from dataclasses import replace
 
@@ -267,11 +278,13 @@ def examine_world(
 
 
 def robot_of_text(text: str, name: str) -> Reading:
-    """Read the robot of a text in SDF; if there is one, the findings leave out warnings that gz would print.
+    """Read the robot of an SDF text.
+
+    If there is one, warnings that gz would print are left out of the findings.
 
     Args:
         text: the text.
-        name: its file name in messages.
+        name: the file name to use in messages.
     """
     from linkwright.sdf.includes import resolve_includes
     from linkwright.sdf.reader import read
@@ -288,7 +301,7 @@ def robot_of_text(text: str, name: str) -> Reading:
 
 
 def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """Yield the findings, only the first about each kind of unread element and each missing model."""
+    """Yield the findings, but only the first about each kind of unread element and each missing model."""
     reported: set[str] = set()
     for diagnostic in found:
         words = f"{diagnostic.code} {diagnostic.severity} {diagnostic.message}"
@@ -300,7 +313,7 @@ def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
 def _document(
     path: Path, arguments: Mapping[str, str] | None, finder: PackageFinder, overlay: Overlay | None
 ) -> tuple[Document, tuple[Diagnostic, ...], tuple[Path, ...]]:
-    """Return the document, the diagnostics of reading it, and the files it was made of."""
+    """Return the document, the diagnostics of reading it, and the files from which it was made."""
     text = None if overlay is None else overlay.text(str(path))
     if path.suffix != ".xacro":
         document, warnings = _as_written(path, read_bytes(path) if text is None else text)
@@ -326,7 +339,10 @@ def _as_written(path: Path, written: str | bytes) -> tuple[Document, tuple[Diagn
 
 
 def _is_xacro(document: Document) -> bool:
-    """Return whether a file is written for xacro, whatever its name: launch files expand it before Gazebo gets it."""
+    """Return whether a file is written for xacro, whatever its name.
+
+    Launch files expand such a file before Gazebo reads it.
+    """
     root = document.root
     return "xmlns:xacro" in root.attributes and any(element.tag.startswith("xacro:") for element in root.walk())
 
@@ -346,17 +362,18 @@ def load(
     arguments: Mapping[str, str] | None = None,
     packages: Packages = None,
 ) -> Robot:
-    """The robot of a URDF or xacro file or text.
+    """Return the robot of a URDF or xacro file or text.
 
-    A link part that urdfdom would drop with an error message is dropped here too, silently; `examine` tells.
+    A part of a link that urdfdom would drop with an error message is dropped here, too, silently; `examine` reports it.
 
     Args:
-        path_or_text: a path, or a text, which is known by its ``<``.
+        path_or_text: a path, or a text, which is recognised by its ``<``.
         arguments: values for the file's ``<xacro:arg>``.
         packages: for ``$(find)``: package name -> share folder, or a finder.
 
     Raises:
-        LinkwrightError: it cannot be read or expanded, or urdfdom would refuse the model; with all findings.
+        LinkwrightError: the description cannot be read or expanded, or urdfdom would refuse the model; with all
+            findings.
     """
     with seldom_collected():
         description = examine(path_or_text, arguments=arguments, packages=packages)
@@ -374,7 +391,9 @@ def examine(
     xacro: bool | None = None,
     partly: bool = False,
 ) -> Description:
-    """Read a URDF, xacro or SDF file or text, with its robot and all findings; arguments as for `load`.
+    """Read a URDF, xacro or SDF file or text, with its robot and all findings.
+
+    The arguments are those of `load`.
 
     Args:
         path_or_text: see `load`.
@@ -383,11 +402,11 @@ def examine(
         overlay: texts that replace those of files: of the file itself and of all files that it includes or loads.
         xacro: whether to expand it; None to decide by the file, see `is_xacro`. A plain URDF file is read as urdfdom
             reads it.
-        partly: whether to accept the parts that can be expanded if others cannot; `Description.problems` then has the
-            mistakes.
+        partly: whether to accept the parts that can be expanded if others cannot; `Description.problems` then contains
+            the errors.
 
     Raises:
-        LinkwrightError: it is not XML, or it cannot be expanded.
+        LinkwrightError: the description is not XML, or cannot be expanded.
     """
     given_text = is_text(path_or_text)
     name = TEXT_NAME if given_text else str(path_or_text)
@@ -429,9 +448,11 @@ def _as_it_stands(
     *,
     is_reported: bool = False,
 ) -> Description:
-    """Return the description that urdfdom reads from an unexpanded document; `is_reported` if the remarks report that.
+    """Return the description that urdfdom reads from an unexpanded document.
 
-    Then xacro might add the elements that the file lacks, such as the colours of an included file.
+    `is_reported` is set if the remarks already report that. Xacro might then add elements that the file lacks, such as
+    the
+    colours of an included file.
     """
     reading = read(document)
     diagnostics = tuple(
@@ -445,16 +466,16 @@ def _holds_unexpanded(found: Diagnostic) -> bool:
 
 
 def _has_open_names(robot: Robot) -> bool:
-    """Return whether names of links are to be completed by xacro: such a file is not meant for urdfdom."""
+    """Return whether link names contain xacro expressions; such a file is not meant for urdfdom."""
     return any("$(" in name or "${" in name for name in robot.links)
 
 
 def _as_warning(error: Diagnostic) -> Diagnostic:
-    """Return an error of the expansion as a warning, for a file that urdfdom reads unexpanded."""
+    """Convert an error of the expansion to a warning, for a file that urdfdom reads unexpanded."""
     note = Note(phrase("urdfdom reads the file without expanding it, and ignores the elements of xacro"))
     return error.but(severity=Severity.WARNING, notes=(*error.notes, note))
 
 
 def is_xacro(name: str, root: Element) -> bool:
-    """Return whether to expand a document: by the name of its file, or because it declares the prefix of xacro."""
+    """Return whether to expand a document: by the name of its file, or because it declares the xacro prefix."""
     return name.endswith(".xacro") or "xmlns:xacro" in root.attributes or root.tag.startswith("xacro:")

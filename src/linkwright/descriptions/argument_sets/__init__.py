@@ -1,4 +1,7 @@
-"""Find the values that launch files, tests and build files of a workspace give to a description's arguments."""
+"""Search for the values that a workspace gives to a description's arguments.
+
+The values are found in launch files, tests and build files.
+"""
 
 from linkwright.descriptions.argument_sets.calling import ArgumentSet, ArgumentSets, argument_sets
 from linkwright.descriptions.argument_sets.compared import compared_values, empty_defaults

@@ -1,4 +1,4 @@
-"""The sets of values that a description is expanded with."""
+"""The sets of argument values with which a description is expanded."""
 
 from __future__ import annotations
 
@@ -40,18 +40,19 @@ _MARK = lazy_pattern("\0([^\0]*)\0")
 
 @dataclass(frozen=True, slots=True)
 class ArgumentSet:
-    """Values that a caller gives to the arguments of a description together.
+    """Values that a caller gives to the arguments of a description in one call.
 
     Attributes:
-        values: argument -> value.
-        open: the arguments whose values are only known when the program runs; an empty name means arguments whose
+        values: the values by argument name.
+        open: the arguments whose values are known only when the program runs; an empty name represents arguments whose
             names are not known either.
-        span: the call that gives them; None for those of a configuration.
-        is_certain: whether they are known to be given together.
+        span: the call that gives the values; None for values of a configuration.
+        is_certain: whether the values are known to occur in combination.
         varied: the arguments whose values differ from those that the same call gives by default.
-        is_mixed: whether a launch argument chooses another file than by default, and other arguments have other values
-            too, which may or may not fit this file.
-        is_offered: whether they are choices that launch arguments offer, while the other arguments have their defaults.
+        is_mixed: whether a launch argument selects another file than by default, and other arguments also have other
+            values, which may or may not fit this file.
+        is_offered: whether the values are choices offered by launch arguments, while the other arguments have their
+            defaults.
     """
 
     values: Mapping[str, str]
@@ -64,31 +65,32 @@ class ArgumentSet:
 
     @property
     def is_complete(self) -> bool:
-        """Return whether the values are certain, and all of them are known."""
+        """Whether the values are certain and all known."""
         return self.is_certain and not self.open
 
 
 def argument_sets(path: str | Path, finder: PackageFinder | None = None) -> tuple[ArgumentSet, ...]:
-    """The sets of values that launch files, tests and build files give to the arguments of a description.
+    """Return the sets of values that launch files, tests and build files give to a description's arguments.
 
-    They are read in the file's package and in those beside it that depend on it, and where these give none, in the
-    others beside it; nothing is run.
+    The files are read in the description's package and in neighbouring packages that depend on it, and if these give
+    none,
+    in the other neighbouring packages. Nothing is run.
 
     Args:
-        path: the file.
-        finder: where packages are; by default those around the file.
+        path: the file of the description.
+        finder: finds packages; by default those around the file.
 
     Returns:
-        Each set once, those that are known best first; an empty set where a call gives nothing.
+        The sets without duplicates, the most certain ones first; an empty set for a call without values.
     """
     return ArgumentSets().of(Path(path), finder)
 
 
 class ArgumentSets:
-    """Finds the sets for many files; files that call xacro are read once.
+    """Finds the argument sets for many descriptions; files that call xacro are read once.
 
     Args:
-        folders: packages to look at besides those near a file.
+        folders: packages to search in addition to those near a file.
     """
 
     def __init__(self, folders: Iterable[Path] = ()) -> None:
@@ -96,12 +98,12 @@ class ArgumentSets:
         self._files = CallingFiles()
 
     def of(self, path: Path, finder: PackageFinder | None = None) -> tuple[ArgumentSet, ...]:
-        """See `argument_sets`."""
+        """Return the argument sets of a description; see `argument_sets`."""
         path = Path(os.path.abspath(path))  # noqa: PTH100 - links stay what they are
         finder = finder or PackageFinder(start=path.parent)
         near = list(self._files.around(path, self._folders))
         sets = list(_Target(path, finder, near).sets())
-        if not sets:  # a launch file may use a package that its own does not declare
+        if not sets:  # A launch file may use a package that its own package does not declare as a dependency.
             sets = list(_Target(path, finder, [*near, *self._files.elsewhere(path, self._folders)]).sets())
         found: dict[object, ArgumentSet] = {}
         for argument_set in sets:
@@ -122,14 +124,14 @@ class ArgumentSets:
 
 @dataclass(eq=False)
 class _Target:
-    """A description, and the files that may call it, each with the name of its package."""
+    """A description, and the files that may expand it, each with the name of its package."""
 
     path: Path
     finder: PackageFinder
     files: list[tuple[str | None, CallingFile]]
 
     def sets(self) -> Iterator[ArgumentSet]:
-        """The sets of all calls."""
+        """Yield the argument sets of all calls."""
         for package, file in self.files:
             calls = [call for call in file.calls if self._may_be(call.path)]
             if not calls:
@@ -176,19 +178,19 @@ class _Target:
     # --- which file is meant --------------------------------------------------------------------------------
 
     def _may_be(self, path: Text) -> bool:
-        """Return whether a path with its open places may be the description."""
+        """Return whether a path with unknown parts may be the description."""
         pattern = "".join(re.escape(piece) if isinstance(piece, str) else "\0" for piece in path)
         if "/" not in pattern.strip("\0") and not pattern.strip("\0").endswith(re.escape(self.path.name)):
-            # Nothing but a name: any file could be meant, unless a choice tells.
+            # Without a fixed part, any file could be meant; accept only a path that is entirely unknown.
             return len(path) == 1 and pattern == "\0"
         expression = "(^|.*/)" + pattern.lstrip("\0/").replace("\0", ".*").removeprefix("\\./")
         return re.fullmatch(expression, self.path.as_posix()) is not None
 
     def _is_target(self, written: str, file: CallingFile) -> bool:
-        """Return whether a path whose places are filled is that of the description."""
+        """Return whether a path without unknown parts is the description's."""
         package, rest = split_mark(written)
         if _MARK.search(rest):
-            return False  # a share folder in the middle of a path
+            return False  # A share folder in the middle of a path is not supported.
         if package is None:
             return self._is_same(Path(os.path.dirname(file.path), written)) or self._is_same(Path(written))  # noqa: PTH120
         own = enclosing_package(self.path.parent)
@@ -201,7 +203,7 @@ class _Target:
         return os.path.realpath(path) == os.path.realpath(self.path)
 
     def _with_folders(self, value: str) -> str | None:
-        """A value with the share folders in it; None if a package is not here."""
+        """Return a value with share folders inserted; None if a package is not found."""
         for package in _MARK.findall(value):
             share = self.finder.find(package)
             if share is None:
@@ -212,10 +214,10 @@ class _Target:
     # --- launch arguments -----------------------------------------------------------------------------------
 
     def _launches(self, package: str | None, file: CallingFile, depth: int = 0) -> list[dict[str, str]]:
-        """The launch arguments that a file is launched with: by itself, and by each file that includes it.
+        """Return the launch arguments with which a file is launched, directly and by each file that includes it.
 
         Returns:
-            The values that are given, by the names of their choices.
+            The given values, by the names of their choices.
         """
         found: list[dict[str, str]] = [{}]
         if depth >= _DEEPEST:
@@ -238,9 +240,9 @@ class _Target:
 
     @cached_property
     def _inclusions(self) -> dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]]:
-        """Each inclusion, by the name of the included file.
+        """The inclusions by the name of the included file.
 
-        With it come the package in the path, the including package, and the including file.
+        Each is given as the package in the path, the including package, the including file, and the inclusion.
         """
         found: dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]] = {}
         for package, file in self.files:
@@ -250,24 +252,27 @@ class _Target:
 
 
 def _is_open(path: Text) -> bool:
-    """Return whether a path has a place for which there may be more texts than those that are known."""
+    """Return whether a path has a part for which unknown texts are possible."""
     return any(_is_open(piece.package) if isinstance(piece, Share) else isinstance(piece, Open) for piece in path)
 
 
 def _varied(call: XacroCall, one: ArgumentSet, other: ArgumentSet) -> tuple[str, ...]:
-    """Return the arguments that differ; if some are choices, without texts made of choices, such as paths."""
+    """Return the arguments that differ between two sets.
+
+    If some of them are plain choices, texts composed of choices, such as paths, are left out.
+    """
     names = tuple(name for name, value in one.values.items() if other.values.get(name) != value)
     return tuple(name for name in names if len(call.arguments.get(name, ())) == 1) or names
 
 
 def _unquoted(value: str) -> str:
-    """Return a value of a command line without its quotes."""
+    """Return a command-line value without its quotes."""
     return "".join(_words(value)) if set(value) & {'"', "'"} else value
 
 
 def _words(line: str) -> list[str]:
-    """The words of a piece of a command line, without quotes."""
-    import shlex  # here: few pieces have quotes
+    """Return the words of a part of a command line, without quotes."""
+    import shlex  # Imported here because quotes are rare.
 
     try:
         return shlex.split(line)

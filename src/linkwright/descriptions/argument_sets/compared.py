@@ -1,4 +1,4 @@
-"""The values of arguments that a description mentions: those that its conditions compare them with."""
+"""The argument values with which the conditions of a description compare its arguments."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ _CONDITIONS = frozenset({"xacro:if", "xacro:unless"})
 
 
 def compared_values(documents: Iterable[Document]) -> tuple[ArgumentSet, ...]:
-    """Return the values that conditions compare arguments with, each as a set that may not occur.
+    """Return the values with which conditions compare arguments, each as a set that may not occur.
 
-    An argument is also known by the names of the properties that hold it: ``<xacro:property name="side" value="$(arg
+    An argument is also recognised by the names of properties that contain it: ``<xacro:property name="side"
+    value="$(arg
     side)"/>``. Macro parameters are not followed.
 
     Args:
-        documents: the files of a description, as they are written.
+        documents: the files of a description, as written.
     """
     elements = [element for document in documents for element in document.root.walk()]
     names = dict(_names(elements))
@@ -46,7 +47,7 @@ def empty_defaults(documents: Iterable[Document]) -> tuple[str, ...]:
 
 
 def _names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:
-    """Yield every name of an argument or of a property that holds it, and the argument."""
+    """Yield the name of each argument, and of each property that contains it, with the argument's name."""
     for element in elements:
         name = element.attributes.get("name", "")
         if element.tag == "xacro:arg":
@@ -58,7 +59,7 @@ def _names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:
 
 
 def _comparisons(condition: str) -> Iterator[tuple[str, str]]:
-    """The operands of ``==`` and ``in``, and a text that each is compared with."""
+    """Yield the operands of ``==`` and ``in``, each with a text that it is compared with."""
     for *operands, one, several in _COMPARISON.findall(condition):
         operand = next(filter(None, operands))
         for found in _TEXT.findall(one or several):

@@ -1,4 +1,4 @@
-"""The files of packages that may call xacro, each read once."""
+"""The files of packages that may call xacro, with a cache of the parsed files."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class CallingFiles:
 
         Args:
             path: the file, absolute.
-            folders: packages to search besides those nearby.
+            folders: packages to search in addition to those nearby.
         """
         own = enclosing_package(path.parent)
         if own is None:
@@ -52,7 +52,7 @@ class CallingFiles:
 
         Args:
             path: the file, absolute.
-            folders: packages to search besides those nearby.
+            folders: packages to search in addition to those nearby.
         """
         own = enclosing_package(path.parent)
         if own is not None:
@@ -61,7 +61,9 @@ class CallingFiles:
     def _of_others(
         self, name: str, folder: Path, folders: tuple[Path, ...], *, using: bool
     ) -> Iterator[tuple[str, CallingFile]]:
-        """Yield the calling files of other packages that depend on a package, or of those that do not."""
+        """Yield the calling files of other packages that depend on a package, or, unless `using`, of packages that do
+        not.
+        """
         for other, place in self._near(folder, folders).items():
             if other != name and (name in self._manifest(place)) is using:
                 yield from ((other, file) for file in self.of(place))
@@ -78,14 +80,14 @@ class CallingFiles:
         return self._read[folder]
 
     def _near(self, folder: Path, folders: tuple[Path, ...]) -> dict[str, Path]:
-        """The packages of the workspace and those of more folders: name -> folder."""
+        """Return the packages of the workspace and of additional folders: name -> folder."""
         return {
             **self._beside(folder),
             **{found[0]: folder for folder in folders if (found := enclosing_package(folder))},
         }
 
     def _beside(self, folder: Path) -> dict[str, Path]:
-        """Return the packages of the workspace that are beside a package or below the same ``src``."""
+        """Return the packages of the workspace that are next to a package or below the same ``src``."""
         above = next((parent for parent in folder.parents if parent.name == "src"), folder.parent)
         if above not in self._packages:
             self._packages[above] = SourceScan(above).packages()

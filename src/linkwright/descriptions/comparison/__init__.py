@@ -1,4 +1,7 @@
-"""Comparing robot descriptions: the changes of links, joints, origins and masses, with their places in both."""
+"""Comparison of robot descriptions.
+
+The changes of links, joints, origins and masses are given with their places in both.
+"""
 
 from linkwright.descriptions.comparison.compare import Comparison, Difference, Kind, Place, Side, Subject, compare
 from linkwright.descriptions.comparison.report import as_data, as_text, sentence

@@ -34,7 +34,7 @@ _Part = TypeVar("_Part", Link, Joint)
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """The place of a difference, and the macro calls and includes that led there, innermost first."""
+    """The place of a difference, and the macro calls and includes that led to it, innermost first."""
 
     span: Span
     calls: tuple[Span, ...] = ()
@@ -42,18 +42,19 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One difference between two descriptions.
+    """A difference between two descriptions.
 
     Attributes:
-        subject: the kind of its subject; ``extension`` is a ``<gazebo>``, ``<ros2_control>``, ``<transmission>``, ...
-        name: the subject's name in the new description; if it was removed, in the old one.
+        subject: the kind of the changed object; ``extension`` is a ``<gazebo>``, ``<ros2_control>``,
+            ``<transmission>``, ...
+        name: the object's name in the new description; if it was removed, in the old one.
         kind: the kind of change.
-        property: the changed property, such as ``mass`` or ``visual 2 origin xyz``; empty for the whole subject.
+        property: the changed property, such as ``mass`` or ``visual 2 origin xyz``; empty for the whole object.
         old: the value in the old description, without the unit; None if it has none.
-        new: the value in the new one.
+        new: the value in the new description, likewise.
         unit: the unit of both; empty for words.
-        old_place: the place of the value in the old description, or the beginning of its subject.
-        new_place: the same in the new one.
+        old_place: the place of the value in the old description, or the beginning of its object.
+        new_place: the place in the new description, likewise.
     """
 
     subject: Subject
@@ -72,10 +73,10 @@ class Comparison:
     """The differences between two descriptions.
 
     Attributes:
-        differences: the robot, then links and joints in the order of the new description, those removed behind them,
-            then everything that other programs read.
-        links: name in the old description -> name in the new one, of links that both have.
-        joints: the same of joints.
+        differences: the robot's own, then those of links and joints in the order of the new description, followed by
+            removed ones, then those of everything that other programs read.
+        links: name in the old description -> name in the new one, for links in both.
+        joints: the same for joints.
     """
 
     differences: tuple[Difference, ...]
@@ -85,13 +86,12 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Side:
-    """One of two descriptions.
+    """One of two compared descriptions.
 
     Attributes:
-        robot: its robot.
-        normalize: makes its words comparable, such as paths in a folder that replaces another.
+        robot: the robot of the description.
+        normalize: makes words comparable, such as paths in a folder that replaces another.
         resolve: returns the file of a mesh's address; if set, the bytes of meshes are compared, too.
-
     """
 
     robot: Robot
@@ -99,7 +99,7 @@ class Side:
     resolve: Callable[[str], Path] | None = None
 
     def mesh(self, address: str) -> Path | None:
-        """The file of a mesh; None if it is not known or not there."""
+        """Return the file of a mesh; None if it is unknown or does not exist."""
         if self.resolve is None:
             return None
         try:
@@ -112,10 +112,11 @@ class Side:
 def compare(old: Side, new: Side) -> Comparison:
     """Return the differences between two descriptions.
 
-    Links and joints are matched by name, and recognised under a new name if all else is equal. Poses are compared as
-    poses, not as text; the tolerances are in `linkwright.descriptions.comparison.facts`. Elements outside the robot
-    model (``<gazebo>``, ``<ros2_control>``, sensors) are compared as XML whose blanks, comments and order of attributes
-    do not count.
+    Links and joints are matched by name, and recognised under a new name if everything else is equal. Poses are
+    compared
+    as poses, not as text; the tolerances are in `linkwright.descriptions.comparison.facts`. Elements outside the robot
+    model (``<gazebo>``, ``<ros2_control>``, sensors) are compared as XML, ignoring blanks, comments and the order of
+    attributes.
     """
     return _Comparer(old, new).run()
 
@@ -163,7 +164,7 @@ class _Comparer:
         yield from _named("joint", old, new, self.matches.joints, inside)
 
     def _follows_a_name(self, difference: Difference) -> bool:
-        """Return whether a reference says another name only because what it means was renamed."""
+        """Return whether a reference differs only because the referenced link or joint was renamed."""
         if difference.property in ("parent", "child"):
             return self.matches.links.get(difference.old or "") == difference.new
         return difference.property == "mimic joint" and self.matches.joints.get(difference.old or "") == difference.new
@@ -192,7 +193,7 @@ class _Comparer:
             yield from self._block("link", link, name, first, second, around)
 
     def _meshes(self, old: Link, new: Link) -> Iterator[Difference]:
-        """Meshes of one name whose files differ."""
+        """Yield the meshes with the same address whose files differ."""
         for tag, before, after in (("visual", old.visuals, new.visuals), ("collision", old.collisions, new.collisions)):
             known, wanted = _meshes_of(before), _meshes_of(after)
             for name in (name for name in wanted if name in known):
@@ -237,7 +238,14 @@ class _Comparer:
         path: str,
         around: tuple[str, Element, Element] | None,
     ) -> Iterator[Difference]:
-        """Differences of elements: those of a robot, or those inside of a pair of them, `around`, with its name."""
+        """Yield the differences of elements, directly in a robot or inside a pair of elements.
+
+        Args:
+            old: the elements of the old description.
+            new: the elements of the new description.
+            path: the names of the enclosing elements.
+            around: the name of the enclosing pair and the pair; None for elements of the robot.
+        """
         before, after = _keyed(old), _keyed(new)
         for key in dict.fromkeys([*after, *before]):
             first, second = before.get(key), after.get(key)
@@ -273,7 +281,10 @@ class _Comparer:
 
 
 def _keyed(elements: Sequence[Element]) -> dict[str, Element]:
-    """Elements by tag and by name or reference, in their order; several of one kind are numbered."""
+    """Return elements by tag and by name or reference, in order.
+
+    Elements of the same kind are numbered.
+    """
     found: dict[str, Element] = {}
     for element in elements:
         name = element.attributes.get("name") or element.attributes.get("reference")
@@ -288,7 +299,7 @@ def _keyed(elements: Sequence[Element]) -> dict[str, Element]:
 
 
 def _flat(element: Element) -> str:
-    """An element in one line: its attributes and its text."""
+    """Format an element's attributes and text in one line."""
     words = [f"{name}={value}" for name, value in element.attributes.items()]
     words += element.text().split()
     words += [f"<{child.tag}>" for child in element.elements()]
@@ -332,7 +343,7 @@ def _changed(
 
 
 def _place(element: Element | None, attribute: str = "") -> Place | None:
-    """Where an element, or one of its attributes, is written."""
+    """Return where an element, or one of its attributes, is written."""
     if element is None:
         return None
     span = element.attribute_span(attribute) if attribute in element.attributes else element.span()
@@ -343,7 +354,7 @@ def _place(element: Element | None, attribute: str = "") -> Place | None:
 
 
 def _meshes_of(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None]:
-    """Addresses of meshes, and where they are written."""
+    """Return the addresses of meshes, and the elements in which they are written."""
     return {
         shape.geometry.filename: nearest(shape.element, "geometry", "mesh")
         for shape in shapes
@@ -352,7 +363,10 @@ def _meshes_of(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None
 
 
 def _difference_of_bytes(old: Path, new: Path) -> tuple[str, str, str]:
-    """The difference of two files' bytes: their sizes, else the beginnings of their hashes; and the unit."""
+    """Return the difference between two files' bytes, and its unit.
+
+    The files differ in size or, if the sizes are equal, in the beginnings of their hashes.
+    """
     sizes = [path.stat().st_size for path in (old, new)]
     if sizes[0] != sizes[1]:
         return str(sizes[0]), str(sizes[1]), "bytes"

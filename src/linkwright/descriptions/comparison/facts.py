@@ -1,4 +1,4 @@
-"""The properties of links and joints that are compared, each with the place where it is written."""
+"""The compared properties of links and joints, each with the place where it is written."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Normalize = Callable[[str], str]
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """One property.
+    """A property of a link or joint.
 
     Attributes:
         words: its words, such as a name or the kind of a shape; empty for numbers alone.
@@ -32,7 +32,7 @@ class Fact:
         unit: the unit of the numbers.
         rotation: the quaternion (x, y, z, w) of the numbers, if they are roll, pitch and yaw.
         direction: whether the numbers are an axis, whose length does not matter.
-        element: the element that has it or, for a default, the nearest element around it.
+        element: the element that has the property or, for a default, the nearest enclosing element.
         attribute: the attribute of the element.
     """
 
@@ -45,12 +45,12 @@ class Fact:
     direction: bool = False
 
     def equals(self, other: Fact, here: Normalize, there: Normalize) -> bool:
-        """Return whether two descriptions say the same, within the tolerances.
+        """Return whether the property is equal in two descriptions, within the tolerances.
 
         Args:
-            other: what the other one says.
-            here: makes the words of this one comparable.
-            there: makes the words of the other one comparable.
+            other: the property of the other description.
+            here: makes the words of this description comparable.
+            there: makes the words of the other description comparable.
         """
         if here(self.words) != there(other.words) or len(self.numbers) != len(other.numbers):
             return False
@@ -74,13 +74,13 @@ class Fact:
 
 @dataclass(slots=True)
 class Block:
-    """Facts that come and go together: an ``<inertial>``, a ``<limit>``, a ``<visual>``.
+    """Facts that are added or removed as a unit: an ``<inertial>``, a ``<limit>``, a ``<visual>``.
 
     Attributes:
-        name: its tag; empty for what a joint always says.
-        element: where it is written.
-        facts: property -> what is said.
-        label: the name that the description gives it.
+        name: the tag; empty for facts that every joint has.
+        element: the element in which the facts are written.
+        facts: the facts by property.
+        label: the name that the description gives to the block.
     """
 
     name: str
@@ -94,7 +94,7 @@ class Block:
         return ", ".join(" ".join(filter(None, (name, fact.text, fact.unit))) for name, fact in self.facts.items())
 
     def equals(self, other: Block, here: Normalize, there: Normalize) -> bool:
-        """Return whether all facts of two blocks are the same."""
+        """Return whether all facts of two blocks are equal."""
         return self.facts.keys() == other.facts.keys() and all(
             fact.equals(other.facts[name], here, there) for name, fact in self.facts.items()
         )
@@ -110,7 +110,7 @@ class Block:
             self.facts[name] = Fact(value, (), "", element, attribute)
 
     def origin(self, pose: Pose, around: Element | None) -> None:
-        """Add the pose of a frame in the one around it."""
+        """Add the pose of a frame relative to its parent frame."""
         element = nearest(around, "origin")
         attribute = "rpy" if pose.quaternion is None else "quat_xyzw"
         self.facts["origin xyz"] = Fact("", pose.xyz, "m", element, "xyz")
@@ -128,22 +128,22 @@ def nearest(element: Element | None, *tags: str) -> Element | None:
 
 
 def blocks_of_link(link: Link) -> list[Block]:
-    """The properties of a link without those of its shapes."""
+    """Return the properties of a link, except those of its shapes."""
     return [] if link.inertial is None else [_inertial(link.inertial)]
 
 
 def visuals_of(link: Link) -> list[Block]:
-    """The properties of each ``<visual>`` of a link."""
+    """Return the properties of each ``<visual>`` of a link."""
     return [_visual(visual) for visual in link.visuals]
 
 
 def collisions_of(link: Link) -> list[Block]:
-    """The properties of each ``<collision>`` of a link."""
+    """Return the properties of each ``<collision>`` of a link."""
     return [_shape("collision", collision) for collision in link.collisions]
 
 
 def blocks_of_joint(joint: Joint) -> list[Block]:
-    """The properties of a joint, one block for each element that holds some."""
+    """Return the properties of a joint, one block for each element that contains some."""
     element = joint.element
     own = Block("", element)
     own.words("type", joint.type, element, "type")
@@ -225,10 +225,10 @@ def _geometry(geometry: Geometry, around: Element | None) -> Fact:
 def pairs_of(
     old: Sequence[Block], new: Sequence[Block], same: Callable[[Block, Block], bool]
 ) -> list[tuple[int | None, int | None]]:
-    """Match several visuals, or collisions: first equal ones, then those of one name, then by their order.
+    """Match visuals, or collisions: first equal ones, then those with the same name, then by order.
 
     Returns:
-        Pairs of positions in `old` and in `new`; None for one without a match.
+        Pairs of positions in `old` and in `new`; None for an entry without a match.
     """
     left, right = list(range(len(old))), list(range(len(new)))
     found: list[tuple[int | None, int | None]] = []
@@ -252,7 +252,7 @@ def pairs_of(
 
 
 def _angle(ours: Sequence[float], theirs: Sequence[float]) -> float:
-    """The angle between two rotations in radians; exact where it is small."""
+    """Return the angle between two rotations in radians, accurate even if it is small."""
     return 2.0 * min(_distance(ours, theirs), _distance(ours, [-their for their in theirs]))
 
 

@@ -1,4 +1,4 @@
-"""Matching the links and joints of two descriptions: by name, or as renamed where all else is equal."""
+"""Matching the links and joints of two descriptions: by name, or as renamed if everything else is equal."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from linkwright.urdf import Joint, Link, Robot, children_of
 
 @dataclass(frozen=True, slots=True)
 class Matches:
-    """Names in the old description -> names in the new one, the same or renamed.
+    """Names in the old description -> names in the new one, equal or renamed.
 
     Attributes:
-        links: of links.
-        joints: of joints.
+        links: the names of links.
+        joints: the names of joints.
     """
 
     links: Mapping[str, str]
@@ -25,15 +25,17 @@ class Matches:
 def match(
     old: Robot, new: Robot, same_link: Callable[[Link, Link], bool], same_joint: Callable[[Joint, Joint], bool]
 ) -> Matches:
-    """Match two robots, from the root down.
+    """Match the links and joints of two robots, from the root down.
 
-    Links, or joints, with one name are the same. A joint that is only in the old robot is renamed if one that is only
-    in the new robot has the same parent, an equal child and equal properties. A link is renamed if an equal one has the
-    same joint above it.
+    Links or joints with the same name match. A joint that is only in the old robot was renamed if a joint that is only
+    in
+    the new robot has the same parent, an equal child and equal properties. A link was renamed if an equal link has the
+    same
+    parent joint.
 
     Args:
         old: the old robot.
-        new: the new one.
+        new: the new robot.
         same_link: returns whether two links are equal except for their names.
         same_joint: returns whether two joints are equal except for their names and those of their links.
     """
@@ -42,7 +44,7 @@ def match(
     taken = set(joints)
 
     def renamed(before: str, after: str) -> bool:
-        """Return whether a link is the other one, which it then counts as."""
+        """Return whether two links match; a renamed link is recorded as matched."""
         if links.get(before) == after:
             return True
         if before in new.links or after in old.links or before in links or after in links.values():

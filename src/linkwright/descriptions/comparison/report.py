@@ -1,4 +1,4 @@
-"""A comparison as text for people and as data for programs."""
+"""A comparison formatted as text for users and as data for programs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Label = Callable[[str], str]
 
 
 def as_text(comparison: Comparison, label: Label) -> str:
-    """Return each difference in a line, with both places below it, in the user's language.
+    """Format each difference as a line, with both places below it, in the user's language.
 
     Args:
         comparison: the differences.
@@ -32,7 +32,7 @@ def as_text(comparison: Comparison, label: Label) -> str:
 
 
 def sentence(difference: Difference) -> Phrase:
-    """A change in one line."""
+    """Describe a change in one line."""
     subject, name = term(difference.subject), difference.name
     if difference.kind == "added":
         return phrase("{subject} '{name}' added", subject=subject, name=name)
@@ -51,7 +51,7 @@ def sentence(difference: Difference) -> Phrase:
 
 
 def as_data(comparison: Comparison, label: Label) -> list[dict[str, Any]]:
-    """Return the differences as JSON-ready data: places are 1-based, missing ones are None."""
+    """Return the differences as JSON-ready data; places are 1-based, missing ones are None."""
     return [
         {
             "subject": difference.subject,
@@ -79,7 +79,10 @@ def _span_data(span: Span, label: Label) -> dict[str, Any]:
 
 
 def _where(place: Place, label: Label) -> str:
-    """Return a place with the calls and includes that led to it; outer calls are data for programs."""
+    """Format a place with the call or include that led to it.
+
+    Outer calls are only in the data for programs.
+    """
     written = _written(place.span, label)
     if not place.calls:
         return written

@@ -1,4 +1,4 @@
-"""Edit a robot: find the smallest edit of the text for a requested pose."""
+"""Editing of robots: finds the smallest edit of the text for a requested change."""
 
 from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.files import EditHistory, Workspace

@@ -1,4 +1,4 @@
-"""The sources of the values of names in a description: properties, arguments, macro parameters, YAML files."""
+"""The sources of named values in a description: properties, arguments, macro parameters and YAML files."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _MOST_YAML = 1_000_000
 
 
 class Definitions:
-    """The texts that define names. There may be more than the one that took effect: the caller tries them.
+    """The texts that define names; if several define a name, the caller tries each of them.
 
     Args:
-        documents: the XML files that a description was made from, as they are written.
+        documents: the XML files from which a description was made, as written.
         others: the other files, such as YAML files.
         overlay: texts that replace those of files.
     """
@@ -44,8 +44,8 @@ class Definitions:
         """Yield the texts that may define the names in a text, those of the enclosing calls first.
 
         Args:
-            text: with expressions in it.
-            innermost: the macro call that it is evaluated in.
+            text: a text that contains expressions.
+            innermost: the macro call in which the text is evaluated.
         """
         for reference in references(text):
             keys = _keys(reference.path)
@@ -59,12 +59,12 @@ class Definitions:
                 yield from (place for path, place in self._values() if path[-len(keys) :] == keys)
 
     def given(self, text: str, index: int | None, innermost: Frame | None) -> Iterator[Candidate]:
-        """Arguments that could be given to calls which rely on the default of a parameter in a text.
+        """Yield arguments that could be added to calls which rely on a parameter's default in a text.
 
         Args:
-            text: with expressions in it.
-            index: which of the three numbers of the parameter is meant, where it has three.
-            innermost: the macro call that it is evaluated in.
+            text: a text that contains expressions.
+            index: which of the parameter's three numbers is meant, if it has three.
+            innermost: the macro call in which the text is evaluated.
         """
         for reference in references(text):
             for frame in frames(innermost):
@@ -86,7 +86,10 @@ class Definitions:
                 self._named.setdefault(name, []).append(place)
 
     def _default(self, frame: Frame, name: str) -> Place | None:
-        """The default of a parameter of a macro; None if there is none, or no such parameter."""
+        """Return the default of a macro's parameter.
+
+        Returns None if there is no default or no such parameter.
+        """
         macro = self._macros.get((frame.macro or "").rpartition(".")[2])
         params = None if macro is None else attribute(macro, "params")
         if params is None:
@@ -104,14 +107,14 @@ class Definitions:
         return params.part(found.default_start + quoted, found.default_start + len(found.default) - quoted)
 
     def _values(self) -> list[tuple[tuple[str, ...], Place]]:
-        """The scalars of the YAML files, each with the keys that lead to it."""
+        """Return the scalars of the YAML files, each with the keys that lead to it."""
         if self._scalars is None:
             self._scalars = [item for path in self._others for item in _scalars_of(path, self._overlay)]
         return self._scalars
 
 
 def attribute(element: Element, name: str) -> Place | None:
-    """Where the value of an attribute is written on an element of a file."""
+    """Return where the value of an element's attribute is written in a file."""
     if element.source is None:
         return None
     found = attribute_value_range(element.source.text, element.offset, name)
@@ -136,7 +139,7 @@ def _given(site: Element, name: str, default: list[Place], index: int | None) ->
 
 
 def _keys(path: str) -> tuple[str, ...]:
-    """The constant keys of an expression, such as ``("wheel", "radius")`` of ``config['wheel'].radius``."""
+    """Return the constant keys of an expression, such as ``("wheel", "radius")`` of ``config['wheel'].radius``."""
     keys: list[str] = []
     try:
         node: ast.AST = ast.parse(path, mode="eval").body
@@ -169,7 +172,7 @@ def _walk(node: Any, keys: tuple[str, ...], source: SourceText, depth: int) -> I
         quoted = node.style in ("'", '"')
         if keys and (quoted or node.style is None):
             end = node.end_mark.index - quoted
-            yield keys, Place(source, end - len(node.value), end)  # a tag may precede it
+            yield keys, Place(source, end - len(node.value), end)  # A tag may precede the value.
     elif depth < 50 and isinstance(node, yaml.MappingNode):
         for key, value in node.value:
             if isinstance(key, yaml.ScalarNode):

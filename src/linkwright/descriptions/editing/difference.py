@@ -1,4 +1,4 @@
-"""Compare two expansions of one description."""
+"""Comparison of two expansions of one description."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ class Target:
     """An attribute of an expanded document that is edited.
 
     Attributes:
-        path: from the root to the joint, visual or collision: which of the elements inside, again and again.
-        tag: the element in it: ``origin`` or ``axis``.
-        attribute: of that.
+        path: the path from the root to the joint, visual or collision: the index of the child at each level.
+        tag: the tag of the element in it: ``origin`` or ``axis``.
+        attribute: the name of the attribute.
     """
 
     path: tuple[int, ...]
@@ -32,13 +32,13 @@ class Target:
         return element
 
     def element(self, root: Element) -> Element | None:
-        """The element with the attribute."""
+        """Return the element with the attribute."""
         owner = self.owner(root)
         return None if owner is None else owner.first(self.tag)
 
 
 def path_to(root: Element, element: Element) -> tuple[int, ...] | None:
-    """The path of an element in a document; None if it is not in it."""
+    """Return the path of an element in a document; None if the document does not contain it."""
     pending: list[tuple[Element, tuple[int, ...]]] = [(root, ())]
     while pending:
         found, path = pending.pop()
@@ -49,11 +49,11 @@ def path_to(root: Element, element: Element) -> tuple[int, ...] | None:
 
 
 def others(before: Element, after: Element, target: Target) -> Iterator[tuple[Element, ...]]:
-    """The differences besides the edited attribute.
+    """Yield the differences other than the edited attribute.
 
     Args:
         before: the root of a document.
-        after: the root of the other.
+        after: the root of the other document.
         target: the attribute that may differ, and may be new with its element.
 
     Yields:
@@ -78,7 +78,7 @@ def others(before: Element, after: Element, target: Target) -> Iterator[tuple[El
 
 
 def described(trail: tuple[Element, ...]) -> str:
-    """Return the element of a trail in words, such as ``joint 'wheel_joint'``."""
+    """Describe the element of a trail, such as ``joint 'wheel_joint'``."""
     named = [element for element in trail if element.attributes.get("name") or element.attributes.get("reference")]
     if not trail:
         return term("robot")
@@ -96,7 +96,7 @@ def _place(old: Element, child: Element, index: int, is_owner: bool) -> int:
 
 
 def _taken(elements: list[Element], tag: str) -> Element | None:
-    """Remove and return the first element of a tag."""
+    """Remove and return the first element with a tag."""
     found = next((element for element in elements if element.tag == tag), None)
     if found is not None:
         elements.remove(found)

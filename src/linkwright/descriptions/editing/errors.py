@@ -1,4 +1,4 @@
-"""Why a robot cannot be edited."""
+"""The error raised when a robot cannot be edited."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from linkwright.diagnostics import Diagnostic
 
 
 class EditRefusedError(Exception):
-    """An edit of a description is refused; nothing was written.
+    """Raised when an edit of a description is refused; nothing was written.
 
     Attributes:
-        diagnostic: which text, where, why, and what to do.
+        diagnostic: which text is refused, where, why, and what to do.
     """
 
     def __init__(self, diagnostic: Diagnostic) -> None:

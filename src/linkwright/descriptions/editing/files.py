@@ -1,4 +1,4 @@
-"""The files of edited robots: permission to write, writing, and undo."""
+"""Files of edited robots: permission to write, writing, and undo."""
 
 from __future__ import annotations
 
@@ -22,10 +22,11 @@ _MOST_STEPS = 200
 
 
 class Workspace:
-    """The files that edits of a description may write: those of its workspace that are not installed ones.
+    """The files that edits of a description may write: the files of its workspace that are not installed.
 
-    The workspace is the largest of these folders around the main file: that of its package, that of its git
-    repository, and the one whose ``src`` contains it.
+    The workspace is the largest of these folders around the main file: the folder of its package, of its git
+    repository,
+    and the folder whose ``src`` contains it.
 
     Args:
         main: the file that was opened.
@@ -39,7 +40,7 @@ class Workspace:
         """Return why a file may not be written (EDIT106); None if it may.
 
         Args:
-            path: its real path.
+            path: the real path of the file.
         """
         file = Path(path)
         if file.is_relative_to(_OURS):
@@ -56,13 +57,13 @@ class Workspace:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A done edit: real path of a file -> its bytes before and after."""
+    """An applied edit: real path of a file -> its bytes before and after."""
 
     files: Mapping[str, tuple[bytes, bytes]]
 
 
 class EditHistory:
-    """Written edits, the last of which can be undone."""
+    """The history of written edits; the last one can be undone."""
 
     def __init__(self) -> None:
         self._done: list[Step] = []
@@ -79,13 +80,13 @@ class EditHistory:
         return bool(self._undone)
 
     def apply(self, plan: EditPlan) -> list[str]:
-        """Write an edit into its files, all or none.
+        """Write an edit to its files, either all of them or none.
 
         Returns:
             The files that were written.
 
         Raises:
-            EditRefusedError: EDIT107, a file is not what it was; EDIT108, one cannot be written.
+            EditRefusedError: EDIT107, a file has changed since; EDIT108, a file cannot be written.
         """
         files: dict[str, tuple[bytes, bytes]] = {}
         for path, text in plan.texts.items():
@@ -142,7 +143,10 @@ def _workspace_of(file: Path) -> Path:
 
 
 def _write(new: Mapping[str, bytes], known: Mapping[str, bytes]) -> None:
-    """Write files that hold what is known; where one cannot be written, those before it get back what they held."""
+    """Write files whose content is the known one.
+
+    If one cannot be written, the files written before are restored.
+    """
     for path, content in known.items():
         if _bytes_of(path) != content:
             raise EditRefusedError(_changed(path))

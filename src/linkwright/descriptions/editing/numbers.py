@@ -1,4 +1,4 @@
-"""Numbers as they are written."""
+"""Formatting and parsing of numbers as written in descriptions."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _PARTS_OF_PI = (1, 2, 3, 4, 6, 12)
 
 
 def shortest(value: float, tolerance: float = EXACT) -> str:
-    """Return a number with as few digits as possible, without an exponent.
+    """Format a number with as few digits as possible, without an exponent.
 
     Args:
-        value: finite.
-        tolerance: how far off it may be.
+        value: a finite number.
+        tolerance: the maximum error.
     """
     for digits in range(_MOST_DIGITS):
         text = f"{value:.{digits}f}"
@@ -27,12 +27,12 @@ def shortest(value: float, tolerance: float = EXACT) -> str:
 
 
 def same(some: float, other: float) -> bool:
-    """Return whether two numbers are the same, as far as it is asked for."""
+    """Return whether two numbers are equal within the tolerance `EXACT`."""
     return abs(some - other) <= EXACT
 
 
 def numbers_of(text: str, count: int) -> list[float] | None:
-    """The numbers of an attribute; None if it does not have as many, all finite."""
+    """Return the numbers of an attribute; None unless it has exactly that many, all finite."""
     try:
         found = [float(word) for word in text.split()]
     except ValueError:
@@ -41,7 +41,10 @@ def numbers_of(text: str, count: int) -> list[float] | None:
 
 
 def part_of_pi(angle: float) -> str | None:
-    """Return an angle as an expression such as ``-pi/2`` or ``3*pi/4``; None if it is not such a part of pi."""
+    """Format an angle as an expression such as ``-pi/2`` or ``3*pi/4``.
+
+    Returns None if it is not such a fraction of pi.
+    """
     for parts in _PARTS_OF_PI:
         whole = round(angle / pi * parts)
         if whole and same(whole * pi / parts, angle) and Fraction(whole, parts).denominator == parts:
@@ -51,6 +54,6 @@ def part_of_pi(angle: float) -> str | None:
 
 
 def in_degrees(angle: float) -> str | None:
-    """Return an angle in degrees if that is short, as for ``radians()``, or None."""
+    """Format an angle in degrees, for ``radians()``; None if that is not short."""
     text = shortest(degrees(angle), _EXACT_DEGREES)
     return text if len(text.lstrip("-").replace(".", "")) <= 5 else None

@@ -1,4 +1,4 @@
-"""Places of texts that determine numbers, and the candidates for editing them."""
+"""Places of texts that determine numbers, and candidates for editing them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LOOSE = (ast.IfExp, ast.BoolOp, ast.Compare, ast.Lambda, ast.NamedExpr)
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Characters `start` to `end` (exclusive) of a source text."""
+    """The characters `start` to `end` (exclusive) of a source text."""
 
     source: SourceText
     start: int
@@ -26,7 +26,7 @@ class Place:
 
     @property
     def text(self) -> str:
-        """The text there."""
+        """The text at the place."""
         return self.source.text[self.start : self.end]
 
     @property
@@ -35,7 +35,7 @@ class Place:
         return self.source.span(self.start, self.end)
 
     def part(self, start: int, end: int) -> Place:
-        """Characters of this place, counted from its start."""
+        """Return the place of a range of characters, counted from the start of this place."""
         return Place(self.source, self.start + start, self.start + end)
 
 
@@ -44,10 +44,10 @@ class Candidate:
     """A text that may determine a number.
 
     Attributes:
-        place: the text's place, where it is replaced.
-        value: its value now.
+        place: the place of the text, where it is replaced.
+        value: the current value of the text.
         write: returns the text for another value with a tolerance.
-        is_choice: whether it is 1 or -1, which as a factor selects a side or a direction.
+        is_choice: whether the value is 1 or -1, which as a factor selects a side or a direction.
     """
 
     place: Place
@@ -57,7 +57,7 @@ class Candidate:
 
 
 def words(place: Place) -> list[Place]:
-    """Return the words of a text; an expression is one word."""
+    """Return the words of a text; an expression counts as one word."""
     return [place.part(*found.span()) for found in _WORD.finditer(place.text)]
 
 
@@ -86,14 +86,17 @@ def added_constants(word: Place) -> Iterator[Candidate]:
 
 
 def is_constant(word: Place) -> bool:
-    """Return whether a word is an expression without names other than pi and what turns degrees into radians."""
+    """Return whether a word is a constant expression.
+
+    Its only names may be pi and conversions from degrees to radians.
+    """
     found = _ONE_EXPRESSION.match(word.text)
     tree = _tree(found[1].strip()) if found is not None and found[1] else None
     return tree is not None and _names(tree) <= _OF_PI
 
 
 def exchanged(word: Place, value: float) -> Candidate:
-    """Return a candidate that replaces a whole word by a number: as a part of pi if the word has pi."""
+    """Return a candidate that replaces a whole word by a number, as a fraction of pi if the word contains pi."""
 
     def write(number: float, tolerance: float) -> str:
         if "pi" in word.text or "radians" in word.text:
@@ -109,7 +112,10 @@ def exchanged(word: Place, value: float) -> Candidate:
 
 
 def summed(word: Place, *, is_angle: bool) -> Candidate | None:
-    """Return a candidate that adds a number to an expression, or None if the word is not a single expression."""
+    """Return a candidate that adds a number to an expression.
+
+    Returns None if the word is not a single expression.
+    """
     found = _ONE_EXPRESSION.match(word.text)
     if found is None:
         return None
@@ -161,12 +167,15 @@ def _terms(node: ast.expr, inner: Place) -> Iterator[Candidate]:
 
 
 def _is_angle_of_degrees(node: ast.expr) -> bool:
-    """Return whether an expression is something like ``30*pi/180``, a product with the degrees in front."""
+    """Return whether an expression is an angle in degrees times a conversion, such as ``30*pi/180``."""
     return _names(node) <= _OF_PI and "pi" in _names(node) and any(_number(part) == 180 for part in ast.walk(node))
 
 
 def _signed_term(node: ast.BinOp, inner: Place) -> Candidate | None:
-    """The last number of a sum with its sign, which may turn; None if brackets are in the way."""
+    """Return the last number of a sum with its sign, which may change.
+
+    Returns None if brackets are in the way.
+    """
     value = _number(node.right)
     if value is None:
         return None
@@ -185,7 +194,7 @@ def _signed_term(node: ast.BinOp, inner: Place) -> Candidate | None:
 
 
 def _number(node: ast.AST) -> float | None:
-    """The value of a number, with its sign; None for anything else."""
+    """Return the value of a number with its sign; None for any other node."""
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) and isinstance(node.operand, ast.Constant):
         value = _number(node.operand)
         return None if value is None else -value

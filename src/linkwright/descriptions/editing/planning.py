@@ -1,7 +1,7 @@
-"""Plan edits: the smallest edit of the text that makes a requested change of the robot, or why there is none.
+"""Planning of edits: the smallest edit of the text that makes a requested change, or why there is none.
 
-The texts that may determine a number are tried in turn. The plan uses the first one after whose edit the expanded
-document differs exactly as requested.
+The texts that may determine a number are tried in turn. The plan uses the first text whose edit changes the expanded
+document exactly as requested.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class EditPlan:
     Attributes:
         texts: real path of a file -> its new text, without a byte order mark; empty if nothing changes.
         before: the same files -> their old texts.
-        also: the other changes, if these were allowed.
+        also: the other changes, if the request allows them.
     """
 
     texts: dict[str, str]
@@ -57,15 +57,15 @@ class EditPlan:
 
 
 def plan_edit(description: Description, request: EditRequest, allowed: Allowed = lambda _: None) -> EditPlan:
-    """Find the smallest edit of text that makes a requested change, and nothing else.
+    """Find the smallest edit of the text that makes a requested change, and nothing else.
 
     Args:
-        description: read from a file a moment ago.
-        request: what shall be different.
-        allowed: which files may be written.
+        description: the description, just read from a file.
+        request: the requested change.
+        allowed: returns why a file may not be written, else None.
 
     Raises:
-        EditRefusedError: there is none, with a diagnostic EDIT101 to EDIT106.
+        EditRefusedError: there is no such edit, with a diagnostic EDIT101 to EDIT106.
     """
     planner = _Planner(description, request, allowed)
     for name, wanted in planner.wanted():
@@ -74,14 +74,17 @@ def plan_edit(description: Description, request: EditRequest, allowed: Allowed =
 
 
 class _Found(NamedTuple):
-    """An edited description that has the requested number, and the names of other parts that changed with it."""
+    """An edited description that has the requested number, and the names of other parts that changed, too."""
 
     snapshot: Snapshot
     also: tuple[str, ...]
 
 
 class _Planner:
-    """Makes one plan, attribute by attribute and number by number; `_now` is the description edited so far."""
+    """Computes one plan, attribute by attribute and number by number.
+
+    `_now` is the description edited so far.
+    """
 
     def __init__(self, description: Description, request: EditRequest, allowed: Allowed) -> None:
         self._request, self._allowed = request, allowed
@@ -96,7 +99,7 @@ class _Planner:
         self._also_changed: dict[str, None] = {}
 
     def wanted(self) -> Iterator[tuple[str, list[float]]]:
-        """Return the attributes to edit, and their numbers."""
+        """Yield the attributes to edit, and their numbers."""
         request = self._request
         for given in (request.xyz, request.rpy):
             if given is not None and not all(isfinite(value) and abs(value) <= _LARGEST for value in given):
@@ -116,7 +119,7 @@ class _Planner:
             yield "rpy", list(request.rpy)
 
     def set(self, name: str, wanted: list[float]) -> None:
-        """Give an attribute other numbers."""
+        """Set an attribute to other numbers."""
         present = self._values(name)
         changed = [i for i, (old, new) in enumerate(zip(present, wanted, strict=True)) if not same(old, new)]
         if not changed:
@@ -137,7 +140,7 @@ class _Planner:
             self._set_one(target, i, wanted[i])
 
     def plan(self) -> EditPlan:
-        """The plan of all edits."""
+        """Return the plan of all edits."""
         texts = {str(path): text for path, text in self._now.texts.items()}
         before = {path: Overlay().read(path).text for path in texts}
         return EditPlan(texts, before, tuple(self._also_changed))
@@ -175,7 +178,7 @@ class _Planner:
     def _tried(
         self, candidate: Candidate, target: Target, index: int, wanted: float, attempts: list[Attempt]
     ) -> _Found | None:
-        """Try one place: return the edited description, or None if it does not have the requested number."""
+        """Try a candidate: return the edited description, or None if it does not have the requested number."""
         why_not = self._allowed(os.path.realpath(candidate.place.source.name))
         if why_not is not None:
             attempts.append(Attempt(candidate.place, forbidden=why_not))
@@ -192,7 +195,7 @@ class _Planner:
             change = values[index] - present
             slope = change / (guess - candidate.value) if guess != candidate.value else 0.0
             if abs(slope) < _LEAST_SLOPE:
-                return None  # it does not make this number
+                return None  # The edit does not result in the requested number.
             if candidate.is_choice and not any(same(abs(slope), plain) for plain in _PLAIN_SLOPES):
                 attempts.append(Attempt(candidate.place, choice=True))
                 return None
@@ -207,7 +210,10 @@ class _Planner:
         return None
 
     def _together(self, target: Target, place: Place, parts: list[Place], new: dict[int, float]) -> Snapshot | None:
-        """Return the result of editing several literal numbers of an attribute at once; None if more would change."""
+        """Return the result of editing several literal numbers of an attribute in one edit.
+
+        Returns None if more would change.
+        """
         if self._allowed(os.path.realpath(place.source.name)) is not None:
             return None
         text, at = "", place.start
@@ -230,7 +236,7 @@ class _Planner:
             return None
 
     def _also(self, trial: Snapshot, target: Target, index: int, values: list[float]) -> tuple[str, ...]:
-        """The other differences that a trial makes."""
+        """Return the names of the other parts that a trial changes."""
         found = self._differences(trial, target)
         present = self._values(target.attribute)
         if any(values[i] != present[i] for i in range(len(values)) if i != index):
@@ -240,7 +246,7 @@ class _Planner:
     def _differences(self, trial: Snapshot, target: Target) -> list[str]:
         return [described(trail) for trail in others(self._now.root, trial.root, target)]
 
-    # what is not written yet
+    # attributes that are not written yet
 
     def _add(self, target: Target, wanted: list[float]) -> None:
         """Write a missing attribute or element."""
@@ -279,7 +285,7 @@ class _Planner:
         return Place(written.source, edit.start, edit.end), edit.text
 
     def _twin(self, element: Element) -> Element:
-        """Return an element as it is written in its file, before any expansion."""
+        """Return an element as written in its file, before any expansion."""
         if element.source is None:
             raise EditRefusedError(_not_written(element))
         document: Document = parse(element.source.text, element.source.name)
@@ -291,7 +297,7 @@ class _Planner:
     # current values
 
     def _values(self, name: str) -> list[float]:
-        """The numbers of an attribute as it is now."""
+        """Return the current numbers of an attribute."""
         found = self._values_in(self._now, Target(self._path, self._request.tag, name))
         if found is None:
             message = phrase("'{name}' of <{tag}> has a value that is not a number", name=name, tag=self._request.tag)

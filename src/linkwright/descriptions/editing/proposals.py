@@ -1,4 +1,4 @@
-"""Yield the texts that may determine a number of an attribute, the most likely first."""
+"""Candidates for editing a number of an attribute, the most likely first."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ def proposals(
     present: Sequence[float],
     is_angle: bool,
 ) -> Iterator[Candidate]:
-    """Candidates for one number of an attribute.
+    """Yield candidates for editing one number of an attribute.
 
     Args:
-        place: the attribute as it is written.
-        index: which of its numbers.
-        frame: the macro call that it is evaluated in.
-        definitions: where names get their values.
-        present: the numbers of the attribute.
-        is_angle: whether they are angles.
+        place: the attribute as written.
+        index: the index of the number.
+        frame: the macro call in which the attribute is evaluated.
+        definitions: the sources of named values.
+        present: the current numbers of the attribute.
+        is_angle: whether the numbers are angles.
     """
     reached = list(_reached(place, index, frame, definitions))
     for word in reached:
@@ -57,7 +57,10 @@ def proposals(
 
 
 def _reached(place: Place, index: int, frame: Frame | None, definitions: Definitions) -> Iterator[Place]:
-    """Yield the words that determine a number: that of the attribute, then the definitions of its names, and so on."""
+    """Yield the words that determine a number.
+
+    They are the attribute's own word, then the definitions of its names, recursively.
+    """
     seen: set[tuple[str, int]] = set()
     pending: list[tuple[Place, int]] = [(place, 0)]
     while pending:
@@ -75,7 +78,7 @@ def _reached(place: Place, index: int, frame: Frame | None, definitions: Definit
 
 
 def _numbers_in(word: Place, value: float) -> Iterator[Candidate]:
-    """The numbers that are written in a word."""
+    """Yield the numbers that are written in a word."""
     known = literal(word)
     if known is not None:
         yield known
@@ -87,7 +90,7 @@ def _numbers_in(word: Place, value: float) -> Iterator[Candidate]:
 
 
 def _whole(place: Place, index: int, present: Sequence[float]) -> Candidate:
-    """All numbers of an attribute that is one expression."""
+    """Return a candidate for all numbers of an attribute that is a single expression."""
 
     def write(number: float, tolerance: float) -> str:
         return " ".join(

@@ -1,4 +1,4 @@
-"""Refusals: why no edit of the text makes exactly the requested change."""
+"""The reasons why no edit of the text makes exactly the requested change."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ class Attempt:
     """A candidate that failed.
 
     Attributes:
-        place: its text.
-        also: the other changes that it would make.
-        forbidden: the reason why its file may not be written.
-        choice: whether it is a factor that selects a side.
-        doubtful: whether it may be such a factor.
-        error: whether the description could not be expanded with it.
+        place: the place of the candidate's text.
+        also: the other changes that the edit would make.
+        forbidden: the reason why the file may not be written.
+        choice: whether the text is a factor that selects a side.
+        doubtful: whether the text may be such a factor.
+        error: whether the description could not be expanded with the edit.
     """
 
     place: Place
@@ -36,7 +36,7 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
     """Return the finding with the reason why an edit is refused.
 
     Args:
-        place: the attribute as it is written, or the place for a new one.
+        place: the attribute as written, or the place for a new one.
         index: the index of the number that cannot be changed; None for an attribute that is not written.
         attempts: the failed candidates, in order.
         tag: the element that would be written.
@@ -87,7 +87,7 @@ def _named(also: Sequence[str]) -> object:
 
 
 def forbidden_file(path: str, why: object) -> Diagnostic:
-    """The finding that a file may not be written."""
+    """Return the finding that a file may not be written."""
     message = phrase("'{path}' is not written: {why}", path=display_path(path), why=why)
     hint = phrase("open the description from your own workspace, or change a copy of the file")
     return Diagnostic("EDIT106", message, hint=hint)

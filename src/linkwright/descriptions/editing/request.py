@@ -17,16 +17,17 @@ WITHOUT_AXIS = ("fixed", "floating")
 
 @dataclass(frozen=True, slots=True)
 class EditRequest:
-    """One edit: the pose of a part, or the axis of a joint.
+    """An edit: the pose of a part, or the axis of a joint.
 
     Attributes:
-        part: what is edited: the origin of a joint, visual, collision or inertial, or the axis of a joint.
-        name: of the joint, or of the link that anything else is of.
+        part: the edited part: the origin of a joint, visual, collision or inertial, or the axis of a joint.
+        name: the name of the joint, or of the link that contains any other part.
         index: which of the link's visuals or collisions, from 0.
-        xyz: where it shall be in metres, in the frame of the parent link or of the link; the axis for `axis`, in the
-            joint's frame. None for what it is.
-        rpy: roll, pitch and yaw in rad; None for what they are.
-        together: whether others that the same text makes may change with it.
+        xyz: the requested position in metres, in the frame of the parent link or of the link; for `axis` the axis, in
+            the
+            joint's frame. None to keep the current one.
+        rpy: the requested roll, pitch and yaw in rad; None to keep the current ones.
+        together: whether other parts that depend on the same text may change, too.
     """
 
     part: Part
@@ -38,11 +39,11 @@ class EditRequest:
 
     @property
     def tag(self) -> str:
-        """The element that is edited."""
+        """The tag of the edited element."""
         return "axis" if self.part == "axis" else "origin"
 
     def owner(self, robot: Robot) -> Element | None:
-        """The joint, visual, collision or inertial in a robot; None if there is none."""
+        """Return the joint, visual, collision or inertial in a robot; None if there is none."""
         if self.part in ("joint", "axis"):
             joint = robot.joints.get(self.name)
             if joint is None or (self.part == "axis" and joint.type in WITHOUT_AXIS):

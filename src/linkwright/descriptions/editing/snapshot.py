@@ -1,4 +1,4 @@
-"""Snapshots of a description: its files' texts, some replaced by trial edits."""
+"""Snapshots of a description: the texts of its files, some replaced by trial edits."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Snapshot:
         description: the description as it was first read, with its arguments.
         texts: real path of a file -> its changed text.
         document: the expansion with these texts.
-        files: the files that were read for it.
+        files: the files that were read for the expansion.
         expansion: the record of the expansion; None for plain URDF.
     """
 
@@ -45,7 +45,7 @@ class Snapshot:
 
     @classmethod
     def of(cls, description: Description) -> Snapshot:
-        """The snapshot of a description that was just read."""
+        """Return the snapshot of a description that was just read."""
         return cls(description, {}, description.document, description.files)
 
     @property
@@ -55,7 +55,7 @@ class Snapshot:
 
     @cached_property
     def definitions(self) -> Definitions:
-        """Where names get their values."""
+        """The sources of named values."""
         from linkwright.xacro import sources
 
         if self.description.expansion is None:
@@ -67,15 +67,15 @@ class Snapshot:
             if path.suffix in _YAML:
                 others.append(path)
             else:
-                with suppress(LinkwrightError):  # an optional file that does not exist
+                with suppress(LinkwrightError):  # The file may be optional and not exist.
                     documents.append(sources.read(str(path), overlay))
         return Definitions(documents, others, overlay)
 
     def with_text(self, place: Place, text: str) -> Snapshot:
-        """The description with another text in one place.
+        """Return the description with another text at one place.
 
         Raises:
-            LinkwrightError: it cannot be expanded any more.
+            LinkwrightError: the description can no longer be expanded.
         """
         whole = place.source.text
         changed = whole[: place.start] + text + whole[place.end :]
@@ -83,10 +83,10 @@ class Snapshot:
         return self.with_texts(texts)
 
     def with_texts(self, texts: Mapping[str | os.PathLike[str], str]) -> Snapshot:
-        """The description with these texts in the place of those of files.
+        """Return the description with these texts in place of the files' texts.
 
         Raises:
-            LinkwrightError: it cannot be expanded with them.
+            LinkwrightError: the description cannot be expanded with them.
         """
         name, expansion, overlay = self.description.name, self.description.expansion, Overlay(texts)
         text = overlay.text(name)
@@ -105,7 +105,7 @@ def read_again(description: Description) -> Description:
     """Read a description again from its files, with the same arguments and packages.
 
     Raises:
-        LinkwrightError: they can no longer be read or expanded.
+        LinkwrightError: the files can no longer be read or expanded.
     """
     snapshot = Snapshot.of(description).with_texts({})
     if snapshot.expansion is None:
