@@ -1,4 +1,7 @@
-"""Reading the triangles of usual OBJ files: importing trimesh takes longer than reading most."""
+"""A fast reader of the triangles of simple OBJ files.
+
+Importing trimesh takes longer than reading most files.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +17,12 @@ _OF_TEXTURES = lazy_pattern(rb"/\S*")
 
 
 def read_obj(data: bytes) -> PlainMesh | None:
-    """The triangles of an OBJ file; None for one with anything out of the ordinary, which trimesh is to read."""
+    """Return the triangles of an OBJ file.
+
+    Returns None if it uses unusual features, so that trimesh must read it.
+    """
     if b"\\" in data:
-        return None  # a line may continue on the next one
+        return None  # A line may continue on the next one.
     lines = data.splitlines()
     vertices = [line[2:] for line in lines if line.startswith(b"v ")]
     polygons = [line[2:] for line in lines if line.startswith(b"f ")]
