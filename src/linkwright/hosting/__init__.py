@@ -1,1 +1,4 @@
-"""Nodes and viewers that run in this process: starting and ending them, their log, signals, reloading of models."""
+"""Nodes and viewers that run in this process.
+
+This includes starting and ending them, their log, signals, and live reload of models.
+"""

@@ -17,17 +17,17 @@ _MOST_TRIED = 12
 
 
 def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Diagnostic]) -> ArgumentForm | None:
-    """Return the arguments that a description needs, with those sets of values of its callers that give a robot.
+    """Return the arguments that a description needs, with the callers' sets of values that result in a robot.
 
-    Takes as long as it takes to expand the description with each set; may run in another thread.
+    It takes as long as expanding the description with each set, and may run in another thread.
 
     Args:
         call: the use of xacro that failed.
-        finder: where packages are.
+        finder: finds packages.
         findings: the errors of that use.
 
     Returns:
-        The form, or None if other values would change nothing, as far as that is known.
+        The form, or None if other values would change nothing, as far as is known.
     """
     from linkwright.descriptions.argument_sets import argument_sets
     from linkwright.lint.argument_sets import undeclared_argument

@@ -1,4 +1,4 @@
-"""The view of a recording: in a graph of its own, with a timeline in the page."""
+"""The view of a recording: in a separate graph, with a timeline in the page."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ def run_bag_view(files: Sequence[Path], options: HostOptions, *, foxglove: int |
     """Show a recording until the user ends it.
 
     Args:
-        files: its folder or its files.
-        options: how it is run.
+        files: the folder or the files of the recording.
+        options: the options of nodes and viewers.
         foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
 
     Returns:
         The exit status, see `linkwright.hosting.signals.run_to_end`.
 
     Raises:
-        LinkwrightError: it cannot be read; see `linkwright.bag.BagReader`.
+        LinkwrightError: the recording cannot be read; see `linkwright.bag.BagReader`.
     """
     path, *others = (file.absolute() for file in files)
     finder = PackageFinder(start=[path.parent, Path.cwd()])
@@ -58,9 +58,9 @@ class BagView(ModelView):
 
     Args:
         bag: the recording.
-        finder: where the packages of its robots are.
-        options: how it is run.
-        log: what is printed.
+        finder: finds the packages of the recording's robots.
+        options: the options of nodes and viewers.
+        log: the log of the run.
     """
 
     def __init__(self, bag: BagReader, finder: PackageFinder, options: HostOptions, log: LaunchLog) -> None:
@@ -68,7 +68,7 @@ class BagView(ModelView):
         self._bag = bag
 
     def _publish(self) -> bool:
-        """Prepare its topics."""
+        """Prepare the topics of the recording, and return whether the view continues."""
         self.log.diagnostics(self._bag.findings)
         from linkwright.viewer.recorded_robot import published
 

@@ -1,4 +1,4 @@
-"""The view of two descriptions in one scene: the new one as `view` shows it, the old one transparent."""
+"""The view of two descriptions in one scene: the new one as in `view`, the old one transparent."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None 
     """Show two descriptions in one scene, with their differences, until the user ends it.
 
     Args:
-        pair: the two; the caller closes it.
-        options: how it is run.
+        pair: the two descriptions; the caller closes the pair.
+        options: the options of nodes and viewers.
         foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
 
     Returns:
         The exit status, see `linkwright.hosting.signals.run_to_end`.
 
     Raises:
-        LinkwrightError: the old description is that of a commit, and cannot be read.
+        LinkwrightError: the old description is from a commit and cannot be read.
     """
     options = replace(options, title=f"{pair.old.title} → {pair.new.title}")
     log = LaunchLog()
     if pair.old.revision is not None:
-        pair.old.read()  # this version cannot be corrected, so that an error ends the command
+        pair.old.read()  # A version in a commit cannot be corrected, so an error ends the command.
 
     def run(signals: SignalWatch) -> bool:
         async def show() -> bool:
@@ -51,12 +51,12 @@ def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None 
 
 
 class ComparedView(ModelView):
-    """Two descriptions on the running event loop; both are followed on disk.
+    """Two descriptions on the running event loop; changes of both files are followed.
 
     Args:
-        pair: the two.
-        options: how it is run.
-        log: what is printed.
+        pair: the two descriptions.
+        options: the options of nodes and viewers.
+        log: the log of the run.
     """
 
     def __init__(self, pair: Pair, options: HostOptions, log: LaunchLog) -> None:
@@ -70,7 +70,7 @@ class ComparedView(ModelView):
     def _publish(self) -> bool:
         if self._pair.old.path.is_file():
             return super()._publish()
-        self._read_old()  # it reports the error
+        self._read_old()  # reports any error
         self.shut_down("there is no model")
         return False
 
@@ -103,7 +103,10 @@ class ComparedView(ModelView):
             self._old_reload.start()
 
     def _read_old(self) -> str | None:
-        """Return the text of the old description; reports an error and returns None if it has none now."""
+        """Return the text of the old description.
+
+        Reports an error and returns None if it has none now.
+        """
         try:
             text = self._old.expand(self._old_call)
         except DescriptionError as error:
@@ -122,14 +125,14 @@ class ComparedView(ModelView):
 
 
 class _OldDescriptions(Descriptions):
-    """Descriptions with unique texts: both files may have the same content."""
+    """Descriptions with unique texts, because both files may have the same content."""
 
     def __init__(self, finder: PackageFinder, library: DescriptionLibrary) -> None:
         super().__init__(finder)
         self._library = library
 
     def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
-        """Store a description; returns the text that identifies it."""
+        """Store a description, and return the text that identifies it."""
         from linkwright.descriptions.pairs import text_of_old
 
         return super().store(call, description, text_of_old(description) if text is None else text)

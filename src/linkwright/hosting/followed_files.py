@@ -1,4 +1,4 @@
-"""The files that hosted nodes take again when they are saved."""
+"""Files that hosted nodes reload when they are saved."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ class FollowedFiles:
     """Watches the files of one node, as its `FileFollower`.
 
     Args:
-        session: the run that it belongs to.
-        launcher: gives the node that calls services.
+        session: the run to which the node belongs.
+        launcher: returns the node that calls services.
     """
 
     def __init__(self, session: Supervisor, launcher: Callable[[], Node]) -> None:
@@ -29,7 +29,7 @@ class FollowedFiles:
 
     @property
     def launcher_node(self) -> Node:
-        """The launcher's own node."""
+        """The launcher's own node, which calls services."""
         return self._launcher()
 
     def show(self, about: str, findings: Iterable[Diagnostic]) -> None:

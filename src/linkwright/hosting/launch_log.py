@@ -1,4 +1,7 @@
-"""The log of a launch: its own lines, those of processes and nodes, diagnostics; and the place of log files."""
+"""The log of a launch, and the location of log files.
+
+The log contains the lines of the launcher, processes and nodes, and diagnostics.
+"""
 
 from __future__ import annotations
 
@@ -65,16 +68,16 @@ def output_destinations(mode: str | Mapping[str, Iterable[str] | str]) -> dict[i
 class LaunchLog:
     """The log of one launch.
 
-    On the screen, lines of the launcher and of nodes go to stderr, the output of processes to the stream that they
-    write to. In the folder of the launch, below the one that `log_base` gives, ``launch.log`` has all lines of the
-    launcher and all output that goes to the log; processes with a log of their own have theirs beside it. The
-    variables ``OVERRIDE_LAUNCH_SCREEN_FORMAT`` and ``OVERRIDE_LAUNCH_LOG_FORMAT`` change the format of lines, as in
-    ROS.
+    On the screen, lines of the launcher and of nodes are written to stderr, and the output of processes to the stream
+    that
+    they use. In the folder of the launch, below `log_base`, ``launch.log`` contains all lines of the launcher and all
+    output directed to the log; processes with their own log have a file next to it. The variables
+    ``OVERRIDE_LAUNCH_SCREEN_FORMAT`` and ``OVERRIDE_LAUNCH_LOG_FORMAT`` change the format of lines, as in ROS.
 
     Args:
-        stdout: where the output of processes goes.
-        stderr: where all other lines go.
-        debug: whether it logs in detail.
+        stdout: the stream for the output of processes.
+        stderr: the stream for all other lines.
+        debug: whether to log details.
     """
 
     def __init__(self, stdout: IO[str] | None = None, stderr: IO[str] | None = None, *, debug: bool = False) -> None:
@@ -127,7 +130,7 @@ class LaunchLog:
         self._own_line("ERROR", name, text)
 
     def announce(self, line: str) -> None:
-        """Print a line for programs that read our stdout, without delay."""
+        """Print a line without delay for programs that read our stdout."""
         self._print(1, line)
 
     def diagnostics(self, diagnostics: Iterable[Diagnostic]) -> None:
@@ -136,7 +139,7 @@ class LaunchLog:
             print_diagnostics(diagnostics, self._streams[2])
 
     def node_record(self, process: str, record: LogRecord, destinations: frozenset[str]) -> None:
-        """Log a record of a node of this process, in rcutils' format after the name of its process."""
+        """Log a record of a node in this process, in rcutils' format after the name of its process."""
         from linkwright.graph import console_line
 
         line = f"[{process}] {console_line(record)}"
@@ -149,10 +152,10 @@ class LaunchLog:
         """Log a line that a process wrote.
 
         Args:
-            process: its name, such as ``talker-1``.
+            process: the name of the process, such as ``talker-1``.
             stream: 1 for stdout, 2 for stderr.
             line: the line as it is to be shown.
-            destinations: of `SCREEN`, `LOG` and `OWN_LOG`.
+            destinations: a set of `SCREEN`, `LOG` and `OWN_LOG`.
         """
         if SCREEN in destinations:
             self._print(stream, line)
@@ -179,7 +182,7 @@ class LaunchLog:
             self._write(f"{process}.log", line)
 
     def _print(self, stream: int, line: str) -> None:
-        with suppress(OSError):  # the reader, such as head, has gone, or its disk is full; the launch continues
+        with suppress(OSError):  # The reader, such as head, has exited, or its disk is full; the launch continues.
             print(line, file=self._streams[stream], flush=True)
 
     def _painted(self, line: str, colour: str | None) -> str:
@@ -189,14 +192,14 @@ class LaunchLog:
         if self._closed:
             return
         if name not in self._files:
-            folder = self.folder  # this line may fail, too
+            folder = self.folder  # Writing this line may fail, too.
             if name not in self._files:
                 self._files[name] = self._open(folder / name)
         file = self._files[name]
         if file is not None:
             try:
                 print(line, file=file, flush=True)
-            except OSError as error:  # a full disk must not end a launch
+            except OSError as error:  # A full disk must not end a launch.
                 self._files[name] = None
                 self._unwritable(self.folder / name, error)
 
@@ -226,11 +229,11 @@ def line_format(chosen: str | None, named: dict[str, str]) -> Line:
     """Return a function that formats lines.
 
     Args:
-        chosen: a name of `named`, or a format with the fields of Python's log records in braces; None for the default.
+        chosen: a name in `named`, or a format with the fields of Python's log records in braces; None for the default.
         named: formats by name.
 
     Returns:
-        The function. For a format that cannot be filled, it uses the default one.
+        The function, which uses the default format if the chosen one cannot be filled.
     """
     template = named.get(chosen or "default", chosen or "")
 
@@ -273,7 +276,7 @@ def new_log_folder(base: Path) -> Path:
         OSError: it cannot be created.
     """
     while True:
-        # Local time, as in ROS's names of these folders, so that a user finds the launch of this morning.
+        # Local time, as in ROS's folder names, so that a user finds the launch of this morning.
         seconds, nanoseconds = divmod(time.time_ns(), NANOSECONDS_PER_SECOND)
         stamp = f"{time.strftime('%Y-%m-%d-%H-%M-%S', time.localtime(seconds))}-{nanoseconds // 1000:06d}"
         folder = base / f"{stamp}-{socket.gethostname()}-{os.getpid()}"
@@ -287,7 +290,7 @@ def new_log_folder(base: Path) -> Path:
 
 def _link_latest(base: Path, folder: Path) -> None:
     waiting = base / f".{LATEST}-{os.getpid()}"
-    with suppress(OSError, NotImplementedError):  # a file system without links
+    with suppress(OSError, NotImplementedError):  # The file system may not support links.
         waiting.unlink(missing_ok=True)
         waiting.symlink_to(folder.name)
         waiting.replace(base / LATEST)

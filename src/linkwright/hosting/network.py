@@ -1,4 +1,4 @@
-"""The network of ROS 2: joined in the background; warns of node names that another launch uses too."""
+"""The ROS 2 network: joining it, and warnings of node names that are used twice."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _DELAY_SECONDS = 0.8
 
 
 class Network:
-    """Joins the graph of a launch to the network of ROS 2.
+    """Joins the graph of a launch to the ROS 2 network.
 
     Args:
         session: the launch.
@@ -31,7 +31,7 @@ class Network:
         domain_id: the ROS_DOMAIN_ID that was joined; None before, or if joining fails.
 
     Raises:
-        LinkwrightError: DDS121, the network has to be joined with security.
+        LinkwrightError: DDS121, the network must be joined with security.
     """
 
     def __init__(self, session: Supervisor) -> None:
@@ -86,11 +86,11 @@ _LISTED = 6
 
 
 class SharedNames:
-    """Warnings of the node names that a launch shares with another.
+    """Warnings of node names that a launch shares with another launch.
 
     Args:
-        network: knows which domain the names are shared on.
-        log: where the line goes.
+        network: the network, which knows the shared domain.
+        log: where the warning is logged.
         show: called when `findings` change.
     """
 
@@ -106,8 +106,8 @@ class SharedNames:
         """The findings for the page: one as long as names are shared, else none."""
 
     def notice(self, names: frozenset[str]) -> None:
-        """Set the full names of the nodes that are shared now; from any thread."""
-        with suppress(RuntimeError):  # the loop is closed
+        """Set the full names of the nodes that are shared now; may be called from any thread."""
+        with suppress(RuntimeError):  # The event loop may be closed.
             self._loop.call_soon_threadsafe(self._gather, names)
 
     def close(self) -> None:

@@ -28,8 +28,7 @@ _ON_SCREEN = output_destinations("screen")[2]
 class NodeHost:
     """Starts, stores and ends the nodes of this process.
 
-    The viewer is started before the nodes that were planned together with it, so that its page answers as
-    early as can be.
+    The viewer is started before the nodes that were planned with it, so that its page responds as early as possible.
     """
 
     def __init__(self, session: Supervisor) -> None:
@@ -54,7 +53,7 @@ class NodeHost:
 
     @property
     def is_busy(self) -> bool:
-        """Whether nodes run here or are planned."""
+        """Whether nodes run in this process or are planned."""
         return bool(self._planned or self._running or self._viewers or self._starting.locked())
 
     @property
@@ -89,7 +88,7 @@ class NodeHost:
         return self._launcher
 
     def use_simulated_time(self, value: bool) -> None:
-        """Switch the launcher's own node between ``/clock`` and wall time."""
+        """Switch the launcher's own node between ``/clock`` and system time."""
         from linkwright.graph import Parameter
 
         self._simulated_time = value
@@ -97,18 +96,18 @@ class NodeHost:
             self._launcher.set_parameters([Parameter("use_sim_time", value=value)])
 
     def plan(self, plan: HostedPlan) -> None:
-        """Have a node started as soon as the launcher reaches it, unless the launch is ending."""
+        """Start a node as soon as the launcher reaches it, unless the launch is ending."""
         if not self._closing:
             self._planned.append(plan)
 
     def forget_planned(self) -> None:
-        """Drop all plans that have not started."""
+        """Drop all plans that were not started."""
         self._planned.clear()
 
     async def give_out_pages(self) -> None:
-        """Serve the pages of the viewers that are planned, and meanwhile load the modules that these need.
+        """Serve the pages of the planned viewers, and meanwhile load the modules that the viewers need.
 
-        A server that cannot listen raises its error when its viewer is started.
+        If a server cannot listen, the error is raised when its viewer is started.
         """
         planned = [plan for plan in self._planned if plan.is_viewer]
         for plan in planned:
@@ -118,7 +117,7 @@ class NodeHost:
             await asyncio.to_thread(load_viewer)
 
     async def start_planned(self) -> None:
-        """Start all planned nodes, viewers first. Between two nodes the loop gets its turn."""
+        """Start all planned nodes, viewers first; other callbacks run between two nodes."""
         if not self._planned:
             return
         async with self._starting:
@@ -146,7 +145,7 @@ class NodeHost:
         self._show_findings()
 
     def stop_matching(self, matcher: Callable[[Any], bool]) -> None:
-        """End the nodes whose owners match, as a signal would end their processes."""
+        """End the nodes whose owners match, like a signal that ends their processes."""
         for plan, running in tuple(self._running.values()):
             if matcher(plan.owner):
                 self._stop_node(plan, running)
@@ -207,7 +206,7 @@ class NodeHost:
         self._viewers.attach_panel(running)
 
     def _not_started(self, plan: HostedPlan, error: LinkwrightError) -> None:
-        """Log the reason; a node whose model file is wrong is started as soon as that is fixed."""
+        """Log the reason; a node with an invalid model file is started as soon as the file is fixed."""
         session = self._session
         found = self._description_of(plan) if plan.waits else None
         if found is None or session.ending:
@@ -229,7 +228,7 @@ class NodeHost:
         session.reload.report(call, error.diagnostics)
 
     def _bind_descriptions(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
-        """Give the node every new text of its descriptions, and show the findings about the first."""
+        """Pass every new text of the node's descriptions to it, and show the findings about the first."""
         from linkwright.nodes.options import NodeWithDescription
 
         session = self._session
@@ -274,7 +273,7 @@ class NodeHost:
         self._ended(plan, status)
 
     def _finished(self, plan: HostedPlan, running: RunningNode, done: asyncio.Future[int]) -> None:
-        """End a node that has finished, and restart it if it respawns."""
+        """Close a node that has finished, and restart it if it respawns."""
         if plan.process_name not in self._running or done.cancelled():
             return
         self._stop_node(plan, running, done.result())
@@ -295,7 +294,7 @@ class NodeHost:
     # --- viewers --------------------------------------------------------------------------------------------
 
     async def _start_viewer(self, plan: HostedPlan, *, with_world: bool = False) -> bool:
-        """Start it; if it cannot start, log the reason, end the launch, and return False."""
+        """Start a viewer; if that fails, log the reason, end the launch, and return False."""
         session = self._session
         nodes = [running for _, running in self._running.values()]
         try:
@@ -340,7 +339,10 @@ class NodeHost:
 
     @contextmanager
     def _holding_back(self) -> Iterator[None]:
-        """Hold back the fatal messages of a node that fails to start: its diagnostics report them with their place."""
+        """Suppress the fatal messages of a node that fails to start.
+
+        Its diagnostics report the errors with their place.
+        """
         self._held_back, off_screen = [], False
         try:
             yield
@@ -355,7 +357,7 @@ class NodeHost:
 
     @contextmanager
     def _speak_as(self, process_name: str) -> Iterator[None]:
-        """Attribute the records of unknown loggers to a process inside the block."""
+        """Attribute the records of unknown loggers to a process inside a ``with`` block."""
         before, self._speaking = self._speaking, process_name
         try:
             yield

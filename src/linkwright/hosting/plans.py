@@ -1,4 +1,4 @@
-"""Plans of hosted nodes and viewers, and the interface between their host and the run that it belongs to."""
+"""Plans of hosted nodes and viewers, and the interface between their host and its run."""
 
 from __future__ import annotations
 
@@ -30,26 +30,27 @@ _GAZEBO_WINDOW = "gzclient"
 
 @dataclass(eq=False)
 class HostedPlan:
-    """A node to be started in this process.
+    """A node to start in this process.
 
     Attributes:
-        owner: the object that asks for it, such as an action of a launch file; None for a node that another needs.
-        process_name: its name in the log, such as ``robot_state_publisher-1``.
-        package: the package it belongs to.
-        executable: its executable there.
-        node_name: the name given to it, or None.
-        namespace: its namespace.
+        owner: the object that requests the node, such as an action of a launch file; None for a node that another
+            needs.
+        process_name: the name in the log, such as ``robot_state_publisher-1``.
+        package: the package of the node.
+        executable: the executable in that package.
+        node_name: the name given to the node, or None.
+        namespace: the namespace of the node.
         parameters: values by name.
         remappings: rules ``(from, to)``.
-        arguments: its command line.
-        viewer_config: makes the viewer's configuration; by default the command line selects it.
+        arguments: the command line.
+        viewer_config: returns the viewer's configuration; by default the command line selects it.
         viewer_started: called with the viewer when it runs.
-        destinations: where its lines on stdout (1) and stderr (2) go, see `linkwright.hosting.launch_log`.
-        respawns: how often it is restarted after it has finished; without limit if negative.
-        respawn_delay: seconds to wait before that.
-        for_others: parameters for further nodes that it makes, by their names; None for none.
-        environment: its environment variables, those at the time of the plan.
-        waits: whether, if it cannot start with its model, it starts as soon as the model file is fixed.
+        destinations: where the node's lines on stdout (1) and stderr (2) go, see `linkwright.hosting.launch_log`.
+        respawns: how often the node is restarted after it has finished; without limit if negative.
+        respawn_delay: the seconds to wait before a restart.
+        for_others: parameters for further nodes that the node creates, by node name; None for none.
+        environment: the environment variables at the time of the plan.
+        waits: whether a node that cannot start with its model starts as soon as the model file is fixed.
     """
 
     owner: Any
@@ -72,12 +73,12 @@ class HostedPlan:
 
     @property
     def is_viewer(self) -> bool:
-        """Whether it is RViz, which our viewer replaces."""
+        """Whether the node is RViz, which our viewer replaces."""
         return is_viewer(self.package, self.executable)
 
     @property
     def opens_gazebo_window(self) -> bool:
-        """Whether the program is Gazebo's window, or opens one besides."""
+        """Whether the program is Gazebo's window, or also opens one."""
         return self.executable == _GAZEBO_WINDOW or self.parameters.get("gui") is True
 
     @property
@@ -96,7 +97,10 @@ class HostedPlan:
         )
 
     def node_options(self, library: DescriptionLibrary) -> NodeOptions:
-        """Return the options to start it with; `library` holds the robot descriptions that the process has read."""
+        """Return the options for starting the node.
+
+        `library` contains the robot descriptions that the process has read.
+        """
         from linkwright.graph.parameters.parameter import ParameterRules
         from linkwright.nodes import NodeOptions
 
@@ -113,7 +117,7 @@ class HostedPlan:
 
     @property
     def details(self) -> dict[str, Any]:
-        """The details of its launch events."""
+        """The details of the node's launch events."""
         command = [self.executable, *self.arguments]
         return {"name": self.process_name, "cmd": command, "cwd": None, "env": None, "pid": os.getpid()}
 
@@ -129,7 +133,7 @@ class HostOptions:
 
     Attributes:
         host: the address that the viewer's server binds to.
-        port: its port; None for the default one, or the next that is free.
+        port: the server's port; None for the default port, or the next free one.
         open_browser: whether the page is opened in the user's browser.
         title: the title of the page.
         network: whether the nodes join the ROS 2 network, where other programs see them.
@@ -147,7 +151,7 @@ class HostOptions:
 
 
 class Supervisor(Protocol):
-    """The run that a host belongs to: a launch, or the view of one model."""
+    """The run to which a host belongs: a launch, or the view of one model."""
 
     @property
     def finder(self) -> PackageFinder:
@@ -167,27 +171,27 @@ class Supervisor(Protocol):
 
     @property
     def reload(self) -> LiveReload:
-        """Gives nodes the new text of a description."""
+        """The live reload, which passes new texts of descriptions to nodes."""
 
     @property
     def ending(self) -> bool:
-        """Whether it is about to end."""
+        """Whether the run is about to end."""
 
     @property
     def has_processes(self) -> bool:
-        """Whether it runs any processes besides nodes."""
+        """Whether the run includes any processes in addition to nodes."""
 
     def fail(self, what: object) -> None:
-        """Record a failure: the exit status is 1 unless it is fixed."""
+        """Record a failure: the exit status is 1 unless the failure is cleared."""
 
     def clear_failure(self, what: object) -> None:
-        """Clear a failure that is fixed."""
+        """Clear a failure that was fixed."""
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
         """Run a coroutine in the background; the run ends after it."""
 
     def shut_down(self, reason: str) -> None:
-        """End the run as soon as the current work is done."""
+        """End the run as soon as the current work is completed."""
 
     def node_started(self, plan: HostedPlan) -> None:
         """Handle the start of a node or viewer."""

@@ -1,7 +1,8 @@
-"""Live reload: a saved model file is expanded again and given to the nodes that show it.
+"""Live reload: a saved model file is expanded again and passed to the nodes that show it.
 
-The nodes stay, and with them joint positions and the camera. A model that cannot be read leaves the last good
-one standing and shows what is wrong until it is repaired.
+The nodes keep running, so joint positions and the camera are kept. If a model cannot be read, the last valid one
+remains
+in use, and the errors are shown until the file is fixed.
 """
 
 from __future__ import annotations
@@ -32,10 +33,10 @@ Apply = Callable[[str], None]
 
 
 class LiveReload:
-    """Watches the files of the descriptions of a launch.
+    """Watches the files of a launch's descriptions.
 
     Args:
-        descriptions: expands them.
+        descriptions: expands the descriptions.
         show: called with all current findings, which the viewer shows.
         log: where findings are printed.
     """
@@ -63,14 +64,17 @@ class LiveReload:
         self._targets[call].remove(apply)
 
     def show(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show findings about an object, which have been printed; no findings clear the earlier ones."""
+        """Show findings about an object that are already printed.
+
+        No findings clear the earlier ones.
+        """
         self._findings[about] = tuple(diagnostics)
         self._show(self.findings())
 
     def report(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
         """Print the findings of a description and show them; no findings clear the earlier ones.
 
-        Errors are printed again with each saving, as long as they persist; warnings and remarks once.
+        Errors are printed each time the file is saved while they persist, warnings and remarks only once.
         """
         findings = tuple(diagnostics)
         known = {_essence(finding) for finding in self._findings.get(about, ())}
@@ -80,11 +84,11 @@ class LiveReload:
         self.show(about, findings)
 
     def findings(self) -> list[Diagnostic]:
-        """The findings of all descriptions."""
+        """Return the findings of all descriptions."""
         return [finding for findings in self._findings.values() for finding in findings]
 
     def start(self) -> None:
-        """Begin to watch; needs the running event loop."""
+        """Start watching; requires the running event loop."""
         self._started = True
         self._watch_files()
 
@@ -99,7 +103,7 @@ class LiveReload:
     # --- which files ----------------------------------------------------------------------------------------
 
     def _files_of_interest(self, call: XacroCall) -> set[Path]:
-        """The files that a description was read from, and those named in its errors."""
+        """Return the files from which a description was read, and those named in its errors."""
         files = {call.path, *self._descriptions.files_of(call)}
         for finding in self._findings.get(call, ()):
             spans = (finding.span, *(note.span for note in finding.notes))
@@ -118,7 +122,7 @@ class LiveReload:
         self._log.warning_line("launch", f"model files are not watched for changes: {reason}")
 
     def _catch_up(self) -> None:
-        """Reload the files that were saved, or removed, after they were read and before the watch began."""
+        """Reload the files that were saved or removed after they were read and before the watch began."""
         for call in self._targets if not self._closed else ():
             read_ns = self._descriptions.read_ns(call)
             saved = [_saved_ns(path) for path in self._files_of_interest(call)]
@@ -135,7 +139,7 @@ class LiveReload:
             if not paths.isdisjoint(files | {real(file) for file in files}):
                 self._saved.add(call)
             if self._is_broken(call):
-                # Any file beside it, and any package, may be the missing one.
+                # Any file next to it, and any package, may be the missing one.
                 self._descriptions.finder.forget()
                 self._start_reload(call)
             elif call in self._saved:
@@ -169,7 +173,7 @@ class LiveReload:
                 break
             await asyncio.sleep(_SETTLE_SECONDS)
             if call in self._again:
-                return  # a newer change starts a new reload
+                return  # A newer change starts a new reload.
         known = [_essence(finding) for finding in self._findings.get(call, ())]
         if call in self._saved or known != [_essence(finding) for finding in findings]:
             self.report(call, findings)
@@ -204,7 +208,7 @@ def _essence(finding: Diagnostic) -> tuple[object, ...]:
 
 
 def _saved_ns(path: Path) -> int:
-    """Return when a file was changed; 0 for one that does not exist."""
+    """Return when a file was changed; 0 if it does not exist."""
     try:
         return path.stat().st_mtime_ns
     except OSError:
@@ -212,11 +216,13 @@ def _saved_ns(path: Path) -> int:
 
 
 class FileWatch:
-    """Calls back on the event loop when files of some folders change.
+    """Calls back on the event loop when files in some folders change.
 
-    Folders are watched rather than files, because editors save by writing a new file and renaming it. Files
-    behind links (``colcon build --symlink-install``) are watched where they really are too. For a folder that does not
-    exist, such as one that a build is about to create again, the nearest existing one above it is watched.
+    Folders are watched rather than files, because editors save by writing a new file and renaming it. Files behind
+    links
+    (``colcon build --symlink-install``) are also watched at their real location. For a folder that does not exist, such
+    as
+    one that a build is about to create again, the nearest existing parent folder is watched.
 
     Args:
         on_change: called with the paths that changed.
@@ -231,10 +237,10 @@ class FileWatch:
         self._stop: threading.Event | None = None
 
     def watch(self, files: Iterable[Path]) -> bool:
-        """Watch the folders of these files, and of those only, from now on.
+        """Watch the folders of these files, and no other folders, from now on.
 
         Returns:
-            Whether that is a new watch, which takes a moment to begin.
+            Whether a new watch begins, which takes a moment.
         """
         folders = frozenset(
             (str(folder), number)
@@ -284,18 +290,18 @@ class FileWatch:
 
     def _changed(self, paths: set[Path]) -> None:
         if not paths.isdisjoint(Path(name) for name, _ in self._folders):
-            self._folders = frozenset()  # one of them is gone; a new one may get the same number
+            self._folders = frozenset()  # A folder was deleted; a new one may get the same number.
         self._on_change(paths)
 
     def _call(self, function: Callable[..., None], argument: object) -> None:
         try:
             self._loop.call_soon_threadsafe(function, argument)
-        except RuntimeError:  # the loop is closed: the launch is over
+        except RuntimeError:  # The loop is closed: the launch is over.
             return
 
 
 def _nearest_folder(file: Path) -> tuple[Path, int]:
-    """Return the nearest existing folder above a file, and a number that a folder created later does not have."""
+    """Return the nearest existing folder above a file, and a number that identifies it after it was replaced."""
     for folder in file.absolute().parents:
         try:
             facts = folder.stat()

@@ -1,4 +1,4 @@
-"""The command line of ``rviz2``, as far as the viewer that replaces it supports it."""
+"""The command line of ``rviz2``, as far as the replacing viewer supports it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ RViz's -s, -l, --stereo, --fullscreen and --force-x11 are accepted and ignored.
 
 
 def asks_for_help(arguments: Sequence[str]) -> bool:
-    """Whether the command line asks for `USAGE`."""
+    """Return whether the command line requests `USAGE`."""
     own = list(arguments)
     if "--ros-args" in own:
         own = own[: own.index("--ros-args")]
@@ -45,9 +45,9 @@ def asks_for_help(arguments: Sequence[str]) -> bool:
 
 
 def read_viewer_config(arguments: Sequence[str]) -> tuple[RvizConfig, list[Diagnostic]]:
-    """Return the configuration that the arguments ask for, and findings about them.
+    """Return the configuration that the arguments request, and findings about them.
 
-    As in RViz, a file that cannot be read is reported, and the default configuration replaces it.
+    As in RViz, a file that cannot be read is reported and replaced by the default configuration.
     """
     from linkwright.rviz import RvizConfig
 

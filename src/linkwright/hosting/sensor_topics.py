@@ -1,4 +1,4 @@
-"""The topics of the scans and images of a simulated robot, from the text of its description."""
+"""The scan and image topics of a simulated robot, from the text of its description."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ _TOPIC = re.compile(r"<topic>\s*([\w/]+)\s*</topic>")
 
 
 def scan_topics(text: str) -> list[str]:
-    """The topics of the laser scanners that a description names, in its order."""
+    """Return the topics of the laser scanners in a description, in order."""
     found = (_SCAN_TOPIC.search(match[0]) for match in _LIDAR.finditer(text))
     return _distinct(match[1] or match[2] for match in found if match)
 
 
 def image_topics(text: str) -> list[str]:
-    """The topics of the cameras of a description, in its order.
+    """Return the topics of the cameras in a description, in order.
 
-    Those of gz that name no topic have the usual ones, ``/image`` and ``/depth_image``, as in ``linkwright sim``.
+    Cameras of gz without a topic name have the default topics ``/image`` and ``/depth_image``, as in ``linkwright
+    sim``.
     """
     return _distinct(_image_topic(match[0], match[1], match[2]) for match in _CAMERA.finditer(text))
 
@@ -51,5 +52,5 @@ def _first(pattern: re.Pattern[str], text: str, otherwise: str) -> str:
 
 
 def _distinct(topics: Iterable[str]) -> list[str]:
-    """Return distinct absolute names."""
+    """Return the absolute names without duplicates."""
     return list(dict.fromkeys(f"/{topic.strip('/')}" for topic in topics))

@@ -1,6 +1,8 @@
-"""Ctrl-C and other signals: the first ends a run in order, the second hurries, the third ends it at once.
+"""Handling of Ctrl-C and other signals.
 
-Work that must be completed, such as a recording whose end must be written, is completed in any case (`unfinished`).
+The first signal ends a run in order, the second hurries, and the third ends it immediately.
+
+Work that must be completed, such as writing the end of a recording, is completed in any case (`unfinished`).
 """
 
 from __future__ import annotations
@@ -38,28 +40,30 @@ class Session(Protocol):
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop | None:
-        """The loop it runs on, or None."""
+        """The event loop of the run, or None."""
 
     @property
     def visiting(self) -> bool:
-        """Whether it runs code that a KeyboardInterrupt should interrupt, because the event loop cannot react."""
+        """Whether code is running that a KeyboardInterrupt should interrupt, because the event loop cannot react."""
 
     def interrupt(self, reason: str) -> None:
-        """End it because the user asked for it."""
+        """End the run at the user's request."""
 
     def seconds_to_end(self) -> float:
-        """The time that its processes may take to end."""
+        """Return the seconds that the run's processes may take to end."""
 
     def kill_all(self) -> None:
-        """End its processes at once; called from a signal handler."""
+        """Kill the run's processes immediately; called from a signal handler."""
 
 
 class SignalWatch:
-    """Handles signals inside a ``with`` block; only the main thread can, elsewhere it does nothing.
+    """Handles signals inside a ``with`` block.
+
+    Works only in the main thread, and does nothing elsewhere.
 
     Attributes:
-        session: the run to end; None before there is one, when a KeyboardInterrupt is raised instead.
-        received: the first signal that was received, or None.
+        session: the run to end; None before one exists, when a KeyboardInterrupt is raised instead.
+        received: the first received signal, or None.
     """
 
     def __init__(self) -> None:
@@ -98,10 +102,10 @@ class SignalWatch:
             sys.unraisablehook = self._unraisable
 
     def run(self, make: Callable[[], Coroutine[Any, Any, T]]) -> T:
-        """Run a coroutine on a loop of its own.
+        """Run a coroutine on a new event loop.
 
         Raises:
-            KeyboardInterrupt: a signal came while the loop was made.
+            KeyboardInterrupt: a signal was received while the loop was created.
         """
         self._is_making_loop = True
         return run_coroutine(make, self._loop_is_made)
@@ -131,7 +135,7 @@ class SignalWatch:
         session.loop.call_soon_threadsafe(session.interrupt, interruption_text(number))
 
     def _loop_runs(self, session: Session) -> None:
-        """Note that the event loop does not hang: it may take as long as the processes may."""
+        """Extend the deadline, because the event loop reacts: it may take as long as the processes may."""
         if not self._hurried:
             self._end_after(_DEADLINE_SECONDS + session.seconds_to_end())
 
@@ -143,7 +147,7 @@ class SignalWatch:
         self._deadline.start()
 
     def _handle_again(self) -> None:
-        """The KeyboardInterrupt raised for a signal was lost: restore the earlier state and send the signal again."""
+        """Restore the earlier state and send the signal again, because its KeyboardInterrupt was lost."""
         number, self.received = self.received, None
         if self._deadline is not None:
             self._deadline.cancel()
@@ -151,7 +155,10 @@ class SignalWatch:
             signal_again(number)
 
     def _end_at_once(self) -> None:
-        """End the process, in a thread of its own: the main thread may hang, or write files that must be completed."""
+        """End the process from a separate thread.
+
+        The main thread may hang, or write files that must be completed.
+        """
         if self.session is not None:
             self.session.kill_all()
         finish_all()
@@ -161,7 +168,7 @@ class SignalWatch:
 
 
 def interruption_text(number: int) -> str:
-    """Return the log line about a signal."""
+    """Return the log line for a signal."""
     if number == signal.SIGINT:
         return "user interrupted with ctrl-c (SIGINT)"
     return f"received signal {signal.Signals(number).name}"
@@ -171,12 +178,12 @@ def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: L
     """Run a program that signals end.
 
     Args:
-        run: runs it, and returns whether nothing failed.
-        finder: where packages are meanwhile.
+        run: runs the program, and returns whether nothing failed.
+        finder: finds packages during the run.
         log: where signals are reported that arrive before there is a session.
 
     Returns:
-        The exit status: 0, 1 if something failed, 128 and the signal's number after a signal.
+        The exit status: 0, 1 if something failed, or 128 plus the signal's number after a signal.
     """
     with SignalWatch() as signals:
         try:
@@ -194,7 +201,7 @@ def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: L
 
 @contextmanager
 def own_environment(finder: PackageFinder) -> Iterator[None]:
-    """Inside a ``with`` block packages are found with a finder, and ``AMENT_PREFIX_PATH`` names the same prefixes.
+    """Find packages with a finder inside a ``with`` block, and set ``AMENT_PREFIX_PATH`` to its prefixes.
 
     Changes to the environment of this process are undone afterwards.
     """

@@ -1,4 +1,4 @@
-"""A simulated world, with or without a robot, without a launch file."""
+"""A simulated world, with or without a robot, that needs no launch file."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _as_it_is(description: Description) -> str:
 
 
 def _completed(description: Description, found: Inference) -> str:
-    from linkwright.inference.applying import completed  # here, because only some robots need it
+    from linkwright.inference.applying import completed  # Imported here because only some robots need it.
 
     return write(completed(description.document, found))
 
@@ -49,19 +49,19 @@ class SimulatedWorld:
 
     Attributes:
         world: a file, or the name of a world.
-        path: the file that gives the page its name.
-        description: a robot in URDF; None for none, or for a model in SDF.
-        text: the robot or model as it is simulated, as URDF or SDF; empty for none.
-        name: its name in the world.
+        path: the file after which the page is named.
+        description: a robot in URDF; None for no robot, or for a model in SDF.
+        text: the simulated robot or model, as URDF or SDF; empty for none.
+        name: the name of the robot or model in the world.
         pose: the pose of its frame: x, y, z in m, roll, pitch, yaw in rad.
-        seconds: after how many simulated seconds it ends; 0 for never.
-        rate: simulated seconds per real one; 0 for the world's rate, negative for as many as possible.
-        step: the time step in s; 0 for that of the world.
+        seconds: the simulated seconds after which the run ends; 0 for never.
+        rate: simulated seconds per real second; 0 for the world's rate, negative for as fast as possible.
+        step: the time step in s; 0 for the world's time step.
         seed: the seed of all random numbers.
-        paused: whether it starts paused.
+        paused: whether the simulation starts paused.
         headless: whether there is no page.
         gazebo_mistakes: whether plugins reproduce the known bugs of Gazebo.
-        arguments: name and value of the xacro arguments of the robot.
+        arguments: name and value of the robot's xacro arguments.
         complete: returns the text to simulate, from the robot's saved file.
     """
 
@@ -85,13 +85,13 @@ class SimulatedWorld:
     def of(
         cls, world: str, description: Description, found: Inference, infer: Callable[[Robot], Inference]
     ) -> SimulatedWorld:
-        """Return a robot with everything that was inferred about it, on the ground of a world.
+        """Return a world with a robot on its ground, completed by everything inferred about the robot.
 
         Args:
             world: a file, or the name of a world.
             description: the robot.
-            found: the inference about it.
-            infer: infers again after its file has changed.
+            found: the inference about the robot.
+            infer: repeats the inference after the robot's file has changed.
         """
 
         def complete(later: Description) -> str:
@@ -128,12 +128,12 @@ def run_simulated(
     foxglove: int | None = None,
     writer: BagWriter | None = None,
 ) -> int:
-    """Simulate a world until the user ends it, or its seconds are over.
+    """Simulate a world until the user ends it, or its simulated seconds are over.
 
     Args:
         world: the world, and the model in it.
-        finder: where packages are.
-        options: how it is run.
+        finder: finds packages.
+        options: the options of nodes and viewers.
         foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
         writer: records all topics, with their simulated times; None for no recording.
 
@@ -154,7 +154,10 @@ def run_simulated(
 
 
 class SimulatedView(ModelView):
-    """A simulated world on the running event loop: simulator, robot_state_publisher of a robot, and the viewer."""
+    """A simulated world on the running event loop.
+
+    It runs the simulator, a robot's robot_state_publisher, and the viewer.
+    """
 
     def __init__(self, world: SimulatedWorld, finder: PackageFinder, options: HostOptions, log: LaunchLog) -> None:
         descriptions = SimulatedDescriptions(finder, world.complete)
@@ -163,7 +166,10 @@ class SimulatedView(ModelView):
         self._files = descriptions
 
     def _publish(self) -> bool:
-        """Have the robot, if there is one, published; it and the world are read again when their files are saved."""
+        """Plan the publication of the robot, if there is one.
+
+        It and the world are reloaded when their files are saved.
+        """
         description, text = self._world.description, self._world.text
         if text:
             self._files.begin(self._call)
@@ -181,9 +187,9 @@ class SimulatedView(ModelView):
             self._plan(*VIEWER, {"use_sim_time": True}, name="viewer", viewer_config=self._viewer_config)
 
     def _viewer_config(self) -> RvizConfig:
-        """The world with the robot in it, its scans and images.
+        """Return a configuration that shows the world with the robot, its scans and images.
 
-        Images take time to render, so that only the first camera's are shown; odometry would cover the robot.
+        Images take time to render, so only those of the first camera are shown; odometry would cover the robot.
         """
         from linkwright.hosting.world_config import world_config
 

@@ -1,4 +1,4 @@
-"""The files of a simulated world and its robot, which are read again when they are saved."""
+"""Files of a simulated world and its robot, which are reloaded when they are saved."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class SimulatedDescriptions(Descriptions):
     """Reads robots as they are simulated, models in SDF, and worlds.
 
     Args:
-        finder: where packages are.
-        complete: the text of a robot as it is simulated.
+        finder: finds packages.
+        complete: returns the text of a robot as it is simulated.
     """
 
     def __init__(self, finder: PackageFinder, complete: Callable[[Description], str]) -> None:
@@ -32,14 +32,17 @@ class SimulatedDescriptions(Descriptions):
         """Read a robot, model or world; may run in another thread.
 
         Raises:
-            LinkwrightError: the file is wrong; of a world, only errors that were not there from the start.
+            LinkwrightError: the file is invalid; for a world, only because of errors that did not exist at the start.
         """
         if not isinstance(call, WorldCall) and is_world(call.path.name):
             return self._read_model(call)
         return super().read(call)
 
     def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
-        """Remember a robot, model or world; returns its text or, for a world, its file, and the findings about it."""
+        """Store a robot, model or world.
+
+        Returns its text (for a world, its file) and the findings about it.
+        """
         if isinstance(call, WorldCall):
             return super().take(call, description)
         if is_world(call.path.name):
@@ -52,7 +55,7 @@ class SimulatedDescriptions(Descriptions):
         return self.take_text(call, self._complete(description), description.files), description.diagnostics
 
     def take_text(self, call: XacroCall, text: str, files: tuple[Path, ...]) -> str:
-        """Remember the file of a text that is simulated, and all files that it was made from."""
+        """Store the file of a simulated text, and all files from which the text was made."""
         self._calls[text] = call
         self._files[call] = files
         return text

@@ -1,4 +1,4 @@
-"""The view of one model file, with sliders for its joints, without a launch file."""
+"""The view of one model file with sliders for its joints, which needs no launch file."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def run_view(
     Args:
         model_path: the file.
         arguments: name -> value of the xacro arguments.
-        options: how it is run; by default no other program sees its nodes.
+        options: the options of nodes and viewers; by default no other program sees the nodes.
         foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
 
     Returns:
@@ -71,14 +71,14 @@ class ModelView:
 
     Args:
         call: the model.
-        finder: where packages are.
-        options: how it is run.
-        log: what is printed.
+        finder: finds packages.
+        options: the options of nodes and viewers.
+        log: the log of the run.
         descriptions: reads models; by default robots.
 
     Attributes:
-        ending: whether it is about to end.
-        visiting: whether the model is expanded right now, so that the event loop cannot react.
+        ending: whether the view is about to end.
+        visiting: whether the model is being expanded, so that the event loop cannot react.
         has_processes: always false.
     """
 
@@ -114,7 +114,9 @@ class ModelView:
         self.reload = LiveReload(self.descriptions, self.host.show_findings, log)
 
     async def run(self, foxglove: int | None, writer: BagWriter | None = None) -> bool:
-        """Show the model until the user, or a viewer that cannot start, ends it; returns whether nothing failed.
+        """Show the model until the user ends the view, or a viewer cannot start.
+
+        Returns whether nothing failed.
 
         Args:
             foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
@@ -133,7 +135,7 @@ class ModelView:
                     await self.host.start_planned()
                     self.reload.start()
             await self._is_over.wait()
-            self._end_recording()  # first, because the rest takes time: nothing more is recorded
+            self._end_recording()  # First, because the rest takes time: nothing more is to be recorded.
             self.ending = True
             self.reload.close()
             self.host.close_nodes()
@@ -147,7 +149,7 @@ class ModelView:
         return not self._failures
 
     def _recording(self, writer: BagWriter) -> Recorder:
-        """Return a recorder. If the disk is full, it logs an error, the view continues, and the exit status is 1."""
+        """Return a recorder; if the disk is full, it logs an error, the view continues, and the exit status is 1."""
         from linkwright.bag import Recorder, TopicSelection
 
         def guarded(callback: Callable[..., object]) -> Callable[..., object]:
@@ -181,7 +183,10 @@ class ModelView:
     # --- what is shown ----------------------------------------------------------------------------------------
 
     def _publish(self) -> bool:
-        """Have the model published, as soon as its file is right; returns whether the view continues."""
+        """Plan the publication of the model once its file is valid.
+
+        Returns whether the view continues.
+        """
         self.visiting = True
         try:
             self._text = self.descriptions.expand(self._call)
@@ -206,7 +211,7 @@ class ModelView:
         return True
 
     def _plan_others(self) -> None:
-        """Have the nodes started that show the model."""
+        """Plan the nodes that show the model."""
         self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
         self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._set_viewer)
 
@@ -218,7 +223,7 @@ class ModelView:
         self._publish_again(self._call)
 
     def _publish_again(self, call: XacroCall) -> None:
-        """Publish a model that was broken, or the same with other arguments."""
+        """Publish a model that was invalid before, or the same model with other arguments."""
         broken, self._call, self._form = self._call, call, None
         self.reload.unbind(broken, self._publish_repaired)
         self.reload.show(broken, ())
@@ -229,7 +234,7 @@ class ModelView:
         self.spawn(self.host.start_planned())
 
     async def _find_arguments(self, call: XacroCall, error: DescriptionError) -> None:
-        """Ask the pages for arguments, if missing ones are the error."""
+        """Ask the pages for arguments, if the error is that some are missing."""
         form = await asyncio.to_thread(argument_form, call, self.finder, error.diagnostics)
         if form is not None and call is self._call and self._text is None:
             self._form = form
@@ -247,7 +252,7 @@ class ModelView:
         self._publish_again(XacroCall(self._call.path, tuple(values.items())))
 
     def _look_at_root(self) -> None:
-        """Make the root the fixed frame of a model that was unknown when the viewer started."""
+        """Set the fixed frame to the root of a model that was unknown when the viewer started."""
         robot = None if self._text is None else self.descriptions.library.read(self._text).robot
         manager = None if self._viewer is None else self._viewer.managers.shared
         if robot is not None and manager is not None and manager.fixed_frame not in robot.links:
@@ -284,7 +289,10 @@ class ModelView:
         self.host.plan(plan)
 
     def _viewer_config(self) -> RvizConfig:
-        """Return a Grid, a RobotModel, and a TF (enabled without visuals); the root link is the fixed frame."""
+        """Return a configuration with Grid, RobotModel and TF, whose fixed frame is the root link.
+
+        TF is enabled only if the model has no visuals.
+        """
         from linkwright.rviz import RvizConfig, has_visuals, size_of
 
         library = self.descriptions.library
@@ -298,15 +306,15 @@ class ModelView:
     # --- what its nodes and signals ask for ---------------------------------------------------------------------
 
     def fail(self, what: object) -> None:
-        """Record a failure: the exit status is 1 unless it is fixed."""
+        """Record a failure: the exit status is 1 unless the failure is cleared."""
         self._failures.add(what)
 
     def clear_failure(self, what: object) -> None:
-        """Clear a failure that is fixed."""
+        """Clear a failure that was fixed."""
         self._failures.discard(what)
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run something in the background; the view does not end before it has."""
+        """Run a coroutine in the background; the view ends only after it."""
         task = asyncio.get_running_loop().create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._done)
@@ -318,30 +326,33 @@ class ModelView:
             self._is_over.set()
 
     def node_started(self, plan: HostedPlan) -> None:
-        """Begin the log with the first node: an error that keeps all of them from starting is printed alone."""
+        """Begin the log with the first node.
+
+        Thus an error that prevents all nodes from starting is printed alone.
+        """
         if not self._has_begun:
             self._has_begun = True
             self.log.begin()
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """Ignore it: this view does not depend on its nodes."""
+        """Do nothing: this view does not depend on its nodes."""
 
     def interrupt(self, reason: str) -> None:
-        """End it because the user asked for it."""
+        """End the view at the user's request."""
         self.log.warning_line("launch", reason)
         self._is_over.set()
 
     def shut_down(self, reason: str) -> None:
-        """End it; nodes that have not started yet do not start."""
+        """End the view; nodes that have not started yet do not start."""
         self.host.forget_planned()
         self._is_over.set()
 
     def seconds_to_end(self) -> float:
-        """Zero: there are no processes."""
+        """Return 0, because there are no processes."""
         return 0.0
 
     def kill_all(self) -> None:
-        """Nothing to do: there are no processes."""
+        """Do nothing, because there are no processes."""
 
     async def _close(self) -> None:
         self.reload.close()
@@ -359,7 +370,7 @@ def _config_of(rviz: Path) -> RvizConfig:
 
 
 def _first_link(path: Path) -> str:
-    """Return the first link that the text of a broken model names, usually the root."""
+    """Return the first link in the text of an invalid model, usually the root."""
     try:
         found = _FIRST_LINK.search(path.read_text(encoding="utf-8", errors="replace"))
     except OSError:

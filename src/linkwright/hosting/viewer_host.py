@@ -1,4 +1,4 @@
-"""The viewers of this process, pages that replace RViz."""
+"""The viewers of this process: pages that replace RViz."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class ViewerHost:
         return any(shows_world(viewer.config) for _, viewer in self._viewers.values())
 
     def plans(self) -> Iterator[HostedPlan]:
-        """The plans of the running viewers."""
+        """Yield the plans of the running viewers."""
         return iter([plan for plan, _ in self._viewers.values()])
 
     def show_findings(self, findings: list[Diagnostic]) -> None:
@@ -62,10 +62,12 @@ class ViewerHost:
             _attach_panel(viewer, running)
 
     async def give_out_page(self, plan: HostedPlan) -> None:
-        """Print the address of a viewer: its page is fetched while the viewer is created.
+        """Serve the page of a viewer and print its address.
+
+        Thus the page is fetched while the viewer is created.
 
         Raises:
-            LinkwrightError: VIEW101 to VIEW103, it cannot listen at the address.
+            LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address.
         """
         from linkwright.page.page_server import PageServer
 
@@ -89,13 +91,13 @@ class ViewerHost:
         """Start a viewer, and print its address.
 
         Args:
-            plan: its plan.
+            plan: the plan of the viewer.
             graph: the graph to show.
-            nodes: the nodes that run already.
-            with_world: whether the page shows the simulated world too, in place of a window of its own.
+            nodes: the nodes that already run.
+            with_world: whether the page also shows the simulated world, in place of a separate window.
 
         Raises:
-            LinkwrightError: it cannot start.
+            LinkwrightError: the viewer cannot start.
         """
         from linkwright.page.page_server import PageServer
         from linkwright.rviz import find_unsaved
@@ -114,7 +116,7 @@ class ViewerHost:
             from linkwright.hosting.world_config import show_world
 
             show_world(config)
-        server = self._servers.get(plan.process_name)  # must be closed here if creating the viewer fails
+        server = self._servers.get(plan.process_name)  # It must be closed here if creating the viewer fails.
         is_given_out = server is not None
         if server is None:
             server = PageServer(session.options.host, self._port_for(plan))
@@ -147,7 +149,7 @@ class ViewerHost:
             _attach_panel(viewer, running)
 
     async def _open_unless_back(self, viewer: Viewer) -> None:
-        """Open the page, unless an open page of the run before reconnects by itself."""
+        """Open the page, unless an open page of the previous run reconnects on its own."""
         for _ in range(round(_RETURN_SECONDS / _LOOK_SECONDS)):
             if self._session.ending or len(viewer.audience) > 0:
                 return
@@ -155,7 +157,7 @@ class ViewerHost:
         _open_in_browser(viewer.url)
 
     def _port_for(self, plan: HostedPlan) -> int | None:
-        """Return the requested port, or None for the next free one if another page uses it."""
+        """Return the requested port; None for the next free one if another page uses it."""
         port = self._session.options.port
         if port and self._at_given_port not in ("", plan.process_name):
             return None
@@ -167,7 +169,7 @@ class ViewerHost:
             self._at_given_port = ""
 
     def take(self, plan: HostedPlan) -> Viewer:
-        """Return a viewer that is about to end, and forget it."""
+        """Remove a viewer that is about to end, and return it."""
         self._release_port(plan)
         return self._viewers.pop(plan.process_name)[1]
 
@@ -177,7 +179,7 @@ class ViewerHost:
             await self._servers.popitem()[1].close()
 
     async def stop(self, plan: HostedPlan, viewer: Viewer) -> None:
-        """End a viewer; its unsaved configuration is stored first, before a shutdown takes too long."""
+        """End a viewer; its unsaved configuration is stored first, in case the shutdown takes too long."""
         self._session.log.diagnostics(viewer.keep_unsaved())
         try:
             await asyncio.wait_for(viewer.close(), _CLOSE_SECONDS)
@@ -186,7 +188,10 @@ class ViewerHost:
 
 
 def load_viewer() -> None:
-    """Load the modules of viewers, which takes longer than everything before them; may run in another thread."""
+    """Load the modules of viewers, which takes longer than all earlier steps.
+
+    May run in another thread.
+    """
     import linkwright.viewer.guests
     import linkwright.viewer.viewer  # noqa: F401 - only loaded
 
@@ -199,9 +204,9 @@ def _attach_panel(viewer: Viewer, running: RunningNode) -> None:
 
 
 def _open_in_browser(url: str) -> None:
-    """Open the page; in a thread, because some browsers take their time to answer.
+    """Open the page, called in a thread because some browsers take time to respond.
 
-    Not without a display: a text browser would take over the terminal.
+    Does nothing without a display: a text browser would take over the terminal.
     """
     displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in displays):

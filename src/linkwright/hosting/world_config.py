@@ -1,4 +1,4 @@
-"""The configuration of a viewer for a simulated world."""
+"""The viewer configuration for a simulated world."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _DISTANCE = 5.0
 
 
 def world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
-    """Return a configuration with the world in it, robots included, on a grid, in a fixed view.
+    """Return a configuration with the world and its robots, on a grid, in a fixed view.
 
-    It has displays of robot models and transforms, but disabled: they would draw the world's content a second time.
+    Its displays of robot models and transforms are disabled: they would draw the world's content a second time.
 
     Args:
         name: the name of the page.
-        x: of the focal point, in m.
-        y: likewise.
+        x: the x coordinate of the focal point, in m.
+        y: the y coordinate of the focal point, in m.
     """
     from linkwright.rviz import RvizConfig
 
@@ -34,7 +34,10 @@ def world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
 
 
 def show_world(config: RvizConfig) -> None:
-    """Add the display of the world to a configuration without one; disabled if there is a map in the same place."""
+    """Add the display of the world to a configuration that lacks it.
+
+    The display is disabled if a map is in the same place.
+    """
     if not shows_world(config):
         world = config.make(_DISPLAY, "World")
         world.checked = not any(display.cls == _MAP and display.checked for display in config.walk())
@@ -42,5 +45,5 @@ def show_world(config: RvizConfig) -> None:
 
 
 def shows_world(config: RvizConfig) -> bool:
-    """Whether a configuration has a display of the world."""
+    """Return whether a configuration has a display of the world."""
     return any(display.cls == _DISPLAY for display in config.walk())

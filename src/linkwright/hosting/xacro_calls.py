@@ -1,4 +1,4 @@
-"""Descriptions from files: the file and arguments of each expanded text; and worlds."""
+"""Descriptions and worlds from files, with the file and arguments of each expanded text."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class XacroCall:
-    """One use of xacro.
+    """A use of xacro: a file and its arguments.
 
     Attributes:
         path: the model file, absolute.
-        arguments: name and value of the arguments given.
+        arguments: name and value of the given arguments.
     """
 
     path: Path
@@ -35,17 +35,17 @@ class XacroCall:
 
 @dataclass(frozen=True)
 class WorldCall(XacroCall):
-    """The file of a world that is simulated.
+    """The file of a simulated world.
 
     Attributes:
-        read: reads it; raises LinkwrightError.
+        read: reads the file; raises LinkwrightError.
     """
 
     read: Callable[[str], ReadWorld] = field(kw_only=True, compare=False, repr=False)
 
 
 class DescriptionError(LinkwrightError):
-    """A model file that cannot be expanded.
+    """Raised when a model file cannot be expanded.
 
     Attributes:
         call: the use of xacro.
@@ -62,10 +62,10 @@ class DescriptionError(LinkwrightError):
 
 
 class Descriptions:
-    """Expands model files and remembers the results, with the positions that messages and the viewer need.
+    """Expands model files and stores the results, with the positions that messages and the viewer need.
 
     Args:
-        finder: where packages are.
+        finder: finds packages.
     """
 
     def __init__(self, finder: PackageFinder) -> None:
@@ -82,7 +82,7 @@ class Descriptions:
 
     @property
     def library(self) -> DescriptionLibrary:
-        """The descriptions that the nodes and the viewer read from."""
+        """The library from which the nodes and the viewer read descriptions."""
         if self._library is None:
             from linkwright.descriptions import DescriptionLibrary
 
@@ -90,19 +90,19 @@ class Descriptions:
         return self._library
 
     def expand(self, call: XacroCall) -> str:
-        """Return the text of a description, remembered in the library.
+        """Expand a description, store it in the library, and return its text.
 
         Raises:
-            DescriptionError: the errors of the file, or of one that it includes.
+            DescriptionError: the errors of the file, or of an included file.
         """
         return self.store(call, self.read(call))
 
     def begin_with(self, world: ReadWorld, read: Callable[[str], ReadWorld]) -> WorldCall:
-        """Take a world that was read already; its findings are known and are not reported again.
+        """Store a world that was already read; its findings are known and not reported again.
 
         Args:
             world: the world.
-            read: reads it again.
+            read: reads the world again.
         """
         call = WorldCall(world.path.absolute(), read=read)
         self._read_ns[call] = world.read_ns
@@ -115,14 +115,15 @@ class Descriptions:
         self._meshes.pop(call, None)
 
     def read(self, call: XacroCall) -> Any:
-        """Expand and read, without remembering anything; may run in another thread.
+        """Expand and read a file without storing anything; may run in another thread.
 
         Returns:
-            The `Description` of a robot, the `ReadWorld` of a world.
+            The `Description` of a robot, or the `ReadWorld` of a world.
 
         Raises:
-            DescriptionError: the errors of the file, or of one that it includes, with the findings of its valid
-                parts; of a world, only errors that were not there from the start.
+            DescriptionError: the errors of the file, or of an included file, with the findings of its valid parts; for
+                a
+                world, only errors that did not exist at the start.
         """
         if isinstance(call, WorldCall):
             return self._read_world(call)
@@ -130,7 +131,7 @@ class Descriptions:
 
         self.begin(call)
         try:
-            xacro = None if call.path.suffix == ".sdf" else True  # a model in SDF may be shown, too
+            xacro = None if call.path.suffix == ".sdf" else True  # Models in SDF can be shown, too.
             found = examine(call.path, arguments=dict(call.arguments), packages=self.finder, xacro=xacro, partly=True)
         except LinkwrightError as error:
             raise DescriptionError(call, error.diagnostics) from error
@@ -139,11 +140,11 @@ class Descriptions:
         return found
 
     def begin(self, call: XacroCall) -> None:
-        """Note the time before the files of a model are read."""
+        """Record the time before the files of a model are read."""
         self._read_ns[call] = time.time_ns()
 
     def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
-        """Store a description; returns its text, or `text` if another text identifies it elsewhere."""
+        """Store a description; return its text, or `text` if another text identifies it elsewhere."""
         text = self.library.store(description, text, self.finder)
         self._files[call] = description.files
         self._calls[text] = call
@@ -154,7 +155,7 @@ class Descriptions:
         return text
 
     def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
-        """Remember a robot or world; returns its text or, for a world, its file, and the findings about it.
+        """Store a robot or world; return its text (for a world, its file) and the findings about it.
 
         The text is None if there is no robot.
         """
@@ -165,19 +166,25 @@ class Descriptions:
         return (None if description.robot is None else text), description.diagnostics
 
     def call_of(self, text: str) -> XacroCall | None:
-        """Return the use of xacro that gave a text, or None for a text from elsewhere."""
+        """Return the use of xacro that resulted in a text; None for a text from elsewhere."""
         return self._calls.get(text)
 
     def warnings_of(self, call: XacroCall) -> tuple[Diagnostic, ...]:
-        """Return the warnings of the last good expansion."""
+        """Return the warnings of the last successful expansion."""
         return self._warnings.get(call, ())
 
     def read_ns(self, call: XacroCall) -> int:
-        """Return when the files were last read, nanoseconds since the epoch; 0 for never."""
+        """Return the time, in nanoseconds since the epoch, at which the files were last read.
+
+        The value is 0 if never.
+        """
         return self._read_ns.get(call, 0)
 
     def files_of(self, call: XacroCall) -> tuple[Path, ...]:
-        """Return the files that the last good expansion read, and meshes; only the model file before there was one."""
+        """Return the files that the last successful expansion read, and meshes.
+
+        Before the first successful expansion, return only the model file.
+        """
         if call in self._robots and call not in self._meshes:
             self._meshes[call] = _mesh_files(self._robots[call], self.finder, call.path.parent)
         if call in self._worlds and call not in self._meshes:
@@ -197,7 +204,7 @@ class Descriptions:
 
 
 def _mesh_files(robot: Robot, finder: PackageFinder, folder: Path) -> tuple[Path, ...]:
-    """Return the existing mesh files of a robot, each once."""
+    """Return the existing mesh files of a robot, without duplicates."""
     from linkwright.urdf import Mesh
 
     found: dict[Path, None] = {}
@@ -220,13 +227,13 @@ _current: ContextVar[Descriptions | None] = ContextVar("linkwright_descriptions"
 
 
 def current_descriptions() -> Descriptions | None:
-    """Return the descriptions of the launch that is being loaded or run, for code without access to it."""
+    """Return the descriptions of the launch being loaded or run, for code without access to the launch."""
     return _current.get()
 
 
 @contextmanager
 def use_descriptions(descriptions: Descriptions) -> Iterator[None]:
-    """Make `current_descriptions` return them inside a ``with`` block."""
+    """Make `current_descriptions` return these descriptions inside a ``with`` block."""
     token = _current.set(descriptions)
     try:
         yield
