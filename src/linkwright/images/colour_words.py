@@ -1,4 +1,4 @@
-"""Colours in names of classes, such as ``red_ball``."""
+"""Colours in class names, such as ``red_ball``."""
 
 from __future__ import annotations
 
@@ -25,16 +25,19 @@ SPELLINGS = {**{paint: paint for paint in PAINTS}, "gray": "grey", "violet": "pu
 
 
 def words_of(name: str) -> list[str]:
-    """The words of a class's name, in lower case."""
+    """Return the words of a class name, in lower case."""
     return [word for word in re.split(r"[\s_\-]+", name.lower()) if word]
 
 
 def named_colour(name: str) -> str | None:
-    """The colour that a class has in its name, one of `PAINTS`."""
+    """Return the colour in a class name, one of `PAINTS`; None if there is none."""
     return next((SPELLINGS[word] for word in words_of(name) if word in SPELLINGS), None)
 
 
 def paint_of(name: str) -> tuple[int, int, int] | None:
-    """Red, green and blue of the colour that a class has in its name, 0 to 255."""
+    """Return red, green and blue, 0 to 255, of the colour in a class name.
+
+    Returns None if there is none.
+    """
     colour = named_colour(name)
     return None if colour is None else PAINTS[colour]

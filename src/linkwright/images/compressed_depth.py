@@ -1,14 +1,15 @@
-"""The transport `compressedDepth`: a header, and the depths as a PNG of 16 bits or packed with RVL.
+"""The transport `compressedDepth`: a header, and the depths as a PNG of 16 bits or compressed by RVL.
 
-As compressed_depth_image_transport reads it. The header has an int32 that nothing depends on, and two float32. Depths
-that were float32 are integers that grow with nearness: ``depth = first / (number - second)``, and 0 where there is
-none. Before an RVL stream are its columns and rows, each a uint32.
+It follows compressed_depth_image_transport. The header consists of an unused int32 and two float32. Depths that were
+float32 are quantised to integers that grow as the distance decreases: ``depth = first / (number - second)``, and 0
+where
+there is no depth. An RVL stream is preceded by its columns and rows, each a uint32.
 
 RVL is the lossless compression of depth images by Wilson ("Fast Lossless Depth Image Compression", ISS 2017). A stream
-is a row of numbers in groups of four bits: three of the number, the lowest first, and one that says that more follow;
-eight groups make a little-endian word, the first group in its highest bits. The numbers are, over and over: how many
-pixels are 0, how many then are not, and for each of those by how much it differs from the one before, with the sign in
-the lowest bit.
+is a sequence of numbers in groups of four bits: three bits of the number, the lowest first, and one bit that is set if
+more groups follow. Eight groups make a little-endian word, the first group in its highest bits. The sequence repeats:
+the number of pixels that are 0, the number of pixels that are not, and for each of the latter the difference from the
+previous one, with the sign in the lowest bit.
 """
 
 from __future__ import annotations
@@ -31,13 +32,13 @@ _PACKINGS = {"": "png", "compressedDepth": "png", "compressedDepth png": "png", 
 
 
 def unpacked_depth(message: Any) -> RawImage:
-    """The depth image of a message.
+    """Return the depth image of a message.
 
     Args:
         message: sensor_msgs/msg/CompressedImage with a format such as ``16UC1; compressedDepth png``.
 
     Raises:
-        BadImageError: the format is not known, or the data are not in it.
+        BadImageError: the format is unknown, or the data does not match it.
     """
     encoding = encoding_of(message)
     packing = _PACKINGS.get(message.format.partition(";")[2].strip())
@@ -94,7 +95,7 @@ def _of_rvl(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
 
 
 def _depths(numbers: NDArray[np.uint16], first: float, second: float) -> NDArray[np.float32]:
-    """Metres, shape (height, width); NaN where there is no depth."""
+    """Return the depths in metres, shape (height, width); NaN where there is no depth."""
     if not (np.isfinite(first) and np.isfinite(second) and first > 0.0):
         raise BadImageError(
             phrase(
@@ -116,15 +117,15 @@ _MOST_GROUPS = 10
 
 
 class BadRvlError(ValueError):
-    """A stream is malformed; the text names the mistake."""
+    """Raised when a stream is malformed; the text describes the error."""
 
 
 def decoded(stream: NDArray[np.uint8], pixels: int) -> NDArray[np.uint16]:
-    """The pixels of a stream, shape (pixels,).
+    """Return the pixels of a stream, shape (pixels,).
 
     Args:
-        stream: its bytes.
-        pixels: how many there are to be.
+        stream: the bytes of the stream.
+        pixels: the expected number of pixels.
 
     Raises:
         BadRvlError: the stream ends before its last pixel, or is not what an encoder writes.
@@ -159,10 +160,13 @@ def _numbers(stream: NDArray[np.uint8]) -> NDArray[np.int64]:
 
 
 def _runs(numbers: NDArray[np.int64], pixels: int) -> tuple[list[int], list[int]]:
-    """Where the two counts of each run stand among the numbers, and how long runs are: of 0, of others, of 0, ..."""
+    """Return the positions of the runs' counts among the numbers, and the run lengths.
+
+    Each run has two counts. The lengths are those of zeros, others, zeros, and so on.
+    """
     heads: list[int] = []
     runs: list[int] = []
-    read = numbers.data  # of a memoryview a single number is had faster than of an array
+    read = numbers.data  # Reading single numbers from a memoryview is faster than from an array.
     at, left, count = 0, pixels, len(numbers)
     while left > 0:
         if at + 2 > count:

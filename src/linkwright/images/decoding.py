@@ -1,7 +1,7 @@
-"""A sensor_msgs/msg/Image as 8-bit grey, RGB or RGBA pixels.
+"""Conversion of sensor_msgs/msg/Image to 8-bit grey, RGB or RGBA pixels.
 
 Video cameras send luma and chroma (ITU-R BT.601, studio range); images taken through a Bayer filter are demosaiced;
-grey of more than 8 bits is shown in a range, RViz's Normalize Range.
+grey values of more than 8 bits are scaled by a range, as RViz's Normalize Range does.
 """
 
 from __future__ import annotations
@@ -23,12 +23,15 @@ _LARGEST_STEP = 16
 
 
 class BadImageError(ValueError):
-    """A message cannot be shown as an image; the text is for the status row ``Image``."""
+    """Raised when a message cannot be shown as an image.
+
+    The text is for the status row ``Image``.
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class DecodedImage:
-    """Pixels, row by row from the top.
+    """The pixels of an image, row by row from the top.
 
     Attributes:
         pixels: shape (height, width) for grey, (height, width, 3) for RGB, (height, width, 4) for RGBA.
@@ -38,30 +41,32 @@ class DecodedImage:
 
     @property
     def width(self) -> int:
-        """In pixels."""
+        """The width in pixels."""
         return int(self.pixels.shape[1])
 
     @property
     def height(self) -> int:
-        """In pixels."""
+        """The height in pixels."""
         return int(self.pixels.shape[0])
 
     @property
     def channels(self) -> int:
-        """1, 3 or 4."""
+        """The number of channels: 1, 3 or 4."""
         return 1 if self.pixels.ndim == 2 else int(self.pixels.shape[2])
 
     def rgb(self) -> Pixels:
-        """Shape (height, width, 3)."""
+        """Return the pixels as RGB, shape (height, width, 3)."""
         if self.pixels.ndim == 2:
             return np.repeat(self.pixels[..., np.newaxis], 3, axis=2)
         return self.pixels[..., :3]
 
     def reduced(self, step: int) -> DecodedImage:
-        """One pixel for each square of `step` by `step`, the mean of them; the rest at the edges is left out.
+        """Return the image reduced to one pixel, the mean, for each square of `step` by `step` pixels.
+
+        The remainder at the edges is left out.
 
         Args:
-            step: more than 16 counts as 16.
+            step: the side of a square; values above 16 count as 16.
         """
         step = min(step, _LARGEST_STEP)
         height, width = self.height // step, self.width // step
@@ -77,7 +82,7 @@ class DecodedImage:
         return DecodedImage((total // step**2).astype(np.uint8))
 
     def thinned(self, most_pixels: int) -> DecodedImage:
-        """Every second, third, ... pixel of each row and column, so that there are at most so many."""
+        """Return every n-th pixel of each row and column, with the smallest n for at most `most_pixels` pixels."""
         step = 1
         while (self.width // step) * (self.height // step) > most_pixels:
             step += 1
@@ -85,7 +90,10 @@ class DecodedImage:
 
 
 def _reordered(pixels: Pixels, order: Sequence[int]) -> Pixels:
-    """Channels in another order; one after another takes a fifth of the time of all at once."""
+    """Return the channels in another order.
+
+    Copying them one by one takes a fifth of the time of one indexing operation.
+    """
     out = np.empty((*pixels.shape[:2], len(order)), pixels.dtype)
     for channel, source in enumerate(order):
         out[..., channel] = pixels[..., source]
@@ -93,19 +101,19 @@ def _reordered(pixels: Pixels, order: Sequence[int]) -> Pixels:
 
 
 def has_range(encoding: str) -> bool:
-    """Whether RViz looks for black and white in the values of such an image: those of more than 8 bits."""
+    """Return whether RViz determines a black and white limit for an encoding: one of more than 8 bits."""
     return encoding in _RANGED
 
 
 def decode_image(message: Any, ranges: RangeFinder) -> DecodedImage:
-    """The image of a message.
+    """Return the image of a message.
 
     Args:
         message: sensor_msgs/msg/Image.
-        ranges: sets the black and white limits where values have more than 8 bits.
+        ranges: sets the black and white limits for values of more than 8 bits.
 
     Raises:
-        BadImageError: the encoding is not known, or there are too few bytes.
+        BadImageError: the encoding is unknown, or there are too few bytes.
     """
     encoding = message.encoding
     if encoding in _RANGED:
@@ -142,7 +150,10 @@ _RANGED = {"mono16": "u2", "16UC1": "u2", "16SC1": "i2", "32FC1": "f4"}
 
 
 def _rows(message: Any, kind: str, channels: int = 1) -> NDArray[Any]:
-    """The values of an image whose rows may be padded: shape (height, width) or (height, width, channels)."""
+    """Return the values of an image whose rows may be padded.
+
+    The shape is (height, width) or (height, width, channels).
+    """
     size = int(kind[1])
     row = message.width * channels * size
     step = message.step or row
@@ -170,7 +181,7 @@ def _rows(message: Any, kind: str, channels: int = 1) -> NDArray[Any]:
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """The values shown black and white."""
+    """The values that are shown as black and white."""
 
     black: float = 0.0
     white: float = 1.0
@@ -180,8 +191,8 @@ class RangeFinder:
     """Finds the range of the images of a stream.
 
     Attributes:
-        fixed: the range to be used, or None to look for it in the images.
-        window: over so many images the median of their least and largest values is taken.
+        fixed: the range to use; None to determine it from the images.
+        window: the number of images whose minimum and maximum values are combined by the median.
     """
 
     def __init__(self) -> None:
@@ -191,12 +202,12 @@ class RangeFinder:
         self._largest: deque[float] = deque()
 
     def reset(self) -> None:
-        """Forget the images before."""
+        """Reset the search, so that the next range does not depend on earlier images."""
         self._least.clear()
         self._largest.clear()
 
     def range_of(self, values: NDArray[Any]) -> Range:
-        """The range for an image; values that are not numbers do not count."""
+        """Return the range for an image; values that are not finite numbers are ignored."""
         if self.fixed is not None:
             return self.fixed
         least, largest = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
@@ -236,7 +247,9 @@ def _normalized(values: NDArray[Any], ranges: RangeFinder) -> Pixels:
 
 
 def demosaiced(mosaic: Pixels, pattern: str) -> Pixels:
-    """RGB, shape (height, width, 3), each missing colour the mean of its neighbours that have it.
+    """Return RGB pixels, shape (height, width, 3).
+
+    Missing colours are the mean of the neighbours that have them.
 
     Args:
         mosaic: shape (height, width).
@@ -311,17 +324,17 @@ _YUV: dict[str, Callable[[Any], Pixels]] = {
 
 
 def from_packed(pairs: Pixels, layout: str) -> Pixels:
-    """RGB of an image whose pixels share chroma two by two.
+    """Convert an image whose pixels share chroma in pairs to RGB.
 
     Args:
-        pairs: shape (height, width, 2): luma and one chroma of each pixel, blue's and red's in turn.
+        pairs: shape (height, width, 2): luma and one chroma of each pixel, alternately blue's and red's.
         layout: ``uyvy`` with the chroma first, or ``yuyv``.
     """
     luma, chroma = (pairs[..., 1], pairs[..., 0]) if layout == "uyvy" else (pairs[..., 0], pairs[..., 1])
     width = luma.shape[1]
     even = chroma[:, : width - width % 2]
     blue, red = np.repeat(even[:, 0::2], 2, axis=1), np.repeat(even[:, 1::2], 2, axis=1)
-    if width % 2 and width > 1:  # the last pixel of an odd row has no partner
+    if width % 2 and width > 1:  # The last pixel of an odd row has no partner.
         blue, red = (np.concatenate([part, part[:, -1:]], axis=1) for part in (blue, red))
     elif width == 1:
         blue = red = np.full_like(luma, 128)
@@ -329,12 +342,13 @@ def from_packed(pairs: Pixels, layout: str) -> Pixels:
 
 
 def from_nv(luma: Pixels, chroma: Pixels, layout: str) -> Pixels:
-    """RGB of an image with the chroma after the luma.
+    """Convert an image with the chroma after the luma to RGB.
 
     Args:
         luma: shape (height, width).
-        chroma: of ``nv21``, shape (height / 2, width), red and blue in turn for two by two pixels; of ``nv24``, shape
-            (height, 2 width), blue and red in turn for each pixel.
+        chroma: for ``nv21``, shape (height / 2, width), alternating red and blue for each 2 x 2 pixels; for ``nv24``,
+            shape
+            (height, 2 width), alternating blue and red for each pixel.
         layout: ``nv21`` or ``nv24``.
     """
     height, width = luma.shape

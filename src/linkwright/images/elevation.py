@@ -1,4 +1,4 @@
-"""Elevation models: TIFF with floating-point numbers of 64 bits, which Pillow does not read."""
+"""Elevation models: TIFF files with floating-point numbers of 64 bits, which Pillow does not read."""
 
 from __future__ import annotations
 
@@ -18,11 +18,13 @@ _MOST_PIXELS = 1 << 26
 
 
 def read_elevation(path: Path) -> Array:
-    """Read the heights of a TIFF of uncompressed strips of floating-point numbers, in m, rows from the top.
+    """Read the heights, in m, of a TIFF with uncompressed strips of floating-point numbers.
+
+    Rows start at the top.
 
     Raises:
-        OSError: it cannot be read.
-        ValueError: it is something else.
+        OSError: the file cannot be read.
+        ValueError: the file has another format.
     """
     data = path.read_bytes()
     order = {b"II*\0": "<", b"MM\0*": ">"}.get(data[:4])
@@ -43,7 +45,7 @@ def read_elevation(path: Path) -> Array:
 
 
 def _tags(data: bytes, order: str) -> dict[int, tuple[int, ...]]:
-    """The integers of the first directory, by their tags."""
+    """Return the integer values of the first directory, by tag."""
     (first,) = struct.unpack_from(f"{order}I", data, 4)
     (entries,) = struct.unpack_from(f"{order}H", data, first)
     found: dict[int, tuple[int, ...]] = {}

@@ -1,4 +1,4 @@
-"""Heights of a heightmap, from the grey values of an image."""
+"""The heights of a heightmap, from the grey values of an image."""
 
 from __future__ import annotations
 
@@ -18,13 +18,18 @@ _MOST = 1025
 
 @dataclass(frozen=True, slots=True)
 class Heights:
-    """Heights as shares of the greatest that the image could have; the first row is that of the least y."""
+    """Heights relative to the maximum that the image can represent.
+
+    The first row has the minimum y.
+    """
 
     values: Array
 
 
 def read_heights(path: Path) -> Heights:
-    """Read the heights of an image: 0 for black and 1 for white; of an elevation model 0 for its lowest point.
+    """Read the heights of an image: 0 for black and 1 for white.
+
+    In an elevation model, 0 is the lowest point.
 
     Raises:
         LinkwrightError: SIM113 the image cannot be read; SIM114 Pillow is not installed.
@@ -35,7 +40,7 @@ def read_heights(path: Path) -> Heights:
         raise missing_extra("SIM114", error) from None
     try:
         with catch_warnings():
-            simplefilter("ignore")  # its errors are reported here
+            simplefilter("ignore")  # Errors are reported here.
             with Image.open(path) as image:
                 kind = image.mode
                 shown = image if kind in ("L", "I", "F", "I;16", "I;16B") else image.convert("L")

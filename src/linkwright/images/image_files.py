@@ -1,4 +1,4 @@
-"""Images that come as files: the transport `compressed`, and the files inside of `compressedDepth`."""
+"""Images that are stored as files: the transport `compressed`, and the files inside `compressedDepth`."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ _TAIL = 256
 
 @dataclass(frozen=True, slots=True)
 class RawImage:
-    """An image that was unpacked, with the fields of a sensor_msgs/msg/Image.
+    """An unpacked image, with the fields of a sensor_msgs/msg/Image.
 
     Attributes:
         header: the header of its message.
-        width: in pixels.
-        height: in pixels.
-        encoding: of the pixels.
+        width: the width in pixels.
+        height: the height in pixels.
+        encoding: the encoding of the pixels.
         data: the pixels, row by row, little-endian.
-        step: bytes of a row.
+        step: the bytes per row.
         is_bigendian: 0.
     """
 
@@ -46,24 +46,29 @@ class RawImage:
 
     @classmethod
     def of(cls, header: Any, encoding: str, values: NDArray[Any]) -> RawImage:
-        """An image of values, shape (height, width) or (height, width, channels)."""
+        """Return the image of an array of values, shape (height, width) or (height, width, channels)."""
         height, width = values.shape[:2]
         data = np.ascontiguousarray(values, values.dtype.newbyteorder("<")).view(np.uint8).ravel()
         return cls(header, width, height, encoding, data, data.size // max(1, height))
 
 
 def is_cut_off(data: NDArray[np.uint8]) -> bool:
-    """Whether the end of a JPEG or PNG file is missing; some cameras have bytes of no meaning behind it."""
+    """Return whether a JPEG or PNG file lacks its end.
+
+    Some cameras append meaningless bytes after the end.
+    """
     start = data[: len(_PNG)].tobytes()
     end = _JPEG_END if start.startswith(_JPEG) else _PNG_END if start == _PNG else b""
     return end not in data[-_TAIL:].tobytes() and end not in data.tobytes()
 
 
 def file_pixels(data: NDArray[np.uint8]) -> NDArray[Any]:
-    """The pixels of a PNG or JPEG, shape (height, width): uint8 or uint16; or uint8, (height, width, 3 or 4).
+    """Return the pixels of a PNG or JPEG.
+
+    The shape is (height, width) of uint8 or uint16, or (height, width, 3 or 4) of uint8.
 
     Raises:
-        BadImageError: it is neither, has too many pixels, or is broken.
+        BadImageError: the data is neither, has too many pixels, or is broken.
     """
     try:
         from PIL import JpegImagePlugin, PngImagePlugin
@@ -76,7 +81,7 @@ def file_pixels(data: NDArray[np.uint8]) -> NDArray[Any]:
         raise BadImageError(phrase("The image is neither a PNG nor a JPEG"))
     reader = PngImagePlugin.PngImageFile if start == _PNG else JpegImagePlugin.JpegImageFile
     try:
-        # Not by Image.open: that one knows more formats, and warns of sizes that are refused below.
+        # Image.open is not used: it accepts more formats, and warns of sizes that are refused below.
         file = reader(BytesIO(data.tobytes()))
         width, height = file.size
         if width * height <= MOST_PIXELS:
@@ -101,15 +106,16 @@ def file_pixels(data: NDArray[np.uint8]) -> NDArray[Any]:
 
 
 def file_kind(start: bytes) -> str:
-    """The kind of a file, PNG or JPEG, by how it begins."""
+    """Return the format of a file, PNG or JPEG, from its first bytes."""
     return "PNG" if start.startswith(_PNG) else "JPEG"
 
 
 def unpacked(message: Any) -> RawImage:
-    """The image of a message of the transport `compressed`.
+    """Return the image of a message of the transport `compressed`.
 
-    The encoding is that of the file. For pixels with 16 bits (depths) the format of the message names the encoding, and
-    a JPEG has their upper 8 bits, as with compressed_image_transport.
+    The encoding is that of the file. For pixels with 16 bits (depths), the format of the message names the encoding; a
+    JPEG
+    contains only their upper 8 bits, as in compressed_image_transport.
 
     Args:
         message: sensor_msgs/msg/CompressedImage, whose format begins with the encoding of the raw image.
@@ -129,13 +135,13 @@ def unpacked(message: Any) -> RawImage:
 
 
 def encoding_of(message: Any) -> str:
-    """The encoding of the image that a sensor_msgs/msg/CompressedImage was made of, according to its format."""
+    """Return the encoding of the raw image of a sensor_msgs/msg/CompressedImage, according to its format."""
     encoding: str = message.format.partition(";")[0].strip()
     return encoding
 
 
 def _plain(file: Any) -> NDArray[Any]:
-    """The pixels of a file in one of the modes that `file_pixels` promises."""
+    """Return the pixels of a file in one of the array types returned by `file_pixels`."""
     if file.mode in ("I;16", "L", "RGB", "RGBA"):
         return np.asarray(file)
     transparent = file.mode in ("LA", "PA") or "transparency" in file.info

@@ -1,7 +1,7 @@
-"""Where the images of a topic come from: image_transport's transports, by their names.
+"""The sources of a topic's images: image_transport's transports, by name.
 
-A transport other than raw has a topic of its own below the image's, `/camera/image/compressed`. RViz takes the name of
-the transport from the end of a topic where there is no property for it.
+A transport other than raw has a separate topic below the image's, such as `/camera/image/compressed`. RViz derives the
+transport from the last part of a topic if there is no property for it.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ _IMAGE, _COMPRESSED_IMAGE = "sensor_msgs/msg/Image", "sensor_msgs/msg/Compressed
 
 @dataclass(frozen=True, slots=True)
 class ImageSource:
-    """The images of a topic as one of the transports brings them.
+    """The images of a topic in one of the transports.
 
     Attributes:
         base: the topic of the raw images.
         transport: the name of the transport.
-        is_renamed: its messages come on `base` itself, as drivers have it that use no image_transport.
+        is_renamed: whether the messages are published on `base` itself, as by drivers that do not use image_transport.
     """
 
     base: str
@@ -34,7 +34,10 @@ class ImageSource:
 
     @classmethod
     def of(cls, topic: str, hint: str = RAW) -> ImageSource:
-        """The source that a topic and a hint name; a transport at the end of the topic counts more than the hint."""
+        """Return the source for a topic and a hint.
+
+        A transport at the end of the topic has priority over the hint.
+        """
         topic = topic.strip()
         base, slash, last = topic.rpartition("/")
         if slash and last in TRANSPORTS[1:]:
@@ -42,18 +45,21 @@ class ImageSource:
         return cls(topic, hint if topic and hint else RAW)
 
     def carrying(self, types: Collection[str]) -> ImageSource:
-        """The same, for a topic that carries messages of these types and is not named as those of transports are."""
+        """Return the source for the message types of the topic, whose name may not indicate its transport."""
         if self.transport == RAW and _COMPRESSED_IMAGE in types and _IMAGE not in types:
             return ImageSource(self.base, COMPRESSED, is_renamed=True)
         return self
 
     @property
     def topic(self) -> str:
-        """The topic that the messages come on; empty when there is none."""
+        """The topic of the messages; empty if there is none."""
         return self.base if self.transport == RAW or self.is_renamed else f"{self.base}/{self.transport}"
 
     def transport_of(self, message: Any) -> str:
-        """The transport of a message: `format` names it for a CompressedImage on a topic whose name does not."""
+        """Return the transport of a message.
+
+        If the topic of a CompressedImage does not name the transport, its field `format` does.
+        """
         if self.is_renamed and COMPRESSED_DEPTH in message.format:
             return COMPRESSED_DEPTH
         return self.transport
@@ -70,17 +76,20 @@ class ImageSource:
 
 
 class Unpacker:
-    """Makes raw images of the messages of a transport; remembers the last, which may be shown more than once."""
+    """Converts the messages of a transport to raw images.
+
+    Stores the last one, which may be shown more than once.
+    """
 
     def __init__(self) -> None:
         self._message: Any = None
         self._image: Any = None
 
     def image(self, message: Any, transport: str) -> Any:
-        """The image of a message, with the fields of a sensor_msgs/msg/Image.
+        """Return the image of a message, with the fields of a sensor_msgs/msg/Image.
 
         Raises:
-            BadImageError: it cannot be unpacked.
+            BadImageError: the message cannot be unpacked.
         """
         if transport == RAW:
             return message
