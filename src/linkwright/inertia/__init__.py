@@ -1,4 +1,4 @@
-"""Mass properties of links from their shapes: computing them, judging them, writing them into the file."""
+"""Mass properties of links from their shapes: computing, judging and writing them."""
 
 from linkwright.loading.deferred import deferred
 from linkwright.loading.lean_typing import TYPE_CHECKING

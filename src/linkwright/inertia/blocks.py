@@ -13,14 +13,15 @@ Attributes = tuple[tuple[str, str], ...]
 
 
 def inertial_parts(properties: MassProperties) -> tuple[tuple[str, Attributes], ...]:
-    """The children of ``<inertial>`` with their attributes, in the order in which they are written.
+    """Return the children of ``<inertial>`` with their attributes, in the order in which they are written.
 
-    The axes are those of the link. Numbers have six significant digits, which keeps a valid tensor valid to far better
-    than its shape is known.
+    The axes are those of the link. Numbers have six significant digits: the rounding is far smaller than the
+    uncertainty of
+    the shape, and keeps a valid tensor valid.
     """
     inertial = to_inertial(properties)
     xyz = inertial.origin.xyz
-    x, y, z = (_number(part, 1.0) for part in xyz)  # a nanometre is nothing
+    x, y, z = (_number(part, 1.0) for part in xyz)  # Round to nanometres, which are negligible.
     names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
     moments = [getattr(inertial, name) for name in names]
     largest = max(abs(moment) for moment in moments)
@@ -32,13 +33,13 @@ def inertial_parts(properties: MassProperties) -> tuple[tuple[str, Attributes], 
 
 
 def inertial_block(properties: MassProperties, indent: str = "", step: str = "  ", newline: str = "\n") -> str:
-    """An ``<inertial>`` element as text, without a line end after it.
+    """Return an ``<inertial>`` element as text, without a final line break.
 
     Args:
-        properties: in the link frame.
-        indent: before each line but the first.
-        step: before the children, besides.
-        newline: between the lines.
+        properties: the mass properties in the link frame.
+        indent: the indentation of each line but the first.
+        step: the additional indentation of the children.
+        newline: the line break.
     """
     lines = ["<inertial>"]
     for tag, attributes in inertial_parts(properties):
@@ -48,7 +49,7 @@ def inertial_block(properties: MassProperties, indent: str = "", step: str = "  
 
 
 def start_tag(tag: str, attributes: Attributes) -> str:
-    """An element without content; values need no escaping, they are numbers."""
+    """Return the tag of an element without content; values are numbers and need no escaping."""
     return f"<{tag} " + " ".join(f'{name}="{value}"' for name, value in attributes) + "/>"
 
 

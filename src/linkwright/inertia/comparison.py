@@ -1,4 +1,4 @@
-"""Comparing the mass properties in a file with those computed from the shapes."""
+"""Comparison of the mass properties in a file with those computed from the shapes."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ from linkwright.loading.lean_dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """The mass properties of a file beside those of the shapes.
+    """The mass properties of a file compared with those of the shapes.
 
     Attributes:
-        mass: in kg, in the file.
-        mass_ratio: mass in the file for each kg computed; None where one of them is not positive.
-        center_distance: between the centres of mass in m.
-        moment_ratios: principal moments for each kg of mass, those of the file divided by those computed, the
-            smallest first; None where they cannot be divided.
-        problems: what keeps the file's values from being those of a body.
+        mass: the mass in the file, in kg.
+        mass_ratio: the mass in the file divided by the computed mass; None if one of them is not positive.
+        center_distance: the distance between the centres of mass in m.
+        moment_ratios: the principal moments per kg in the file divided by the computed ones, the smallest first; None
+            if
+            they cannot be divided.
+        problems: the reasons why the file's values cannot be those of a body.
     """
 
     mass: float
@@ -34,7 +35,7 @@ class Comparison:
 def compare(present: MassProperties, computed: MassProperties) -> Comparison:
     """Compare the mass properties of a file with computed ones, both in the link frame.
 
-    The moments are compared for each kg, so that a difference in mass is not told twice.
+    The moments are compared per kg, so that a difference in mass is not reported twice.
     """
     mass_ratio = present.mass / computed.mass if present.mass > 0 and computed.mass > 0 else None
     ratios = None
@@ -42,7 +43,7 @@ def compare(present: MassProperties, computed: MassProperties) -> Comparison:
         ours = computed.principal().moments
         theirs = present.principal().moments
         if ours[0] > 0:
-            with np.errstate(all="ignore"):  # beyond doubles there is nothing to compare
+            with np.errstate(all="ignore"):  # Values beyond the range of doubles cannot be compared.
                 first, second, third = (float(ratio) for ratio in theirs / ours / mass_ratio)
             ratios = (first, second, third) if all(map(isfinite, (first, second, third))) else None
     distance = float(np.linalg.norm(present.center - computed.center))

@@ -1,4 +1,4 @@
-"""Estimating the mass properties of a link from its shapes."""
+"""Estimation of a link's mass properties from its shapes."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ _NOTHING = 1e-18
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """The estimate of a link, and the shapes that it leaves out.
+    """The estimated mass properties of a link, and the shapes that were not used.
 
     Attributes:
         link: the link's name.
-        properties: in the link frame; None when there is no shape with a volume.
-        kind: the kind of shapes that it uses; None if there are none.
-        shapes: the number of shapes that it uses.
-        basis: where the mass comes from: ``mass`` (asked for), ``density`` (asked for or the default), ``present`` (the
+        properties: the mass properties in the link frame; None if no shape has a volume.
+        kind: the kind of shapes that were used; None if there are none.
+        shapes: the number of shapes that were used.
+        basis: the source of the mass: ``mass`` (requested), ``density`` (requested or the default), ``present`` (the
             link's own ``<mass>``).
         density: the resulting mean density in kg/m3; 0 without properties.
-        notes: remarks for the user: a hull in place of a mesh, a shape left out.
+        notes: remarks for the user, such as a hull in place of a mesh, or a shape that was not used.
     """
 
     link: str
@@ -54,17 +54,18 @@ def estimate(
     mass: float | None = None,
     prefer: ShapeKind = "collision",
 ) -> Estimate:
-    """Mass properties of a link as solid shapes of one uniform density; where shapes overlap they count twice.
+    """Estimate the mass properties of a link whose shapes are solid with a uniform density.
 
-    The mass is the one that is asked for, else the one of the density that is asked for, else the one that the link has
-    in the file, else that of `DEFAULT_DENSITY`.
+    Overlapping parts of shapes count twice. The mass is the requested mass, else the mass from the requested density,
+    else
+    the mass of the link in the file, else the mass from `DEFAULT_DENSITY`.
 
     Args:
         link: the link.
-        meshes: where its meshes come from.
-        density: in kg/m3.
-        mass: in kg.
-        prefer: the shapes to take; the others where the link has none of these (or none with a volume).
+        meshes: the library of its meshes.
+        density: the requested density in kg/m3.
+        mass: the requested mass in kg.
+        prefer: the kind of shapes to use; the other kind is used if the link has none of these (or none with a volume).
     """
     notes: list[Phrase] = []
     kind: ShapeKind | None = None
@@ -96,7 +97,10 @@ def estimate(
 def _solid(
     shape: Collision | Visual, kind: ShapeKind, meshes: MeshLibrary, notes: list[Phrase]
 ) -> MassProperties | None:
-    """A shape of density 1 in the link frame; None if it has no volume or cannot be read, which is noted."""
+    """Return a shape of density 1 in the link frame.
+
+    Returns None, with a note, if it has no volume or cannot be read.
+    """
     geometry = shape.geometry
     if max(map(abs, shape.origin.xyz)) > FARTHEST:
         notes.append(phrase("a {kind} shape is left out: it is too far away", kind=term(kind)))

@@ -1,4 +1,4 @@
-"""Converting ``<inertial>`` to mass properties and back."""
+"""Conversion between ``<inertial>`` and mass properties."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.urdf import Inertial, Pose
 
 
 def has_mass(inertial: Inertial) -> bool:
-    """Return whether an ``<inertial>`` gives a mass that can be spread over a shape."""
+    """Return whether an ``<inertial>`` has a mass that can be distributed over a shape."""
     return is_computable(inertial) and inertial.mass > LEAST_MASS
 
 
@@ -22,7 +22,7 @@ def from_inertial(inertial: Inertial) -> MassProperties:
 
 
 def to_inertial(properties: MassProperties) -> Inertial:
-    """Convert mass properties in the link's frame to an ``<inertial>``; its axes are those of the link."""
+    """Convert mass properties in the link frame to an ``<inertial>``, whose axes are those of the link."""
     tensor = properties.inertia
     x, y, z = (float(part) for part in properties.center)
     ixx, ixy, ixz, iyy, iyz, izz = (float(tensor[i, j]) for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)))

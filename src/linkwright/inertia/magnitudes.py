@@ -1,4 +1,7 @@
-"""Whether the numbers of an ``<inertial>`` are of a size to compute with; asked of every link, so without numpy."""
+"""The check whether numbers of an ``<inertial>`` can be computed with.
+
+It runs for every link, so it must not load numpy.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,10 @@ _GREATEST = 1e30
 
 
 def is_computable(inertial: Inertial) -> bool:
-    """Whether the numbers of an ``<inertial>`` are small enough to compute with; they need not be those of a body."""
+    """Return whether the numbers of an ``<inertial>`` are small enough for computations.
+
+    They need not be physically valid.
+    """
     i = inertial
     numbers = (i.mass, i.ixx, i.ixy, i.ixz, i.iyy, i.iyz, i.izz)
     return max(map(abs, numbers)) <= _GREATEST and max(map(abs, i.origin.xyz)) <= FARTHEST

@@ -1,4 +1,4 @@
-"""The mesh files of a description, each found and read once."""
+"""The mesh files of a description, each of which is found and read once."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ quicker, together with its import."""
 
 
 class MeshLibrary:
-    """Finds and reads the meshes that a description names.
+    """Finds and reads the meshes of a description.
 
-    A file that has not changed since another description named it is not read again, as far as it is kept.
+    A file that has not changed since it was read for another description is not read again while it is cached.
 
     Args:
-        finder: where packages are.
-        folder: where relative paths start when it is not known in which file they are written.
+        finder: finds packages.
+        folder: the folder for relative paths if the file that contains them is unknown.
     """
 
     def __init__(self, finder: PackageFinder, folder: Path) -> None:
@@ -47,11 +47,12 @@ class MeshLibrary:
         """Return the file of a URI, whether or not it exists.
 
         Args:
-            uri: ``package://``, ``file://`` or a path; a relative one starts at the folder of the file that has it.
-            element: the element that it is written in.
+            uri: ``package://``, ``file://`` or a path; a relative path starts at the folder of the file that contains
+                it.
+            element: the element in which the URI is written.
 
         Raises:
-            LinkwrightError: PKG101 for an unknown package, PKG102 for a URI that is none.
+            LinkwrightError: PKG101, the package is unknown; PKG102, the URI is invalid.
         """
         key = uri, self._base(element)
         found = self._paths.get(key)
@@ -66,10 +67,10 @@ class MeshLibrary:
         return found
 
     def read(self, path: Path) -> TriangleMesh:
-        """The triangles of a file.
+        """Return the triangles of a file.
 
         Raises:
-            LinkwrightError: as `read_mesh` does.
+            LinkwrightError: the same errors as `read_mesh`.
         """
         key = os.path.realpath(path)
         found = self._meshes.get(key)
@@ -84,18 +85,18 @@ class MeshLibrary:
         return found
 
     def load(self, mesh: Mesh, element: Element | None = None) -> TriangleMesh:
-        """The triangles of a URDF mesh, scaled, in the frame of its visual or collision.
+        """Return the triangles of a URDF mesh, scaled, in the frame of its visual or collision.
 
         Raises:
-            LinkwrightError: as `locate` and `read` do.
+            LinkwrightError: the same errors as `locate` and `read`.
         """
         return self.read(self._checked(mesh, element)).scaled(mesh.scale)
 
     def outline(self, mesh: Mesh, element: Element | None = None) -> Outline:
-        """The outline of a URDF mesh, scaled, in the frame of its visual or collision.
+        """Return the outline of a URDF mesh, scaled, in the frame of its visual or collision.
 
         Raises:
-            LinkwrightError: as `locate` and `read` do.
+            LinkwrightError: the same errors as `locate` and `read`.
         """
         path = self._checked(mesh, element)
         key = os.path.realpath(path)
@@ -104,7 +105,7 @@ class MeshLibrary:
         return (self._outlines[key] or self.read(path)).scaled(mesh.scale)
 
     def _checked(self, mesh: Mesh, element: Element | None) -> Path:
-        """Return the file of a mesh, unless its scale is out of range."""
+        """Return the file of a mesh, and refuse a scale that is out of range."""
         path = self.locate(mesh.filename, element)
         if max(map(abs, mesh.scale)) > FARTHEST:
             from linkwright.geometry.meshes import unreadable
@@ -119,7 +120,7 @@ class MeshLibrary:
 
 
 def _size_of(_: object, mesh: TriangleMesh) -> int:
-    """Return the bytes of a mesh, doubled for the data computed from it."""
+    """Return the size of a mesh in bytes, doubled for the data computed from it."""
     return 2 * (mesh.vertices.nbytes + mesh.faces.nbytes)
 
 
@@ -128,15 +129,18 @@ _CACHE: BoundedCache[tuple[str, int, int], TriangleMesh] = BoundedCache(_CACHE_S
 
 
 def _unchanged(path: Path, real: str) -> TriangleMesh:
-    """Return the triangles of a file, read once; glTF is read each time, since parts of it may be in other files."""
-    from linkwright.geometry.meshes import read_mesh  # not above: checks of small meshes need no numpy
+    """Return the triangles of a file.
+
+    A glTF file is read each time, because it may refer to other files.
+    """
+    from linkwright.geometry.meshes import read_mesh  # Imported here because checks of small meshes need no numpy.
 
     if path.suffix.lower() in (".glb", ".gltf"):
         return read_mesh(path)
     try:
         facts = os.stat(real)  # noqa: PTH116 - a path that is already text
     except OSError:
-        return read_mesh(path)  # which tells why
+        return read_mesh(path)  # raises an error with the reason
     key = real, facts.st_mtime_ns, facts.st_size
     found = _CACHE.values.get(key)
     if found is None:
@@ -150,7 +154,10 @@ _SMALL_MESHES: dict[tuple[str, int, int], SmallMesh] = {}
 
 
 def _small(real: str, kind: str) -> SmallMesh | None:
-    """The triangles of a small, usual file, read without arrays; None if arrays are to read it or tell why not."""
+    """Return the triangles of a small, simple file, read without arrays.
+
+    None means that the file must be read with arrays, which also report what is wrong with it.
+    """
     try:
         facts = os.stat(real)  # noqa: PTH116 - as above
         key = real, facts.st_mtime_ns, facts.st_size

@@ -1,4 +1,4 @@
-"""Estimates of mass properties as text for people and as JSON for programs."""
+"""Estimates of mass properties formatted as text for users and as JSON for programs."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ def as_text(
     Args:
         robot: the robot.
         estimates: the estimates of its links.
-        written: the result of writing; the verdicts are on the values in the file before it.
-        detailed: links whose computed ``<inertial>`` follows the table, with its origin.
+        written: the result of writing; the verdicts apply to the values in the file before it.
+        detailed: the links whose computed ``<inertial>`` follows the table, with its source.
     """
     verdicts = _verdicts(robot, estimates)
     ordered = sorted(estimates, key=lambda estimate: verdicts[estimate.link].place)
@@ -65,7 +65,7 @@ def as_text(
 
 
 def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
-    """Yield the lines of a table with its head; cells are aligned to the left."""
+    """Yield the lines of a table with its header; cells are left-aligned."""
     lines = [tuple(map(localized, _HEAD)), *rows]
     widths = [max(map(shown_width, column)) for column in zip(*lines, strict=True)]
     for line in lines:
@@ -98,7 +98,10 @@ def _verdicts(robot: Robot, estimates: Sequence[Estimate]) -> Mapping[str, Verdi
 
 
 def as_json(robot: Robot, estimates: Sequence[Estimate], written: Written | None = None) -> str:
-    """The same as an object with ``links``, a list in file order; SI units, floats in full."""
+    """Return the same data as a JSON object with a list ``links`` in file order.
+
+    Units are SI, and floats are written in full.
+    """
     verdicts = _verdicts(robot, estimates)
     links = [_link_data(found, verdicts[found.link], written) for found in estimates]
     files = [] if written is None else [str(file) for file in written.files]

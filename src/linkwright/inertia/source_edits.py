@@ -1,4 +1,7 @@
-"""Putting ``<inertial>`` blocks into the source of a description, with everything around them left as it is."""
+"""Insertion of ``<inertial>`` blocks into the source of a description.
+
+All other text remains unchanged.
+"""
 
 from __future__ import annotations
 
@@ -25,18 +28,22 @@ _EXPRESSION = lazy_pattern(r"\$[{(](?!find\b)")
 
 
 class NotWritableError(Exception):
-    """A link's ``<inertial>`` is not literal text of a file; the message is the reason, as a clause."""
+    """Raised when a link's ``<inertial>`` is not literal text of a file.
+
+    The message is the reason, as a clause.
+    """
 
 
 def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[Replacement]]:
-    """The edits of sources that give a link these mass properties.
+    """Return the edits of source texts that give a link these mass properties.
 
-    An ``<inertial>`` that is there keeps its formatting and comments; only values are exchanged and what it lacks is
-    added. A new one comes first in the link.
+    An existing ``<inertial>`` keeps its formatting and comments; only values are replaced and missing parts added. A
+    new
+    ``<inertial>`` becomes the first child of the link.
 
     Args:
-        link: read from a file, maybe through xacro.
-        properties: in the link frame.
+        link: the link, read from a file, possibly through xacro.
+        properties: the mass properties in the link frame.
 
     Raises:
         NotWritableError: the link is written by a macro, or with expressions.
@@ -53,14 +60,14 @@ def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[
 
 
 def written_element(element: Element | None, tag: str) -> Element:
-    """Return an element as it is written in its file, before any expansion.
+    """Return an element as written in its file, before any expansion.
 
     Args:
         element: the element of the expanded description.
-        tag: the tag that it must also have in the file.
+        tag: the tag that the element must also have in the file.
 
     Raises:
-        NotWritableError: it comes from a macro or an expression, or not from a file.
+        NotWritableError: the element is from a macro or an expression, or not from a file.
     """
     if element is None or element.source is None:
         raise NotWritableError(phrase("it is not written in a file"))
@@ -76,10 +83,10 @@ def written_element(element: Element | None, tag: str) -> Element:
 
 
 def written_link(link: Link) -> Element:
-    """Return the ``<link>`` as it is written in its file, if xacro decides nothing in its shapes.
+    """Return the ``<link>`` as written in its file, if its shapes do not depend on xacro.
 
     Raises:
-        NotWritableError: as for `written_element`, or its shapes have expressions that new numbers would not follow.
+        NotWritableError: as for `written_element`, or its shapes contain expressions that new numbers would not follow.
     """
     written = written_element(link.element, "link")
     dynamic = next((child.tag for child in written.elements() if child.tag.startswith("xacro:")), None)
@@ -145,12 +152,12 @@ def _changed_attributes(text: str, element: Element, attributes: Attributes) -> 
         yield Replacement(after, after, added)
     name_range = attribute_name_range(text, element.offset, "quat_xyzw")
     value_range = attribute_value_range(text, element.offset, "quat_xyzw")
-    if name_range is not None and value_range is not None:  # the block's axes are those of the link
+    if name_range is not None and value_range is not None:  # The block's axes are those of the link.
         yield Replacement(name_range[0], value_range[1] + 1, "")
 
 
 def _is_equal_value(written: str, value: str) -> bool:
-    """Return whether numbers in the file are equal to those to be written, to the digits that are written."""
+    """Return whether numbers in the file equal new ones, up to rounding."""
     try:
         there = [float(word) for word in written.split()]
     except ValueError:
@@ -160,7 +167,7 @@ def _is_equal_value(written: str, value: str) -> bool:
 
 
 def _holds(element: Element, pattern: re.Pattern[str]) -> bool:
-    """Return whether the pattern is found in an attribute of an element or below it, or a child is left to xacro."""
+    """Return whether a pattern matches an attribute of an element or its descendants, or a child depends on xacro."""
     return any(
         child.tag.startswith("xacro:") or any(map(pattern.search, child.attributes.values()))
         for child in element.walk()

@@ -1,4 +1,4 @@
-"""Judging the ``<inertial>`` of a link beside its shapes, in words."""
+"""Verdicts, in words, on the ``<inertial>`` of a link compared with its shapes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _OFF = 0.1
 
 
 class Standing(Enum):
-    """How good an ``<inertial>`` is, the worst first."""
+    """The quality of an ``<inertial>``, the worst first."""
 
     IMPOSSIBLE = "impossible"
     DOUBTFUL = "doubtful"
@@ -48,9 +48,9 @@ class Verdict:
     Attributes:
         standing: the grade.
         words: the reason, as a clause.
-        badness: the size of the error; comparable between verdicts of the same standing.
-        present: the values of the file, in the link frame; None if there are none, or none that can be computed with.
-        density: the density of the link's shapes with the file's mass, in kg/m3; None if it is not known.
+        badness: the size of the error; comparable between verdicts with the same standing.
+        present: the values of the file, in the link frame; None if there are none, or none that can be used.
+        density: the density of the link's shapes with the file's mass, in kg/m3; None if it is unknown.
         comparison: the comparison of the file with the shapes; None if there is nothing to compare.
     """
 
@@ -63,7 +63,7 @@ class Verdict:
 
     @property
     def place(self) -> tuple[int, float]:
-        """The sort key for the worst first."""
+        """The sort key, which puts the worst verdict first."""
         return _ORDER.index(self.standing), -self.badness
 
 
@@ -77,12 +77,12 @@ class _Reason:
 
 
 def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
-    """Judge a link.
+    """Return the verdict on a link's ``<inertial>``.
 
     Args:
         link: the link.
-        found: what its shapes tell.
-        bodies: the robot's links as fixed joints connect them: a mass may be that of links that have none.
+        found: the estimate from its shapes.
+        bodies: the robot's links grouped by fixed joints: a mass may include links without a mass.
     """
     if link.inertial is None:
         return _without(link, bodies)
@@ -117,7 +117,7 @@ def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
 
 
 def _without(link: Link, bodies: Bodies) -> Verdict:
-    """The verdict on a link without ``<inertial>``."""
+    """Return the verdict on a link without ``<inertial>``."""
     body = bodies.of(link.name)
     members = [] if body is None else bodies.members(body)
     heavy = next((member.name for member in members if member.inertial is not None and member.inertial.mass > 0), None)
@@ -130,12 +130,12 @@ def _without(link: Link, bodies: Bodies) -> Verdict:
 
 def _of_density(density: float, *, has_mesh: bool) -> list[_Reason]:
     if density > HEAVIEST_DENSITY:
-        # A mesh may be a thin skin around what weighs.
+        # A mesh may be a thin skin around a heavy interior.
         standing = Standing.DOUBTFUL if has_mesh else Standing.IMPOSSIBLE
         words = phrase("denser than any solid: osmium has {density} kg/m3", density=grouped(HEAVIEST_DENSITY))
         return [_Reason(standing, words, log(density / HEAVIEST_DENSITY))]
     if density < LIGHTEST_DENSITY:
-        badness = log(LIGHTEST_DENSITY / density) if density > 0 else inf  # 0 of a mass that is next to nothing
+        badness = log(LIGHTEST_DENSITY / density) if density > 0 else inf  # 0 for a negligible mass
         return [_Reason(Standing.DOUBTFUL, phrase("lighter than air"), badness)]
     return []
 
@@ -168,5 +168,5 @@ def _length(comparison: Comparison) -> str:
 
 
 def grouped(number: float) -> str:
-    """A number in full with its thousands apart, a small one with three digits."""
+    """Format a number in full with grouped thousands, or a number below 100 with three digits."""
     return f"{number:,.0f}".replace(",", " ") if number >= 100 else f"{number:.3g}"

@@ -1,4 +1,4 @@
-"""Writing computed ``<inertial>`` elements into the source files of links."""
+"""Writing of computed ``<inertial>`` elements to the source files of links."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ class Written:
 
 
 def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> Written:
-    """Write mass properties into the source files of links; all else in them stays.
+    """Write mass properties to the source files of links, and leave everything else unchanged.
 
     Args:
-        robot: read from a file, maybe through xacro.
+        robot: the robot, read from a file, possibly through xacro.
         properties: link -> mass properties in the link frame.
 
     Raises:
-        LinkwrightError: INR201 when a file cannot be written.
+        LinkwrightError: INR201, a file cannot be written.
     """
     times = Counter(_place(link) for link in robot.links.values())
 
@@ -55,16 +55,16 @@ def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> W
 
 
 def write_edits(edits_of: Mapping[str, Callable[[], tuple[SourceText, list[Replacement]]]]) -> Written:
-    """Apply edits in several places, to each file once.
+    """Apply edits in several places, writing each file once.
 
     Args:
         edits_of: name -> a function that returns a text as it was read, and its edits; may raise `NotWritableError`.
 
     Returns:
-        The result, with these names in the place of links.
+        The result, with these names in place of links.
 
     Raises:
-        LinkwrightError: INR201 when a file cannot be written.
+        LinkwrightError: INR201, a file cannot be written.
     """
     refused: dict[str, str] = {}
     edits: dict[str, list[Replacement]] = {}
@@ -91,7 +91,10 @@ def _place(link: Link) -> tuple[str, int]:
 
 
 def _current(file: str, text: str) -> str:
-    """Return the current text of a file, with its byte order mark; offsets of the text that was read are valid."""
+    """Return the current text of a file, with its byte order mark.
+
+    Refuses a file whose length has changed.
+    """
     try:
         now = read_bytes(file).decode("utf-8")
     except UnicodeDecodeError:
