@@ -1,4 +1,4 @@
-"""Infer the elements that a description lacks to be driven in a simulated world, with reasons, and add them."""
+"""Inference of elements that a description lacks for a simulated world: with reasons, and added on request."""
 
 from linkwright.inference.infer import infer
 from linkwright.inference.model import Drive, DriveKind, Finding, Inference, Wheel

@@ -1,4 +1,4 @@
-"""Add the inferred elements to a description, in memory."""
+"""Addition of the inferred elements to a description, in memory."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ def completed(document: Document, inference: Inference) -> Document:
     """Return a description with all inferred elements, so that a simulator can read it.
 
     Args:
-        document: the expanded description that the robot of the inference was read from; it is not changed.
-        inference: the inference about that robot; one from another reading of the same file does not fit.
+        document: the expanded description from which the robot of the inference was read; it is not changed.
+        inference: the inference about that robot; an inference from another reading of the same file does not fit.
 
     Returns:
-        A document whose new elements have the source place of the element that they were added to.
+        A document whose new elements have the source place of the element to which they were added.
     """
     added: dict[int, list[Element]] = {}
     for finding in inference.findings:
@@ -47,7 +47,10 @@ def _grown(element: Element, added: dict[int, list[Element]]) -> Element:
 
 
 def _placed(element: Element, owner: Element) -> Element:
-    """Return a copy of a new element at the source place of its owner, so that findings about it have a place."""
+    """Return a copy of a new element with the source place of its owner.
+
+    Findings about the element then have a place.
+    """
     placed = Element(element.tag, dict(element.attributes), owner.source, owner.offset, owner.origin)
     placed.children = [_placed(child, owner) if isinstance(child, Element) else child for child in element.children]
     return placed

@@ -1,4 +1,7 @@
-"""The kind of drive that the wheels of a robot suggest. If they suggest none, a finding names the option to use."""
+"""The kind of drive that a robot's wheels suggest.
+
+If they suggest none, a finding names the option to use.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,7 @@ class Verdict:
     Attributes:
         drive: the drive; None if it is unknown.
         reason: the reason for the drive, or why it is unknown; a clause.
-        extra_casters: the links of wheels that turn out to be casters beside the other wheels.
+        extra_casters: the links of wheels that are casters in view of the other wheels.
     """
 
     drive: Drive | None
@@ -45,8 +48,8 @@ def judge(
     Args:
         survey: the robot.
         under: its undercarriage.
-        wanted: the kind that the user asks for; None to infer it from the wheels.
-        chosen: the driven wheels that the user names; empty to find them.
+        wanted: the kind requested by the user; None to infer it from the wheels.
+        chosen: the driven wheels named by the user; empty to find them.
     """
     wheels = tuple(chosen) or under.wheels
     if not chosen and under.crooked and wanted is None:
@@ -166,7 +169,7 @@ def _pairs(wheels: Sequence[Wheel]) -> tuple[list[Pair], list[Wheel]]:
 
 
 def _skew(left: Wheel, right: Wheel) -> float:
-    """By how much a wheel is not the mirror image of another one, in m."""
+    """Return by how much a wheel differs from the mirror image of another wheel, in m."""
     return abs(left.center[0] - right.center[0]) + abs(left.center[1] + right.center[1])
 
 
@@ -180,6 +183,9 @@ def _fit(left: Wheel, right: Wheel) -> bool:
 
 
 def _supports_only(wheel: Wheel, pairs: list[Pair]) -> bool:
-    """Return whether a wheel without one opposite is small beside the pairs, or a ball, and so a caster."""
+    """Return whether a wheel without an opposite wheel is a caster.
+
+    A caster is a ball, or much smaller than the paired wheels.
+    """
     largest = max((wheel.radius for pair in pairs for wheel in pair), default=0.0)
     return bool(pairs) and (wheel.width is None or wheel.radius < _MUCH_SMALLER * largest)

@@ -1,7 +1,7 @@
-"""The ``<gazebo>`` elements that make Gazebo Classic, and the simulation here, drive a robot.
+"""The ``<gazebo>`` elements with which Gazebo Classic, and the simulation here, drive a robot.
 
-Source: the plugins of gazebo_ros_pkgs for ROS 2 and, for joints that hold their positions, gz-sim's; parameters are
-theirs.
+Source: the plugins of gazebo_ros_pkgs for ROS 2 and, for joints that hold their positions, of gz-sim, with their
+parameters.
 """
 
 from __future__ import annotations
@@ -44,14 +44,14 @@ _RATE = "50"
 
 
 def own_drive(robot: Robot) -> Element | None:
-    """Return the plugin with which a description drives the robot itself, if it works here."""
+    """Return the plugin with which a description already drives the robot, if the plugin works here."""
     return next((plugin for plugin in _drives(robot) if _works(plugin)), None)
 
 
 def idle_drive(robot: Robot) -> Element | None:
     """Return the plugin or ``<ros2_control>`` with which a description drives the robot, if it has no effect here.
 
-    Examples are controllers of ROS 1, those whose parameter file does not exist, and a ``<ros2_control>`` for a
+    Examples are controllers of ROS 1, controllers whose parameter file does not exist, and a ``<ros2_control>`` for a
     simulator without the plugin that runs it, which is often in a separate file for launches.
     """
     idle = next((plugin for plugin in _drives(robot) if not _works(plugin)), None)
@@ -72,7 +72,7 @@ def idle_drive(robot: Robot) -> Element | None:
 
 
 def commanded_joints(robot: Robot) -> frozenset[str]:
-    """The joints that controllers command, by ``<ros2_control>`` or, as in ROS 1, by ``<transmission>``."""
+    """Return the joints that controllers command, by ``<ros2_control>`` or, as in ROS 1, by ``<transmission>``."""
     return frozenset(
         joint.attributes.get("name", "")
         for extension in robot.extensions
@@ -90,7 +90,7 @@ def _drives(robot: Robot) -> Iterator[Element]:
 
 
 def _works(plugin: Element) -> bool:
-    """Return whether a plugin is simulated, and has the files that it is given."""
+    """Return whether a plugin is simulated, and its files exist."""
     known = extensions(_SIMULATED)
     names = library_name(plugin.attributes.get("filename", "")), original_library(plugin.attributes.get("name", ""))
     files = [Path(element.text().strip()) for element in plugin.elements("parameters")]
@@ -108,7 +108,10 @@ def publishes_joint_states(robot: Robot) -> bool:
 
 
 def controlled_joints(robot: Robot) -> frozenset[str]:
-    """The joints that plugins of the description hold and move; a plugin that names none takes all."""
+    """Return the joints that plugins of the description hold and move.
+
+    A plugin that names none controls all.
+    """
     found: set[str] = set()
     for extension in robot.extensions:
         for plugin in extension.elements("plugin") if extension.tag == "gazebo" else ():
@@ -131,20 +134,20 @@ def has_friction(robot: Robot, link: str) -> bool:
 
 
 def slippery(link: str) -> Element:
-    """Return the element that makes a caster slide."""
+    """Return the element that lets a caster slide."""
     element = Element("gazebo", {"reference": link})
     element.children += [_with_text("mu1", _FRICTION), _with_text("mu2", _FRICTION)]
     return element
 
 
 def drive_plugin(robot: Robot, drive: Drive, base_frame: str, mass: float) -> Element:
-    """The plugin that drives wheels, in its ``<gazebo>``.
+    """Return the plugin that drives wheels, in its ``<gazebo>``.
 
     Args:
         robot: the robot.
-        drive: of any kind but `joints`.
+        drive: a drive of any kind except `joints`.
         base_frame: the child frame of odometry.
-        mass: of the robot in kg.
+        mass: the mass of the robot in kg.
     """
     makers = {"differential": _diff_drive, "skid": _diff_drive, "mecanum": _planar_move, "ackermann": _ackermann}
     name, filename, parameters = makers[drive.kind](drive, _torque(robot, drive, mass))
@@ -158,7 +161,7 @@ def drive_plugin(robot: Robot, drive: Drive, base_frame: str, mass: float) -> El
 
 
 def joint_states(joints: Sequence[str]) -> Element:
-    """The plugin that publishes the positions of joints."""
+    """Return the plugin that publishes the positions of joints."""
     names = [("joint_name", name) for name in joints]
     plugin = _plugin("joint_states", "libgazebo_ros_joint_state_publisher.so", [("update_rate", _RATE), *names])
     return _gazebo(plugin)
@@ -225,7 +228,7 @@ def _ackermann(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, s
 
 
 def _torque(robot: Robot, drive: Drive, mass: float) -> float:
-    """Return the greatest torque of a wheel in N m: the slipping torque, plus its joint's friction and damping."""
+    """Return the maximum torque of a wheel in N m: the slipping torque, plus its joint's friction and damping."""
     wheels = (*drive.left, *drive.right)
     slipping = _GRAVITY * mass * drive.radius / len(wheels)
     dynamics = [robot.joints[wheel.joint].dynamics for wheel in wheels]
@@ -236,7 +239,7 @@ def _torque(robot: Robot, drive: Drive, mass: float) -> float:
 
 
 def number(value: float) -> str:
-    """A number with six digits at most."""
+    """Format a number with at most six digits."""
     return f"{value:.6g}"
 
 

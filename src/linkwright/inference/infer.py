@@ -1,4 +1,4 @@
-"""Infer the elements that a description lacks to be driven in a simulated world."""
+"""Inference of the elements that a description lacks to be driven in a simulated world."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def infer(robot: Robot, meshes: MeshLibrary, *, kind: DriveKind | None = None, w
     ``<ros2_control>`` that drives the robot.
 
     Args:
-        robot: the robot; the findings point to its elements.
+        robot: the robot; the findings refer to its elements.
         meshes: the library of its meshes.
-        kind: the kind of drive that the user chooses, which overrides that of the description.
-        wheels: the joints, or the links, of the driven wheels that the user names.
+        kind: the kind of drive chosen by the user, which overrides that of the description.
+        wheels: the joints, or the links, of the driven wheels named by the user.
 
     Raises:
-        LinkwrightError: DRIVE210 there is no such wheel, DRIVE211 the wheels do not make a drive of that kind.
+        LinkwrightError: DRIVE210, there is no such wheel; DRIVE211, the wheels do not make a drive of that kind.
     """
     survey = Survey(robot, meshes)
     under = survey.undercarriage()
@@ -51,7 +51,7 @@ def infer(robot: Robot, meshes: MeshLibrary, *, kind: DriveKind | None = None, w
 
 
 class _Inferring:
-    """Puts an inference together, once the drive is known."""
+    """Builds an inference once the drive is known."""
 
     def __init__(
         self, survey: Survey, under: Undercarriage, verdict: Verdict, own: Element | None, idle: Element | None
@@ -77,7 +77,7 @@ class _Inferring:
         self._base_frame = next((name for name in names if name in self._robot.links), self._robot.root)
 
     def result(self) -> Inference:
-        """The inference."""
+        """Return the inference."""
         findings = [*missing_collisions(self._survey, self._wheels, self._casters)]
         solid = (*self._wheels, *self._casters)
         findings += missing_masses(self._survey, solid, fixed_base=self._fixed_base)
@@ -100,7 +100,7 @@ class _Inferring:
         return {name: mass for name, mass in masses.items() if mass > 0.0}
 
     def _held(self) -> tuple[str, ...]:
-        """Return the joints that nothing else moves, and that a controller has to hold."""
+        """Return the joints that nothing else moves, and that a controller must hold."""
         if self._own is not None and self._idle is None:
             return ()
         rolling = {wheel.joint for wheel in self._wheels.values()} | self._under.swivelling
@@ -176,7 +176,10 @@ class _Inferring:
         return Finding(self._at_root("DRIVE201", message, Severity.WARNING, _OPTION))
 
     def _turned_axes(self, drive: Drive) -> Iterator[Finding]:
-        """Axes that point to the right are turned round: for plugins of Gazebo a positive velocity drives forward."""
+        """Yield reversed axes for those that point to the right.
+
+        For plugins of Gazebo, a positive velocity drives forward.
+        """
         if drive.kind == "mecanum":
             return
         for wheel in (*drive.left, *drive.right, *drive.steered):
@@ -202,7 +205,7 @@ class _Inferring:
             yield Finding(_at(element, "DRIVE112", message), self._robot.element, (gazebo.slippery(name),))
 
     def _rolls_freely(self, link: str) -> bool:
-        """Return whether a caster turns about its own axis and about a vertical one, as real ones do."""
+        """Return whether a caster rotates about its own axis and about a vertical one, as real casters do."""
         wheel = self._wheels.get(link)
         return wheel is not None and wheel.width is not None and wheel.steering is not None
 
@@ -228,14 +231,14 @@ def _at(
     severity: Severity = Severity.INFO,
     hint: Phrase | None = None,
 ) -> Diagnostic:
-    """A finding about an element."""
+    """Return a finding about an element."""
     if element is None:
         return Diagnostic(code, message, None, severity, hint=hint)
     return Diagnostic(code, message, element.span(), severity, hint=hint, source=element.source)
 
 
 def _verdict(survey: Survey, under: Undercarriage, kind: DriveKind | None, chosen: Sequence[Wheel]) -> Verdict:
-    """Return what is driven: wheels, or the joints of a robot with a fixed base."""
+    """Return which drive the robot has: wheels, or the joints of a robot with a fixed base."""
     if kind == "joints":
         return Verdict(Drive("joints"), phrase("its joints are to be moved"))
     if kind is None and not chosen and survey.robot.root == _WORLD:
@@ -246,7 +249,7 @@ def _verdict(survey: Survey, under: Undercarriage, kind: DriveKind | None, chose
 
 
 def _without_wheels(survey: Survey, under: Undercarriage) -> Verdict:
-    """Return whether a robot without wheels is an arm, whose base does not move."""
+    """Return the verdict on a robot without wheels; if it is an arm, its base does not move."""
     if under.hanging:
         wheel, height = under.hanging[0]
         reason = phrase(
@@ -267,7 +270,10 @@ def _without_wheels(survey: Survey, under: Undercarriage) -> Verdict:
 
 
 def _one_chain(survey: Survey) -> bool:
-    """Return whether one joint only moves against the root's body, and so all others hang from it."""
+    """Return whether only one joint moves relative to the root's body.
+
+    All other joints are then connected through it.
+    """
     moving = [joint for joint in survey.robot.joints.values() if joint.type in _MOVING and joint.mimic is None]
     root = survey.bodies.of(survey.robot.root)
     first = [joint for joint in moving if root is not None and joint.parent in root.frames]
@@ -275,10 +281,10 @@ def _one_chain(survey: Survey) -> bool:
 
 
 def _chosen(survey: Survey, name: str) -> Wheel:
-    """The wheel of a joint, or of a link, that the user names.
+    """Return the wheel of a joint or link that the user names.
 
     Raises:
-        LinkwrightError: DRIVE210, there is none.
+        LinkwrightError: DRIVE210, there is no such wheel.
     """
     joint = survey.robot.joints.get(name) or _joint_of(survey.robot, name)
     if joint is None:
@@ -300,7 +306,10 @@ def _joint_of(robot: Robot, link: str) -> Joint | None:
 
 
 def _anchor(robot: Robot) -> Iterator[Element]:
-    """Yield the link and joint that fix a robot to the world: simulators do not move a root link named ``world``."""
+    """Yield the link and joint that fix a robot to the world.
+
+    Simulators do not move a root link named ``world``.
+    """
     yield Element("link", {"name": _WORLD})
     joint = Element("joint", {"name": f"{_WORLD}_joint", "type": "fixed"})
     joint.children += [Element("parent", {"link": _WORLD}), Element("child", {"link": robot.root})]

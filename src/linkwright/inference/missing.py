@@ -1,7 +1,7 @@
-"""The collisions and masses that links lack to be simulated.
+"""Inference of the collisions and masses that links lack to be simulated.
 
-Links that move as one body count together: a link without a mass may get it from a link that is fixed to it. If the
-author gave collisions to some links, only wheels, casters and the chassis are assumed to lack them.
+Links that move as one body are considered as one: a link without a mass may get it from a link that is fixed to it. If
+the author gave collisions to some links, only wheels, casters and the chassis are assumed to lack them.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ _LARGE_MESH = 20_000
 
 
 def missing_collisions(survey: Survey, wheels: Mapping[str, Wheel], casters: Iterable[str]) -> Iterator[Finding]:
-    """The collisions that links get from their visuals.
+    """Yield the collisions that links get from their visuals.
 
     Args:
         survey: the robot.
-        wheels: those that touch the ground, by link.
+        wheels: the wheels that touch the ground, by link.
         casters: the links that only slide or roll along.
     """
     robot = survey.robot
@@ -88,7 +88,7 @@ def _collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterator[Fin
 
 
 def _collision(visual: Shape, link: Link, wheel: Wheel | None, survey: Survey) -> tuple[Element, Phrase] | None:
-    """A collision for a visual, and what it is; None for a mesh that cannot be read."""
+    """Return a collision for a visual, and its description; None for a mesh that cannot be read."""
     geometry = visual.geometry
     if not isinstance(geometry, Mesh):
         what = term(type(geometry).__name__.lower())
@@ -171,7 +171,7 @@ def _masses(members: list[Link], densities: Mapping[str, float], meshes: MeshLib
 
 
 def _missing_tensor(link: Link, meshes: MeshLibrary) -> Iterator[Finding]:
-    """The ``<inertial>`` of a link that has a mass and moments that are all zero."""
+    """Yield the ``<inertial>`` of a link that has a mass, but only zero moments."""
     inertial = link.inertial
     if inertial is None or not has_mass(inertial) or any(_moments(inertial)) or link.element is None:
         return
@@ -197,7 +197,7 @@ def _inertial(code: str, message: Phrase, link: Link, properties: MassProperties
 
 
 def _in_link(survey: Survey, wheel: Wheel) -> tuple[Vector3, Vector3]:
-    """The axis of a wheel and its middle in the frame of its link."""
+    """Return the axis and the centre of a wheel in the frame of its link."""
     frame = survey.frame(wheel.link)
     back = transposed(frame.rotation)
     offset = added(wheel.center, scaled(frame.position, -1.0))

@@ -21,13 +21,13 @@ class Wheel:
     """A wheel, with all joints at zero.
 
     Attributes:
-        joint: the joint that it turns about.
+        joint: the joint about which the wheel rotates.
         link: the link that the joint moves.
-        center: its middle in the base frame, in m.
-        axis: the unit vector of its joint in the base frame, as the file has it.
-        radius: in m.
-        width: in m; None for a ball.
-        steering: the joint above it that steers it or lets it swivel; None if there is none.
+        center: the centre of the wheel in the base frame, in m.
+        axis: the unit vector of the joint in the base frame, with the direction given in the file.
+        radius: the radius in m.
+        width: the width in m; None for a ball.
+        steering: the parent joint that steers the wheel or lets it swivel; None if there is none.
     """
 
     joint: str
@@ -41,14 +41,14 @@ class Wheel:
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """How a robot is moved.
+    """The drive of a robot.
 
     Attributes:
         kind: the kind of drive.
-        left: the driven wheels on the left, the foremost first; none of `joints`.
-        right: each beside the left one of the same place in the list.
-        steered: of `ackermann`, the steered wheels, left and right.
-        separation: between the left and the right driven wheels in m; 0 of `joints`.
+        left: the driven wheels on the left, the foremost first; empty for `joints`.
+        right: the driven wheels on the right, in the order of the wheels opposite to them in `left`.
+        steered: for `ackermann`, the steered wheels, left and right.
+        separation: the distance between the left and the right driven wheels in m; 0 for `joints`.
     """
 
     kind: DriveKind
@@ -59,20 +59,20 @@ class Drive:
 
     @property
     def radius(self) -> float:
-        """The mean radius of the driven wheels in m; 0 of `joints`."""
+        """The mean radius of the driven wheels in m; 0 for `joints`."""
         wheels = (*self.left, *self.right)
         return sum(wheel.radius for wheel in wheels) / len(wheels) if wheels else 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One inference.
+    """An inference about a robot.
 
     Attributes:
         diagnostic: the inference and its reason, at the place of its subject in the user's file.
         owner: the element of the description that gets the new elements: a ``<link>``, a ``<joint>`` or the root; None
             if nothing is written.
-        added: the new elements; one of a kind that the owner holds only once replaces the existing one.
+        added: the new elements; an element that the owner can have only once replaces the existing one.
         inertial: the values of a new ``<inertial>``, in the link frame.
     """
 
@@ -87,14 +87,15 @@ class Inference:
     """All inferences about a robot.
 
     Attributes:
-        drive: the inferred drive; None if its file has one, or if it is unknown.
+        drive: the inferred drive; None if the robot's file has one, or if it is unknown.
         findings: the successful and failed inferences, in the order of the file for each kind.
         base_frame: the child frame of the odometry: ``base_footprint``, ``base_link`` or the root.
         casters: the links that touch the ground and only slide or roll along.
         held: the joints, other than those of wheels, that hold their position and can be moved, in file order.
         fixed_base: whether the robot's root is fixed to the world.
-        ground: the z of the ground in the root's frame, in m, with all joints at zero: that of the lowest point. A
-            robot is placed in a world at minus this height.
+        ground: the z of the ground, which is that of the lowest point, in the root's frame, in m, with all joints at
+            zero.
+            A robot is placed in a world at minus this height.
         masses: link -> its mass in kg, own or inferred.
     """
 
@@ -109,5 +110,5 @@ class Inference:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """Return the diagnostics of the findings, in order."""
+        """The diagnostics of the findings, in order."""
         return tuple(finding.diagnostic for finding in self.findings)

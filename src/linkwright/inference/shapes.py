@@ -1,4 +1,4 @@
-"""Properties of the shapes of links: how low they reach, and whether they are round about an axis."""
+"""Properties of link shapes: how low they reach, and whether they are round about an axis."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ class Round(NamedTuple):
     """A shape that is round about an axis.
 
     Attributes:
-        radius: in m.
-        width: along the axis in m; None for a ball.
-        along: where its middle is on the axis, from the point that the axis was given by, in m.
-        shape: which it is.
+        radius: the radius in m.
+        width: the width along the axis in m; None for a ball.
+        along: the position of the shape's middle along the axis, relative to the axis's given point, in m.
+        shape: the shape.
     """
 
     radius: float
@@ -49,12 +49,15 @@ class Round(NamedTuple):
 
 
 def shapes_of(link: Link) -> tuple[Shape, ...]:
-    """The shapes that touch what a link touches: its collisions, or its visuals where it has none."""
+    """Return a link's collisions, or its visuals if it has no collisions."""
     return link.collisions or link.visuals
 
 
 def vertices(shape: Shape, meshes: MeshLibrary) -> Array | None:
-    """The corners of a mesh in its link's frame, shape (vertices, 3); None if it cannot be read."""
+    """Return the vertices of a mesh in its link's frame, shape (vertices, 3).
+
+    Returns None if it cannot be read.
+    """
     assert isinstance(shape.geometry, Mesh), "other shapes have no corners to ask for"
     try:
         mesh = meshes.load(shape.geometry, shape.element)
@@ -68,7 +71,10 @@ def vertices(shape: Shape, meshes: MeshLibrary) -> Array | None:
 
 
 def lowest(shape: Shape, link_frame: Placement, meshes: MeshLibrary) -> float | None:
-    """The z of a shape's lowest point in the frame that `link_frame` is given in; None for an unreadable mesh."""
+    """Return the z of a shape's lowest point in the reference frame of `link_frame`.
+
+    Returns None for an unreadable mesh.
+    """
     geometry = shape.geometry
     if isinstance(geometry, Mesh):
         corners = vertices(shape, meshes)
@@ -90,16 +96,17 @@ def lowest(shape: Shape, link_frame: Placement, meshes: MeshLibrary) -> float | 
 def round_shape(
     members: Iterable[tuple[Link, Placement]], point: Vector3, axis: Vector3, meshes: MeshLibrary
 ) -> tuple[Round | None, list[str]]:
-    """The shape of a body by which it rolls about an axis, and the names of the meshes that cannot be read.
+    """Return the shape of a body that rolls about an axis, and the names of unreadable meshes.
 
-    It is the largest one that is round about the axis, among the collisions before the visuals. A body whose other
-    shapes stick out beyond it does not roll.
+    It is the largest shape that is round about the axis, with collisions preferred to visuals. A body whose other
+    shapes
+    extend beyond it does not roll.
 
     Args:
-        members: the links of the body, with their frames in one frame.
+        members: the links of the body, with their poses in a common frame.
         point: a point of the axis in that frame.
-        axis: its direction there, of length 1.
-        meshes: where meshes come from.
+        axis: the direction of the axis in that frame, of length 1.
+        meshes: the library of meshes.
     """
     links = list(members)
     unread: list[str] = []
@@ -130,7 +137,7 @@ def _visuals(links: list[tuple[Link, Placement]]) -> Iterator[tuple[Shape, Place
 
 
 def _as_round(shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes: MeshLibrary) -> Round | None:
-    """A shape as round about an axis, or None."""
+    """Return a shape as round about an axis; None if it is not round."""
     geometry = shape.geometry
     if isinstance(geometry, Mesh):
         return _round_mesh(shape, frame, point, axis, meshes)
@@ -168,7 +175,10 @@ def _round_mesh(shape: Shape, frame: Placement, point: Vector3, axis: Vector3, m
 
 
 def _reach(shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes: MeshLibrary) -> float | None:
-    """How far a shape reaches from an axis, in m, at most; None for an unreadable mesh."""
+    """Return an upper bound of a shape's distance from an axis, in m.
+
+    Returns None for an unreadable mesh.
+    """
     geometry = shape.geometry
     if isinstance(geometry, Mesh):
         placed = _placed(shape, frame, point, meshes)
@@ -199,13 +209,13 @@ def _placed(shape: Shape, frame: Placement, point: Vector3, meshes: MeshLibrary)
 
 
 def _split(vector: Vector3, axis: Vector3) -> tuple[float, float]:
-    """How long a vector is along an axis, with its sign, and across it."""
+    """Return the length of a vector along an axis, with its sign, and perpendicular to the axis."""
     along = dot(vector, axis)
     return along, length(subtracted(vector, scaled(axis, along)))
 
 
 def _across(axis: Vector3) -> Vector3:
-    """A unit vector at right angles to another one."""
+    """Return a unit vector perpendicular to another one."""
     x, y, z = axis
     if abs(z) < 0.9:
         size = hypot(x, y)

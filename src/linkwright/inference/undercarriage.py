@@ -1,7 +1,7 @@
 """The undercarriage of a robot: wheels, casters, and the height of the ground.
 
-All joints are at zero. Positions are in the base frame: that of ``base_link``, or of the root if there is none. By
-REP 103 x points forward in it, y to the left and z up.
+All joints are at zero. Positions are in the base frame, which is that of ``base_link``, or of the root if there is no
+such link. According to REP 103, x points forward in it, y to the left and z up.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Undercarriage:
         wheels: the wheels that may be driven, at the sides or steered, in file order.
         crooked: wheels that touch the ground, do not roll forward and are not steered.
         casters: the wheels and balls on joints that only roll along, and the links that slide.
-        swivelling: the joints that let casters swivel, and those of their wheels.
+        swivelling: the joints that let casters swivel, and the joints of the casters' wheels.
         ground: the z of the ground in the base frame, in m; None for a robot without shapes.
         lowest_link: the lowest link; empty without shapes.
         hanging: wheels that do not reach the ground, with their height above it, in m.
@@ -62,11 +62,11 @@ class Undercarriage:
 
 
 class Survey:
-    """Looks at a robot as a whole.
+    """Analyses a robot as a whole.
 
     Args:
         robot: the robot.
-        meshes: where its meshes come from.
+        meshes: the library of its meshes.
     """
 
     def __init__(self, robot: Robot, meshes: MeshLibrary) -> None:
@@ -82,7 +82,7 @@ class Survey:
 
     @cached_property
     def heights(self) -> dict[str, float]:
-        """The z of the lowest point of each link with shapes that can be measured, in the base frame."""
+        """The z of the lowest point of each link with measurable shapes, in the base frame."""
         found = {}
         for name, frame in self._frames.items():
             known = [lowest(shape, frame, self.meshes) for shape in shapes_of(self.robot.links[name])]
@@ -93,11 +93,14 @@ class Survey:
 
     @cached_property
     def rolling(self) -> tuple[Wheel, ...]:
-        """The links that are round about the level axis of a joint that turns without limits, in file order."""
+        """The links that are round about the horizontal axis of a joint that rotates without limits, in file order."""
         return tuple(filter(None, map(self.wheel_on, self.robot.joints.values())))
 
     def wheel_on(self, joint: Joint) -> Wheel | None:
-        """The wheel that turns about a joint; None if the joint has limits, or what it moves is not round."""
+        """Return the wheel that rotates about a joint.
+
+        Returns None if the joint has limits, or its link is not round.
+        """
         size = length(joint.axis)
         frame = self._frames.get(joint.child)
         body = self.bodies.of(joint.child)
@@ -117,7 +120,7 @@ class Survey:
         return Wheel(joint.name, joint.child, center, axis, shape.radius, shape.width, self._steering(joint))
 
     def frame(self, link: str) -> Placement:
-        """The frame of a link in the base frame."""
+        """Return the pose of a link in the base frame."""
         return self._frames[link]
 
     def undercarriage(self) -> Undercarriage:
@@ -132,7 +135,7 @@ class Survey:
         free = [wheel for wheel in standing if self._is_caster(wheel)]
         rest = [wheel for wheel in standing if wheel not in free]
         if any(wheel.width is not None for wheel in rest):
-            free += [wheel for wheel in rest if wheel.width is None]  # balls beside wheels
+            free += [wheel for wheel in rest if wheel.width is None]  # balls in addition to wheels
         rest = [wheel for wheel in rest if wheel not in free]
         crooked = tuple(wheel for wheel in rest if wheel.steering is None and abs(wheel.axis[1]) < _UPRIGHT)
         wheels = tuple(wheel for wheel in rest if wheel not in crooked)
@@ -145,13 +148,16 @@ class Survey:
         )
 
     def is_mecanum(self, wheels: tuple[Wheel, ...]) -> bool:
-        """Return whether names of wheels, of their meshes, macros or files, or of the robot suggest mecanum wheels."""
+        """Return whether names suggest mecanum wheels.
+
+        The names are those of the wheels, of their meshes, macros or files, and of the robot.
+        """
         return all(_MECANUM.search(" ".join(self._words_about(wheel))) for wheel in wheels) or bool(
             _MECANUM.search(self.robot.name)
         )
 
     def chain(self, link: str) -> Iterator[Joint]:
-        """The joints above a link, the nearest first."""
+        """Yield the joints above a link, the nearest first."""
         joint = self._above.get(link)
         while joint is not None:
             yield joint
@@ -172,7 +178,10 @@ class Survey:
                 yield from (frame.macro for frame in frames(link.element.origin) if frame.macro is not None)
 
     def _steering(self, joint: Joint) -> str | None:
-        """The nearest joint with a vertical axis above a wheel's, among those that turn."""
+        """Return the nearest rotating joint with a vertical axis above a wheel's joint.
+
+        Returns None if there is none.
+        """
         for above in self.chain(joint.parent):
             size = length(above.axis)
             if above.type in ("revolute", "continuous") and size:
@@ -207,13 +216,13 @@ class Survey:
         return max(names, key=lambda name: self._size(self.robot.links[name]), default="")
 
     def _size(self, link: Link) -> float:
-        """The mass of a link's shapes were they all of one density; of unreadable meshes nothing."""
+        """Return the mass of a link's shapes for a uniform density, without unreadable meshes."""
         found = estimate(link, self.meshes, density=1.0).properties
         return 0.0 if found is None else found.mass
 
 
 def is_endless(joint: Joint) -> bool:
-    """Return whether a joint turns without limits."""
+    """Return whether a joint rotates without limits."""
     if joint.type == "continuous":
         return True
     limit = joint.limit
@@ -221,6 +230,6 @@ def is_endless(joint: Joint) -> bool:
 
 
 def bottom_of(wheel: Wheel) -> float:
-    """The z of a wheel's lowest point in the base frame, in m."""
+    """Return the z of a wheel's lowest point in the base frame, in m."""
     level = sqrt(max(0.0, 1.0 - wheel.axis[2] ** 2)) if wheel.width is not None else 1.0
     return wheel.center[2] - wheel.radius * level - abs(wheel.axis[2]) * (wheel.width or 0.0) / 2.0

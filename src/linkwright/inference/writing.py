@@ -1,4 +1,4 @@
-"""Write inferences into the source files of a description, and leave everything else in them unchanged."""
+"""Writing of inferences to the source files of a description, which leaves everything else unchanged."""
 
 from __future__ import annotations
 
@@ -39,16 +39,16 @@ class Written:
 
 
 def write_inference(robot: Robot, inference: Inference) -> Written:
-    """Write an inference into the source files of the robot.
+    """Write an inference to the source files of the robot.
 
-    In xacro files only literal elements are changed: an element that a macro or an expression makes is refused.
+    In xacro files only literal elements are changed; an element created by a macro or an expression is refused.
 
     Args:
-        robot: read from a file, maybe through xacro.
-        inference: the inference about it.
+        robot: the robot, read from a file, possibly through xacro.
+        inference: the inference about the robot.
 
     Raises:
-        LinkwrightError: INR201 when a file cannot be written.
+        LinkwrightError: INR201, a file cannot be written.
     """
     groups: dict[int, list[Finding]] = {}
     for finding in inference.findings:
@@ -62,10 +62,10 @@ def write_inference(robot: Robot, inference: Inference) -> Written:
 
 
 class _Writer:
-    """Finds the edits of an inference.
+    """Finds the edits for an inference.
 
     Args:
-        robot: read from a file, maybe through xacro.
+        robot: the robot, read from a file, possibly through xacro.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -128,7 +128,7 @@ class _Writer:
 
 
 def _named(elements: Iterable[Element]) -> set[str]:
-    """The words of elements that may be names of links and joints."""
+    """Return the words of elements that may be names of links and joints."""
     found: set[str] = set()
     for element in elements:
         for inner in element.walk():
@@ -138,7 +138,7 @@ def _named(elements: Iterable[Element]) -> set[str]:
 
 
 def _inserted(owner: Element, new: list[Element]) -> Iterator[Replacement]:
-    """Elements at the end of one in a file."""
+    """Yield the edits that insert elements at the end of an element in a file."""
     if not new:
         return
     edit = inserted(owner, new)
