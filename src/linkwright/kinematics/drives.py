@@ -1,7 +1,7 @@
-"""Kinematics of drives: the motion of a robot from the rotation of its wheels, and back.
+"""Kinematics of drives: the motion of a robot from the rotation of its wheels, and the inverse.
 
-The robot goes forward (x) and to the left (y), and turns to the left around z. A function that takes velocities in m/s
-and rad/s takes ways in m and angles in rad as well, where the wheels' angles do not change on the way.
+The robot moves forward (x) and to the left (y), and rotates counterclockwise about z. A function of velocities in m/s
+and rad/s also works with distances in m and angles in rad, if the steering angles do not change during the motion.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ _QUARTER_TURN = pi / 2.0
 
 @dataclass(frozen=True, slots=True)
 class DifferentialDrive:
-    """Two wheels, or two sides, on one axis.
+    """Two wheels, or two sides of wheels, on one axis.
 
     Attributes:
-        separation: between the wheels in m.
-        left_radius, right_radius: of the wheels in m.
+        separation: the distance between the wheels in m.
+        left_radius, right_radius: the radii of the wheels in m.
     """
 
     separation: float
@@ -27,12 +27,12 @@ class DifferentialDrive:
     right_radius: float
 
     def wheel_speeds(self, forward: float, turning: float) -> tuple[float, float]:
-        """The angular velocities of the left and the right wheel in rad/s."""
+        """Return the angular velocities of the left and the right wheel in rad/s."""
         aside = turning * self.separation / 2.0
         return (forward - aside) / self.left_radius, (forward + aside) / self.right_radius
 
     def motion(self, left: float, right: float) -> tuple[float, float]:
-        """The velocity forward in m/s and around z in rad/s for angular velocities of the wheels."""
+        """Return the linear velocity forward in m/s and the angular velocity in rad/s for two wheel speeds."""
         left, right = left * self.left_radius, right * self.right_radius
         return (left + right) / 2.0, (right - left) / self.separation
 
@@ -42,15 +42,15 @@ class MecanumDrive:
     """Four wheels with rollers at 45 degrees, which form an X when seen from above.
 
     Attributes:
-        arm: half the wheelbase and half the track together in m.
-        radius: of the wheels in m.
+        arm: half the sum of the wheelbase and the track, in m.
+        radius: the radius of the wheels in m.
     """
 
     arm: float
     radius: float
 
     def wheel_speeds(self, forward: float, sideways: float, turning: float) -> tuple[float, float, float, float]:
-        """The angular velocities of the front left, front right, rear left and rear right wheel in rad/s."""
+        """Return the angular velocities of the front left, front right, rear left and rear right wheel in rad/s."""
         aside = turning * self.arm
         return (
             (forward - sideways - aside) / self.radius,
@@ -62,9 +62,9 @@ class MecanumDrive:
     def motion(
         self, front_left: float, front_right: float, rear_left: float, rear_right: float
     ) -> tuple[float, float, float]:
-        """The velocity forward and to the left in m/s and around z in rad/s for angular velocities of the wheels.
+        """Return the velocity forward and to the left in m/s, and about z in rad/s, for four wheel speeds.
 
-        Of speeds that no motion without sliding has it is the nearest one (least squares).
+        If no motion without sliding has these speeds, the result is the nearest motion (least squares).
         """
         quarter = self.radius / 4.0
         return (
@@ -76,13 +76,13 @@ class MecanumDrive:
 
 @dataclass(frozen=True, slots=True)
 class CarDrive:
-    """A driven axle and a steered one; the robot's frame is in the middle of the first.
+    """A driven axle and a steered axle; the robot's frame is in the middle of the driven one.
 
     Attributes:
-        wheelbase: between the axles in m, positive.
-        traction_track: between the wheels that drive in m; 0 for one wheel.
-        steering_track: between the wheels that are steered in m; 0 for one.
-        radius: of the wheels that drive in m.
+        wheelbase: the distance between the axles in m, positive.
+        traction_track: the distance between the driven wheels in m; 0 for one wheel.
+        steering_track: the distance between the steered wheels in m; 0 for one wheel.
+        radius: the radius of the driven wheels in m.
     """
 
     wheelbase: float
@@ -91,42 +91,48 @@ class CarDrive:
     radius: float
 
     def steering_angle(self, forward: float, turning: float) -> float:
-        """Return the angle of a wheel in the middle of the steered axle in rad; 0 for a robot at rest."""
+        """Return the angle of a virtual wheel in the middle of the steered axle in rad.
+
+        The value is 0 for a robot at rest.
+        """
         return 0.0 if forward == 0.0 else atan(turning * self.wheelbase / forward)
 
     def steering_angles(self, angle: float) -> tuple[float, float]:
-        """The angles of the left and the right wheel in rad, from one in the middle."""
+        """Return the angles of the left and the right wheel in rad for the angle of a virtual wheel in the middle."""
         slope = tan(angle)
         return steered_apart(slope, self.steering_track * slope / self.wheelbase)
 
     def middle_angle(self, left: float, right: float) -> float:
-        """The angle of a wheel in the middle in rad: the mean of those that left and right correspond to."""
+        """Return the angle of a virtual wheel in the middle, in rad.
+
+        It is the mean of the middle angles that the left and right wheels correspond to.
+        """
         half = self.steering_track / 2.0
         of_left = atan2(self.wheelbase * sin(left), self.wheelbase * cos(left) + half * sin(left))
         of_right = atan2(self.wheelbase * sin(right), self.wheelbase * cos(right) - half * sin(right))
         return (of_left + of_right) / 2.0
 
     def wheel_speeds(self, forward: float, angle: float) -> tuple[float, float]:
-        """The angular velocities of the left and the right wheel in rad/s, with the steering at an angle in rad."""
+        """Return the angular velocities of the left and right driven wheels in rad/s, at a steering angle in rad."""
         speed, aside = forward / self.radius, self._aside(angle)
         return speed * (1.0 - aside), speed * (1.0 + aside)
 
     def motion(self, left: float, right: float, angle: float) -> tuple[float, float]:
-        """The velocity forward in m/s, the mean of two wheels, and around z in rad/s."""
+        """Return the velocity forward in m/s (the mean of both wheels), and about z in rad/s."""
         aside = self._aside(angle)
         forward = (left / (1.0 - aside) + right / (1.0 + aside)) * self.radius / 2.0
         return forward, forward * tan(angle) / self.wheelbase
 
     def _aside(self, angle: float) -> float:
-        """Return the difference of the inner wheel's speed from the middle, as a fraction."""
+        """Return how much the speed of the inner wheel differs from that of the middle, as a fraction."""
         return self.traction_track / 2.0 * tan(angle) / self.wheelbase
 
 
 def steered_apart(slope: float, track: float) -> tuple[float, float]:
-    """Return the angles in rad at which the left and the right steered wheel roll about one point.
+    """Return the angles in rad at which the left and the right steered wheel roll about a common point.
 
     Args:
-        slope: the tangent of the angle of a wheel in the middle; to the left positive.
+        slope: the tangent of the angle of a virtual wheel in the middle; positive to the left.
         track: the distance between the wheels, divided by the radius of the circle of the other axle's middle.
     """
     return atan2(slope, 1.0 - track / 2.0), atan2(slope, 1.0 + track / 2.0)
@@ -134,18 +140,23 @@ def steered_apart(slope: float, track: float) -> tuple[float, float]:
 
 @dataclass(frozen=True, slots=True)
 class TricycleDrive:
-    """A driven and steered wheel in front, two behind that follow; the robot's frame is in the middle of those.
+    """A driven and steered front wheel and two passive rear wheels.
+
+    The robot's frame is in the middle of the rear axle.
 
     Attributes:
-        wheelbase: from the wheel to the axle behind in m.
-        radius: of the wheel in m.
+        wheelbase: the distance from the front wheel to the rear axle in m.
+        radius: the radius of the front wheel in m.
     """
 
     wheelbase: float
     radius: float
 
     def wheel(self, forward: float, turning: float) -> tuple[float, float]:
-        """The angular velocity of the wheel in rad/s, and its angle in rad; across for a rotation on the spot."""
+        """Return the angular velocity of the wheel in rad/s, and its angle in rad.
+
+        The angle is a right angle to rotate in place.
+        """
         across = turning * self.wheelbase
         rim = hypot(forward, across)
         if forward == 0.0:
@@ -153,6 +164,6 @@ class TricycleDrive:
         return copysign(rim, forward) / self.radius, atan(across / forward)
 
     def motion(self, speed: float, angle: float) -> tuple[float, float]:
-        """The velocity forward in m/s and around z in rad/s, for the wheel's angular velocity and angle in rad."""
+        """Return the velocity forward in m/s and about z in rad/s for the wheel's angular velocity and angle in rad."""
         rim = speed * self.radius
         return rim * cos(angle), rim * sin(angle) / self.wheelbase

@@ -11,22 +11,24 @@ UNBOUNDED: Bounds = (-inf, inf)
 
 
 class SpeedLimiter:
-    """Limits a velocity: its second derivative first, then its first, then itself.
+    """Limits a velocity: first its second derivative, then its first derivative, then its value.
 
     Args:
-        velocity: in m/s or rad/s.
-        acceleration: while the velocity is positive, in m/s2 or rad/s2: braking, and speeding up.
-        jerk: in m/s3 or rad/s3.
-        reverse_acceleration: while it is negative: speeding up backward, and braking; as `acceleration` where not
-            given. From standstill each direction has the bound of speeding up that way.
-        brakes_freely: whether the jerk is bounded only while the velocity is brought further the way it changes, as in
-            control_toolbox's RateLimiter.
+        velocity: the limits in m/s or rad/s.
+        acceleration: the limits while the velocity is positive, in m/s2 or rad/s2: for braking, and for speeding up.
+        jerk: the limits in m/s3 or rad/s3.
+        reverse_acceleration: the limits while the velocity is negative: for speeding up backward, and for braking; by
+            default equal to `acceleration`. At standstill, each direction has the limit of speeding up in that
+            direction.
+        brakes_freely: whether the jerk is limited only while the acceleration grows in the direction of the requested
+            change, as in control_toolbox's RateLimiter.
 
     Attributes:
-        speed: the velocity now.
+        speed: the current velocity.
 
-    Source: gz-math's SpeedLimiter, diff_drive_controller's and control_toolbox's RateLimiter: one arithmetic with what
-    differs as arguments.
+    Source: gz-math's SpeedLimiter, and the RateLimiter of diff_drive_controller and of control_toolbox, which differ
+    only
+    in the arguments.
     """
 
     def __init__(
@@ -50,7 +52,7 @@ class SpeedLimiter:
         self.speed = self._before = 0.0
 
     def follow(self, wanted: float, seconds: float) -> float:
-        """The limited velocity, so many seconds after the last one."""
+        """Return the limited velocity, the given seconds after the previous call."""
         speed = self.speed
         change, changed = wanted - speed, speed - self._before
         if not self._brakes_freely or (change - changed) * change > 0.0:

@@ -1,4 +1,4 @@
-"""Poses in a plane, and motions of them."""
+"""Poses in a plane, and their motions."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class PlanarPose:
     yaw: float = 0.0
 
     def advance(self, forward: float, sideways: float, turn: float) -> None:
-        """Move forward and to the left in m, straight, in the middle of a rotation by an angle in rad.
+        """Move straight, forward and to the left in m, at the middle heading of a rotation by an angle in rad.
 
-        Source: the method of Runge and Kutta of the second order, as in gazebo_ros_diff_drive.
+        Source: the second-order Runge-Kutta method, as in gazebo_ros_diff_drive.
         """
         middle = self.yaw + turn / 2.0
         self.x += forward * cos(middle) - sideways * sin(middle)
@@ -32,8 +32,9 @@ class PlanarPose:
     def follow_arc(self, forward: float, sideways: float, turn: float) -> None:
         """Move on an arc: forward and to the left in m while rotating by an angle in rad.
 
-        The way is an arc of a circle, without an error of integration. Source: diff_drive_controller, where it is
-        for ways forward only.
+        The path is a circular arc, without integration error. Source: diff_drive_controller, which does so only for
+        forward
+        motion.
         """
         if abs(turn) < _STRAIGHT:
             self.advance(forward, sideways, turn)

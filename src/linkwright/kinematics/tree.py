@@ -1,18 +1,15 @@
 """Forward kinematics of a whole robot.
 
-Two ways to compute link frames: one configuration in few steps, many in few passes over memory.
-
-For one configuration overhead dominates, so the number of array operations counts: frames are composed along paths that
-double in length with each step. For many, memory counts: the last axis is that of the configurations, the tree is
-computed level by level for a block of them that fits in the cache, and results are written once.
-
-A robot laid out for computing: its bodies, the constants between them, and its mimic joints.
-
 Links joined by fixed joints move as one. So only moving joints matter: each carries a body, whose own frame is at the
-joint with z along the joint's axis. Then a joint turns its body about z or slides it along z, whatever its axis is:
+joint with z along the joint's axis. Then a joint rotates its body about z or translates it along z, whatever its axis:
 
-    body in root = parent body in root * mount * turn or slide
+    body in root = parent body in root * mount * rotation or translation
     link in root = body in root * offset
+
+There are two ways to compute link frames. For one configuration the overhead of array operations dominates, so frames
+are composed along paths that double in length with each step. For many configurations memory access dominates: the last
+axis is that of the configurations, the tree is computed level by level for a block of them that fits in the cache, and
+results are written once.
 """
 
 from __future__ import annotations
@@ -36,15 +33,15 @@ MOVING = (*_TURNING, "prismatic")
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Bodies in the order of their depth, the root's first; links in the order of theirs.
+    """A robot laid out for computing: its bodies in the order of their depth, and its links.
 
     Attributes:
-        link_names: every link that hangs from the root, parents before children.
-        body_joints: the joint of each body but the root's.
-        parents: index of each body's parent body, the root's body being 0; shape (bodies,).
-        depths: how many moving joints are above each body; shape (bodies,).
-        slides: whether the body slides (else it turns); shape (bodies,).
-        mounts: from the parent body's frame to the joint, its axis along z; shape (bodies, 4, 4).
+        link_names: every link that is connected to the root, parents before children.
+        body_joints: the joint of each body except the root's.
+        parents: the index of each body's parent body; 0 is the root's body; shape (bodies,).
+        depths: the number of moving joints above each body; shape (bodies,).
+        slides: whether the body translates instead of rotating; shape (bodies,).
+        mounts: from the parent body's frame to the joint, whose axis is along z; shape (bodies, 4, 4).
         link_bodies: the body of each link; shape (links,).
         offsets: from the body's frame to the link's; shape (links, 4, 4).
     """
@@ -60,19 +57,19 @@ class Layout:
 
 
 def lay_out(robot: Robot) -> Layout:
-    """Return the layout of a robot, without links that are not below its root."""
+    """Return the layout of a robot, without links that are not connected to its root."""
     children, above = children_of(robot), parent_joints(robot)
     link_names = [robot.root]
     link_bodies = [0]
     offsets = [np.eye(4)]
     body_joints: list[Joint | None] = [None]
     parents, depths, mounts = [0], [0], [np.eye(4)]
-    # A queue: parents come before children and, level by level, bodies in the order of their depth in the link tree.
+    # A queue: parents are processed before children and, level by level, bodies in the order of their depth.
     at = 0
     while at < len(link_names):
         for joint in children[link_names[at]]:
             if above[joint.child] is not joint:
-                continue  # a second parent, which urdfdom forgets
+                continue  # a second parent, which urdfdom ignores
             body = link_bodies[at]
             to_joint = offsets[at] @ matrix_from_pose(row_from_pose(joint.origin))
             align = _align_z(joint.axis) if joint.type in MOVING else None
@@ -105,12 +102,15 @@ def lay_out(robot: Robot) -> Layout:
 
 
 def _align_z(axis: tuple[float, float, float]) -> Array | None:
-    """A homogeneous matrix that turns z into the axis; None for a zero axis, about which nothing moves."""
+    """Return a homogeneous matrix that rotates z to the axis.
+
+    Returns None for a zero axis, about which nothing moves.
+    """
     length = np.linalg.norm(axis)
     if not length > 0:
         return None
     z = np.array(axis) / length
-    # Any x across z will do; the coordinate axis farthest from z keeps rotations between coordinate axes exact.
+    # Any x perpendicular to z works; the coordinate axis farthest from z keeps rotations between coordinate axes exact.
     x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
     x /= np.linalg.norm(x)
     matrix = np.eye(4)
@@ -128,15 +128,15 @@ class Following:
 
 
 def resolve_mimics(robot: Robot, moving: Collection[str]) -> tuple[tuple[str, ...], Mapping[str, Following]]:
-    """Follow each chain of mimics to its end.
+    """Resolve each chain of mimic joints to its end.
 
     Args:
         robot: the robot.
         moving: the names of the joints that move.
 
     Returns:
-        The moving joints that have a position of their own, in the order of the file, and what each moving joint
-        follows. A joint whose chain goes in a circle or to a joint that does not exist moves by itself.
+        The moving joints that have their own position, in the order of the file, and what each moving joint follows. A
+        joint whose chain ends in a cycle or at a joint that does not exist moves independently.
     """
     following: dict[str, Following] = {}
     for name in robot.joints:
@@ -162,7 +162,7 @@ _BLOCK = 384
 
 
 class OneConfiguration:
-    """Link frames for one configuration."""
+    """Computes link frames for one configuration."""
 
     def __init__(self, layout: Layout) -> None:
         count = len(layout.parents)
@@ -182,7 +182,7 @@ class OneConfiguration:
         self._offsets = layout.offsets
 
     def frames(self, positions: Array) -> Array:
-        """Link frames in the root; positions of shape (bodies - 1,) to (links, 4, 4)."""
+        """Return link frames in the root, shape (links, 4, 4), for positions of shape (bodies - 1,)."""
         count = len(positions)
         factors = np.empty((4, count))
         factors[0] = 1.0
@@ -200,7 +200,7 @@ class OneConfiguration:
 
 
 class ManyConfigurations:
-    """Link frames for many configurations."""
+    """Computes link frames for many configurations."""
 
     def __init__(self, layout: Layout) -> None:
         self._levels = [_Level(layout, depth) for depth in range(1, int(layout.depths.max()) + 1)]
@@ -209,14 +209,14 @@ class ManyConfigurations:
         self._offsets_transposed = np.ascontiguousarray(layout.offsets.transpose(0, 2, 1))
 
     def frames(self, positions: Array) -> Array:
-        """Link frames in the root; positions of shape (n, bodies - 1) to (n, links, 4, 4)."""
+        """Return link frames in the root, shape (n, links, 4, 4), for positions of shape (n, bodies - 1)."""
         count, links = len(positions), len(self._link_bodies)
         frames = np.empty((count, links, 4, 4))
         frames[:, :, 3] = _IDENTITY[3]
         for start in range(0, count, _BLOCK):
             block = positions[start : start + _BLOCK]
             size = len(block)
-            # Axes: body, column, row, configuration; the last row of a matrix is not carried along.
+            # Axes: body, column, row, configuration. The last row of the matrices is constant and not stored.
             bodies = np.empty((self._bodies, 4, 3, size))
             bodies[0] = _IDENTITY.T[:, :3, None]
             by_joint = np.ascontiguousarray(block.T)
@@ -230,7 +230,10 @@ class ManyConfigurations:
 
 
 class _Level:
-    """The bodies with the same number of moving joints above them, those that turn before those that slide."""
+    """The bodies with the same number of moving joints above them.
+
+    Rotating bodies precede translating ones.
+    """
 
     def __init__(self, layout: Layout, depth: int) -> None:
         members = np.flatnonzero(layout.depths == depth)
@@ -261,9 +264,9 @@ class _Level:
 
 
 def _doubling_jumps(parents: Indices, depths: Indices) -> list[tuple[int, Indices]]:
-    """For each step the first body that is deep enough to matter, and of it and all after it the ancestors.
+    """Return, for each step, the first body that is deep enough, and the ancestors of this and all later bodies.
 
-    They are 1, 2, 4, ... bodies up, short of the root's body, whose frame changes nothing.
+    The ancestors are 1, 2, 4, ... bodies up, excluding the root's body, whose frame is the identity.
     """
     jumps = []
     jump = parents
@@ -280,10 +283,10 @@ _IDENTITY: Array = np.eye(4)
 
 
 class UnknownNameError(LinkwrightError):
-    """A joint or link that the robot does not have.
+    """Raised for a joint or link that the robot does not have.
 
     Attributes:
-        name: the name that was asked for.
+        name: the requested name.
     """
 
     def __init__(self, code: str, kind: str, name: str, known: Sequence[str], hint: Phrase | None = None) -> None:
@@ -296,10 +299,13 @@ class KinematicTree:
     """The kinematic tree of a robot: link poses for joint positions.
 
     Revolute, continuous and prismatic joints move. A mimic joint follows the joint at the end of its chain of mimics;
-    when that chain goes in a circle or to a joint that does not exist, the joint moves by itself. A planar joint stands
-    still, as robot_state_publisher's kdl_parser makes it fixed; a floating joint stands still at its origin, for its
-    transform comes from elsewhere. An axis need not have unit length; nothing moves about a zero axis. Limits are not
-    applied. Links that do not hang from the root are left out.
+    if
+    that chain ends in a cycle or at a joint that does not exist, the joint moves independently. A planar joint does not
+    move, because robot_state_publisher's kdl_parser treats it as fixed. A floating joint remains at its origin, because
+    its
+    transform is published by other nodes. An axis need not have unit length; nothing moves about a zero axis. Limits
+    are
+    not applied. Links that are not connected to the root are left out.
 
     Attributes:
         joint_names: the joints that have a position, in the order of the file; mimic joints have none.
@@ -328,7 +334,7 @@ class KinematicTree:
         self._many = ManyConfigurations(layout)
 
     def forward(self, positions: ArrayLike | Mapping[str, float]) -> Array:
-        """The frames of all links in the root link's frame.
+        """Return the frames of all links in the root link's frame.
 
         Args:
             positions: in rad or m, shape (joints,) or (..., joints) in the order of `joint_names`; or a mapping as for
@@ -338,7 +344,7 @@ class KinematicTree:
             Homogeneous matrices, shape (links, 4, 4) or (..., links, 4, 4) in the order of `link_names`, float64.
 
         Raises:
-            ValueError: the shape is another one.
+            ValueError: the shape is wrong.
             UnknownNameError: a name in the mapping is not one of `joint_names`.
         """
         if isinstance(positions, Mapping):
@@ -354,11 +360,12 @@ class KinematicTree:
         return self._many.frames(flat).reshape(*shape, len(self.link_names), 4, 4)
 
     def positions(self, by_name: Mapping[str, float], default: float = 0.0) -> Array:
-        """Positions in the order of `joint_names` from positions by name; those not given take the default.
+        """Return positions in the order of `joint_names` from positions by name.
+
+        Joints without a given position get the default.
 
         Raises:
-            UnknownNameError: KIN101 for a name that is not a joint of the robot, KIN102 for a joint without a position
-                of its own.
+            UnknownNameError: KIN101, a name is not a joint of the robot; KIN102, a joint has no position of its own.
         """
         positions = np.full(len(self.joint_names), default, dtype=np.float64)
         for name, position in by_name.items():
@@ -369,7 +376,7 @@ class KinematicTree:
         return positions
 
     def link_index(self, name: str) -> int:
-        """The place of a link in `link_names`.
+        """Return the index of a link in `link_names`.
 
         Raises:
             UnknownNameError: KIN103, the robot has no such link.
@@ -380,13 +387,16 @@ class KinematicTree:
             raise UnknownNameError("KIN103", "link", name, self.link_names) from None
 
     def _body_positions(self, positions: Array) -> Array:
-        """The positions of the bodies' joints, mimic joints included; shape (..., bodies - 1)."""
+        """Return the positions of the bodies' joints, mimic joints included.
+
+        The shape is (..., bodies - 1).
+        """
         if self._plain:
             return positions.take(self._sources, axis=-1)
         if not len(self.joint_names):
             positions = np.zeros((*positions.shape[:-1], 1))
         followed = positions.take(np.maximum(self._sources, 0), axis=-1)
-        followed[..., self._sources < 0] = 0.0  # followers of a joint that does not move
+        followed[..., self._sources < 0] = 0.0  # mimic joints of a joint that does not move
         followed *= self._factors
         followed += self._offsets
         return followed
