@@ -1,1 +1,1 @@
-"""Loading code: extensions of other packages, deferred names, and lean stand-ins of the standard library."""
+"""Loading of code: extensions, deferred imports, and lean standard library modules."""

@@ -1,4 +1,4 @@
-"""Names of a package whose modules are loaded on first access, because loading takes a while (PEP 562)."""
+"""Deferred names of a package, whose modules are loaded on first access because loading is slow (PEP 562)."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from linkwright.loading.lean_typing import Any
 
 
 def deferred(package: str, names: Mapping[str, Sequence[str]]) -> Callable[[str], Any]:
-    """A ``__getattr__`` for the package's ``__init__``.
+    """Return a ``__getattr__`` for the package's ``__init__``.
 
     Args:
-        package: its name.
+        package: the name of the package.
         names: the names of each module, by the module's name below the package.
 
     Returns:
-        A function that returns the attribute of a name, and raises AttributeError for any other name.
+        A function that returns the attribute with a name, and raises AttributeError for unknown names.
     """
 
     def find(name: str) -> Any:

@@ -1,10 +1,12 @@
-"""Extensions of Linkwright, found through the entry points of packages; our own are declared the same way.
+"""Extensions of Linkwright, found by the entry points of packages.
 
-A group is read by its room: ``linkwright.displays``, ``linkwright.page_features`` and others. The entry
-points of all installed packages are read once, and each object is imported only when it is loaded.
+Linkwright's own are declared in the same way.
 
-They are read from where their specification puts them (PyPA, "Entry points specification"), ``*.dist-info`` in the
-folders of the search path. `importlib.metadata` finds them in archives too, but loading it takes as long as all other
+Each group is read by one subpackage: ``linkwright.displays``, ``linkwright.page_features`` and others. The entry points
+of all installed packages are read once, and each object is imported only when it is loaded.
+
+They are read from where their specification puts them (PyPA, "Entry points specification"): ``*.dist-info`` in the
+folders of the search path. `importlib.metadata` also finds them in archives, but loading it takes as long as all other
 imports of ``linkwright check`` before it reads a file.
 """
 
@@ -28,12 +30,12 @@ _READ = (_OURS, "launch_ros.")
 
 
 class EntryPoint(NamedTuple):
-    """An object of an installed package that is used by its name.
+    """An object of an installed package that is found by its name.
 
     Attributes:
-        name: unique within the group.
+        name: the name, unique within the group.
         value: ``module`` or ``module:attribute``.
-        distribution: the package that was installed.
+        distribution: the installed package.
     """
 
     name: str
@@ -41,10 +43,10 @@ class EntryPoint(NamedTuple):
     distribution: str
 
     def load(self) -> Any:
-        """The object.
+        """Return the object.
 
         Raises:
-            Exception: whatever its module raises when it is imported, or AttributeError.
+            Exception: any error raised by importing its module, or AttributeError.
         """
         module, _, attribute = self.value.partition(":")
         found = import_module(module.strip())
@@ -53,15 +55,16 @@ class EntryPoint(NamedTuple):
 
 
 def extensions(group: str) -> Mapping[str, EntryPoint]:
-    """The entry points of a group by name: ours first, then those of other packages, each in the order of names.
+    """Return the entry points of a group by name: Linkwright's first, then those of other packages, sorted by name.
 
-    The order in which a package declares them does not reach its metadata: some build tools sort them, others do not.
-    If two packages declare the same name, the first one found applies; ours cannot be replaced.
+    The order in which a package declares them is not reliable: some build tools sort entry points in the metadata,
+    others do
+    not. If two packages declare the same name, the first one found is used; Linkwright's cannot be replaced.
 
-    A group is empty where no installed package declares it: linkwright-core alone has few.
+    A group is empty if no installed package declares it: linkwright-core alone has few.
 
     Raises:
-        RuntimeError: a group of ours is missing, because the installation's metadata is older than its code.
+        RuntimeError: a group of Linkwright is missing, because the installation's metadata is older than its code.
     """
     found = _all_groups()
     if group.startswith(_OURS) and group not in found and _NODES in found:
@@ -79,13 +82,16 @@ def _all_groups() -> Mapping[str, Mapping[str, EntryPoint]]:
 
 
 def _declarations() -> Iterator[tuple[str, str]]:
-    """Each installed distribution that declares entry points, by name, with the text; the first of a name counts."""
+    """Yield each installed distribution that declares entry points, with the text.
+
+    Only the first of a name is used.
+    """
     seen = set()
     for folder in sys.path:
         try:
             entries = sorted(entry.name for entry in os.scandir(folder or "."))
         except OSError:
-            continue  # an archive, or not there
+            continue  # an archive, or a folder that does not exist
         for entry in entries:
             if not entry.endswith((".dist-info", ".egg-info")):
                 continue
@@ -101,7 +107,7 @@ def _declarations() -> Iterator[tuple[str, str]]:
 
 
 def _declared(distribution: str, text: str) -> Iterator[tuple[str, EntryPoint]]:
-    """Group and entry point of each line of an ``entry_points.txt`` whose group is in use here."""
+    """Yield the group and entry point of each line of an ``entry_points.txt`` whose group is used here."""
     group = ""
     for line in map(str.strip, text.splitlines()):
         if line.startswith("["):

@@ -1,11 +1,13 @@
-"""`dataclasses` for programs that must start soon: the same classes, whose methods are compiled when they are used.
+"""`dataclasses` for programs that must start quickly.
 
-The standard library writes the methods of a class as text and compiles them where the class is defined, and imports
-`inspect` for it. A check of a small robot defines sixty classes and makes objects of half of them, so this was a
+The classes are the same, but their methods are compiled on first use.
+
+The standard library generates the methods of a class as text and compiles them when the class is defined, and imports
+`inspect` for it. A check of a small robot defines sixty classes and creates objects of half of them, so this was a
 quarter of its time. Here ``__init__`` is compiled for the first object, and all classes share the other methods.
 
-To type checkers these are `dataclasses.dataclass`, `field` and `replace`, of which they take the arguments that are
-used here. The functions of `dataclasses` for a class or an object, such as ``fields`` and ``asdict``, accept these too.
+To type checkers these are `dataclasses.dataclass`, `field` and `replace`, with the arguments that are used here. The
+functions of `dataclasses` for a class or an object, such as ``fields`` and ``asdict``, also accept these classes.
 `NamedTuple` is that of `typing`, without compiling the text of each annotation.
 """
 
@@ -39,18 +41,18 @@ class _Field:
 
     @property
     def is_set(self) -> bool:
-        """Whether ``__init__`` gives it a value."""
+        """Whether ``__init__`` sets the field."""
         return self.init or self.default is not _MISSING or self.factory is not _MISSING
 
     @property
     def parameter(self) -> str:
-        """Its parameter of ``__init__``."""
+        """The field's parameter of ``__init__``."""
         is_required = self.default is _MISSING and self.factory is _MISSING
         return self.name if is_required else f"{self.name}=default_{self.name}"
 
     @property
     def value(self) -> str:
-        """The expression in ``__init__`` for its value."""
+        """The expression in ``__init__`` for the field's value."""
         if self.factory is _MISSING:
             return self.name if self.init else f"default_{self.name}"
         made = f"factory_{self.name}()"
@@ -79,7 +81,7 @@ def _dataclass(cls: Any = None, /, *, frozen: bool = False, slots: bool = False,
     fields |= own
     written = {name: value for name, value in vars(cls).items() if name not in own and name not in _OF_EVERY_CLASS}
     if written.get("__hash__", "") is None:
-        del written["__hash__"]  # because there is an `__eq__`
+        del written["__hash__"]  # Python set it to None because of `__eq__`.
     shared = _SHARED | (_comparing(fields, frozen=frozen) if eq else {}) | (_FROZEN if frozen else {})
     shared |= _KEPT if frozen and slots else {}
     members = {
@@ -118,7 +120,7 @@ def _own_fields(cls: type) -> Iterator[tuple[str, _Field]]:
 
 
 def _first_init(self: Any, *args: Any, **kwargs: Any) -> None:
-    """The ``__init__`` of a class without objects so far: it compiles that of all later objects."""
+    """Create the first object of a class, and compile the ``__init__`` of all later objects."""
     cls: Any = next(base for base in type(self).__mro__ if vars(base).get("__init__") is _first_init)
     cls.__init__ = _compiled_init(cls)
     cls.__init__(self, *args, **kwargs)
@@ -135,8 +137,9 @@ def _compiled_init(cls: Any) -> Callable[..., None]:
     slow = [f"set_value(self, {entry.name!r}, {entry.value})" for entry in filled]
     fast = [f"self.{entry.name} = {entry.value}" for entry in filled]
     if frozen and slots:
-        # To set a value past `__setattr__` takes a call. So an object gets its values while it is of a class with the
-        # same slots that does not refuse, which takes half as long.
+        # Setting a value past `__setattr__` takes a call. So an object gets its values while it is of a class with the
+        # same slots
+        # that allows assignment, which takes half as long.
         scope["draft"] = type("Draft", cls.__bases__, {"__slots__": cls.__slots__, "__setattr__": _set})
         fast = ["set_class(self, draft)", *fast, "self.__class__ = cls"]
         body = ["if self.__class__ is cls:", *(f"    {line}" for line in fast)]
@@ -251,7 +254,10 @@ class _NamedTupleMeta(type):
 
 
 def _named_tuple() -> Any:
-    """A base whose classes are named tuples, as `typing.NamedTuple` is: a class of a class would be an ordinary one."""
+    """Return a base whose direct subclasses are named tuples, as `typing.NamedTuple` is.
+
+    Their subclasses are ordinary.
+    """
     base = type.__new__(_NamedTupleMeta, "NamedTuple", (), {})
     return type("Base", (), {"__mro_entries__": lambda _self, _bases: (base,)})()
 

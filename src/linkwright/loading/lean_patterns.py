@@ -1,7 +1,7 @@
-"""Regular expressions for programs that must start soon: compiled when they are first used.
+"""Regular expressions for programs that must start quickly: compiled on first use.
 
-Modules name their patterns where they begin. A check of one robot loads seventy and searches with a quarter, and
-to compile one takes as long as to load a small module.
+Modules define their patterns at the top. A check of one robot loads seventy patterns and uses a quarter of them, and
+compiling one takes as long as loading a small module.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ __all__ = ["lazy_pattern"]
 
 
 class _Pattern:
-    """A pattern that has the methods of a compiled one, each after its first use."""
+    """A pattern with the methods of a compiled pattern, which are set on first use."""
 
     def __init__(self, text: Any, flags: int) -> None:
         self._text = text
         self._flags = flags
 
     def __getattr__(self, name: str) -> Any:
-        # Python comes here for a name that it has not found: the next time it finds this one.
+        # Python calls this for an attribute that does not exist; after this it exists.
         if name.startswith("__"):  # such as those that `copy` looks up
             raise AttributeError(name)
         value = getattr(re.compile(self._text, self._flags), name)
@@ -39,7 +39,7 @@ def _late(text: Any, flags: int = 0) -> Any:
 if TYPE_CHECKING:
 
     def lazy_pattern(text: AnyStr, flags: int = 0) -> re.Pattern[AnyStr]:
-        """Return a pattern as `re.compile` does; a mistake in it shows at its first use."""
+        """Return a pattern like `re.compile`; an error in it is raised on first use."""
 
 else:
     lazy_pattern = _late

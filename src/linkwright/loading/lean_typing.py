@@ -1,8 +1,10 @@
-"""`typing` for programs that must start soon: its names as annotations use them, without the work that `typing` does.
+"""`typing` for programs that must start quickly.
+
+The module provides the names used in annotations without the cost of `typing`.
 
 Importing `typing` took a seventh of the time of ``linkwright xacro`` for a small file. Annotations are texts that are
-never evaluated (``from __future__ import annotations``), so nearly all of it is for type checkers, and to them these
-names are those of `typing`. At run time they are classes that can be subscripted, joined by ``|`` and derived from. A
+never evaluated (``from __future__ import annotations``), so nearly all of `typing` serves type checkers, which see the
+names of `typing` here. At run time the names are classes that can be subscripted, joined by ``|`` and derived from. A
 program that evaluates annotations, as ``typing.get_type_hints`` does, needs `typing` itself.
 """
 
