@@ -1,4 +1,4 @@
-"""Trained models of others, downloaded on request: the table, their locations, their checksums."""
+"""Third-party trained models, downloaded on request: the table, their locations, and their checksums."""
 
 from linkwright.model_files.installed import checked, find_model, is_installed, models_folder, remove
 from linkwright.model_files.installing import install

@@ -1,4 +1,4 @@
-"""Unpack a model from an archive: only the files that the table names."""
+"""Extraction of a model from an archive, limited to the files that the table names."""
 
 from __future__ import annotations
 

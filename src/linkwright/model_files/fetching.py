@@ -55,7 +55,7 @@ def fetch(entry: ModelEntry, address: str, part: Path, progress: Progress) -> No
                     )
                     raise _failed(entry, address, answer) from None
                 if error.headers.get("Content-Range") == f"bytes */{before}":
-                    return  # it was complete, but not yet installed
+                    return  # The file was complete, but not yet installed.
             part.unlink()
             problem = phrase("the partial download belongs to another file")
         except (urllib.error.URLError, OSError, http.client.HTTPException, ValueError) as error:

@@ -1,4 +1,4 @@
-"""Installed models: their locations, checks and removal."""
+"""Installed models: their locations, verification and removal."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def remove(entry: ModelEntry) -> Path:
 
 
 def by_hand(entry: ModelEntry) -> Phrase:
-    """Return a hint on how to get a model without a download by Linkwright."""
+    """Return a hint on how to get a model without downloading it with Linkwright."""
     return phrase(
         "download {address} with a browser, then run `linkwright models get {name} --from FILE`",
         address=entry.address,

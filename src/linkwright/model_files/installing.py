@@ -48,10 +48,10 @@ def install(entry: ModelEntry, source: str | None, folder: Path | None, progress
         place = _install_file(entry, part, target, address)
     except LinkwrightError as error:
         if error.diagnostics[0].code != "MODEL106":
-            part.unlink(missing_ok=True)  # resuming it would not fix it
+            part.unlink(missing_ok=True)  # Resuming it would not fix it.
         if not resumed or error.diagnostics[0].code == "MODEL106":
             raise
-        fetch(entry, address, part, progress)  # the first part may be of another file
+        fetch(entry, address, part, progress)  # The existing part may be of another file.
         try:
             place = _install_file(entry, part, target, address)
         except LinkwrightError:
@@ -66,7 +66,7 @@ def _is_address(source: str) -> bool:
 
 
 def _file_of(entry: ModelEntry, address: str) -> str:
-    """Return the address of the file; that of its folder is accepted too."""
+    """Return the address of the file; the address of its folder is accepted, too."""
     if urllib.parse.urlsplit(address).path.endswith(entry.file_name):
         return address
     return f"{address.rstrip('/')}/{entry.file_name}"

@@ -25,7 +25,7 @@ _TEXT = frozenset(range(0x20, 0x7F)) | set(b"\t\r\n")
 
 
 class UnloadableNetworkError(Exception):
-    """A file cannot be loaded.
+    """Raised when a file cannot be loaded.
 
     Attributes:
         reason: the reason.
@@ -45,7 +45,7 @@ def load_onnxruntime() -> Any:
     """
     import onnxruntime  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
-    onnxruntime.set_default_logger_severity(_ERRORS_ONLY)  # it warns about all hardware that it does not use
+    onnxruntime.set_default_logger_severity(_ERRORS_ONLY)  # It warns about all hardware that it does not use.
     return onnxruntime
 
 
@@ -66,7 +66,7 @@ def load_session(file: Path, gpu: str | None = None, threads: int = 0) -> Any:
     how = onnxruntime.SessionOptions()
     how.intra_op_num_threads = threads
     how.log_severity_level = _ERRORS_ONLY
-    how.add_session_config_entry("session.intra_op.allow_spinning", "0")  # others also need the CPU
+    how.add_session_config_entry("session.intra_op.allow_spinning", "0")  # spinning would slow down other processes
     try:
         return onnxruntime.InferenceSession(str(file), how, providers=providers)
     except Exception as error:  # noqa: BLE001 - many classes, which onnxruntime does not document
@@ -83,7 +83,7 @@ def has_cuda() -> bool:
 
 
 def reason_of(error: Exception) -> Phrase:
-    """Return the reason in a message of onnxruntime."""
+    """Return the reason contained in an error message of onnxruntime."""
     lines = str(error).strip().splitlines() or [type(error).__name__]
     reason = _OF_THE_LIBRARY.sub("", lines[0].rpartition(" : ")[2]).strip()
     return foreign(reason or type(error).__name__)
