@@ -1,1 +1,4 @@
-"""Localization, mapping, planning and path following: arithmetic on grids, poses and scans, without ROS."""
+"""Localization, mapping, planning and path following.
+
+Computations on grids, poses and scans, independent of ROS.
+"""

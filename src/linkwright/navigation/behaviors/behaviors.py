@@ -31,12 +31,12 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A cycle of a behaviour.
+    """The result of one cycle of a behaviour.
 
     Attributes:
         outcome: whether the behaviour continues.
         velocity: the commanded velocity; zero once the behaviour has ended.
-        traveled: the travelled distance, in metres or radians.
+        traveled: the distance travelled so far, in metres or radians.
     """
 
     outcome: Outcome
@@ -45,22 +45,25 @@ class Step:
 
 
 class Behavior(ABC):
-    """A behaviour while it runs.
+    """A running behaviour.
 
     Args:
-        allowance: how long it may take, in seconds; 0 for ever.
+        allowance: the time limit in seconds; 0 for no limit.
     """
 
     def __init__(self, allowance: float) -> None:
         self._allowance = allowance
 
     def step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
-        """The next cycle.
+        """Run one cycle of the behaviour.
 
         Args:
-            pose: of the robot.
-            elapsed: since the behaviour began, in seconds.
+            pose: the pose of the robot.
+            elapsed: the time since the behaviour began, in seconds.
             is_free: see `IsFree`; poses are in the frame of `pose`.
+
+        Returns:
+            The result of the cycle.
         """
         step = self._step(pose, elapsed, is_free)
         if step.outcome is Outcome.RUNNING and 0.0 < self._allowance < elapsed:
@@ -69,12 +72,12 @@ class Behavior(ABC):
 
     @abstractmethod
     def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
-        """As `step`, without the time limit."""
+        """Run one cycle as `step` does, without checking the time limit."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpinParameters:
-    """Parameters of `Spin`, under nav2's names and with its defaults; rad/s, rad/s^2, seconds."""
+    """Parameters of `Spin`, with nav2's names and defaults, in rad/s, rad/s^2 and seconds."""
 
     max_rotational_vel: float = 1.0
     min_rotational_vel: float = 0.4
@@ -83,7 +86,7 @@ class SpinParameters:
 
 
 class Spin(Behavior):
-    """Turn on the spot by an angle (radians), which may be more than a whole turn."""
+    """Turn in place by an angle in radians, which may exceed a full turn."""
 
     def __init__(self, angle: float, allowance: float, parameters: SpinParameters, start: Pose) -> None:
         super().__init__(allowance)
@@ -111,14 +114,14 @@ class Spin(Behavior):
 
 
 class DriveStraight(Behavior):
-    """Drive straight forward or back.
+    """Drive straight forward or backward.
 
     Args:
-        distance: how far, in metres; back where it is negative.
-        speed: in m/s.
+        distance: the distance to drive, in metres; negative to drive backward.
+        speed: the speed in m/s.
         allowance: see `Behavior`.
-        look_ahead: how far ahead the motion is checked, in seconds.
-        start: where the robot is.
+        look_ahead: how far ahead the motion is checked for collisions, in seconds.
+        start: the pose of the robot at the start.
     """
 
     def __init__(self, distance: float, speed: float, allowance: float, look_ahead: float, start: Pose) -> None:
@@ -140,7 +143,7 @@ class DriveStraight(Behavior):
 
 
 class Wait(Behavior):
-    """Wait in place for a time, in seconds."""
+    """Wait in place for a number of seconds."""
 
     def __init__(self, seconds: float) -> None:
         super().__init__(0.0)
@@ -151,12 +154,14 @@ class Wait(Behavior):
 
 
 def slowed(pose: Pose, velocity: Velocity, seconds: float, is_free: IsFree) -> Velocity:
-    """An operator's velocity, slowed down the sooner it leads into an obstacle (nav2's assisted teleoperation).
+    """Return an operator's velocity, slowed down before obstacles (nav2's assisted teleoperation).
+
+    The sooner the velocity leads into an obstacle, the more it is reduced.
 
     Args:
-        pose: of the robot.
+        pose: the pose of the robot.
         velocity: the requested velocity.
-        seconds: how far ahead obstacles count.
+        seconds: how far ahead obstacles are checked, in seconds.
         is_free: see `IsFree`.
     """
     ahead = _ahead(pose, velocity, seconds)
@@ -168,7 +173,7 @@ def slowed(pose: Pose, velocity: Velocity, seconds: float, is_free: IsFree) -> V
 
 
 def _ahead(pose: Pose, velocity: Velocity, seconds: float) -> NDArray[np.float64]:
-    """The poses to which a velocity leads, of shape (poses, 3)."""
+    """Return the poses reached with a velocity over the next seconds, of shape (poses, 3)."""
     count = max(2, round(seconds / _LOOKS) + 1)
     ahead: NDArray[np.float64] = motions(pose, np.array([velocity]), np.linspace(0.0, seconds, count)[1:])[0]
     return ahead

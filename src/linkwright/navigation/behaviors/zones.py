@@ -1,4 +1,6 @@
-"""Zones around a robot, as nav2's collision_monitor has them: points in one slow the robot down, limit or stop it.
+"""Zones around a robot, as in nav2's collision_monitor.
+
+Sensor points in a zone slow down, limit or stop the robot.
 
 Source: nav2_collision_monitor (``polygon.cpp``, ``collision_monitor_node.cpp``), Humble and Jazzy.
 """
@@ -22,7 +24,7 @@ Points = NDArray[np.float64]
 
 
 class Action(IntEnum):
-    """The kinds of zones; the numbers are those of nav2_msgs/msg/CollisionMonitorState."""
+    """The actions of zones, numbered as in nav2_msgs/msg/CollisionMonitorState."""
 
     NOTHING = 0
     STOP = 1
@@ -42,7 +44,7 @@ class Circle:
     radius: float
 
     def holds(self, points: Points) -> NDArray[np.bool_]:
-        """Which points are inside, of shape (n,)."""
+        """Return which points are inside, of shape (n,)."""
         inside: NDArray[np.bool_] = (points**2).sum(axis=1) < self.radius**2
         return inside
 
@@ -52,13 +54,13 @@ class Outline:
     """A polygonal zone.
 
     Attributes:
-        corners: in the frame of the robot.
+        corners: the corners of the polygon, in the frame of the robot.
     """
 
     corners: Footprint
 
     def holds(self, points: Points) -> NDArray[np.bool_]:
-        """Which points are inside, of shape (n,)."""
+        """Return which points are inside, of shape (n,)."""
         return within_polygon(points, self.corners)
 
 
@@ -67,16 +69,16 @@ Shape = Circle | Outline
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """The rule of a zone: its action and limits.
+    """The action of a zone and its limits.
 
     Attributes:
         action: the action of the zone.
-        min_points: the fewest points that count as an obstacle.
-        slowdown_ratio: the factor of velocities, 0 to 1.
-        linear_limit: in m/s.
-        angular_limit: in rad/s.
-        time_before_collision: the seconds before a collision at which the robot starts to slow down.
-        simulation_time_step: seconds between the places where it is looked for.
+        min_points: the minimum number of points that count as an obstacle.
+        slowdown_ratio: the factor applied to velocities, 0 to 1.
+        linear_limit: the maximum linear speed, in m/s.
+        angular_limit: the maximum angular speed, in rad/s.
+        time_before_collision: how many seconds before a collision the robot starts to slow down.
+        simulation_time_step: the time step of the collision check, in seconds.
     """
 
     action: Action
@@ -88,7 +90,10 @@ class Rule:
     simulation_time_step: float = 0.1
 
     def allowed(self, shape: Shape, points: Points, velocity: Velocity) -> Velocity | None:
-        """The velocity that the zone allows in place of another one; None where it has nothing against that."""
+        """Return the velocity to which the zone changes a requested one.
+
+        Returns None if it does not restrict it.
+        """
         if self.action is Action.APPROACH:
             seconds = self._seconds_left(shape, points, velocity)
             return None if seconds is None else _scaled(velocity, seconds / self.time_before_collision)
@@ -107,7 +112,10 @@ class Rule:
         return min(max(min(along, about), 0.0), 1.0)
 
     def _seconds_left(self, shape: Shape, points: Points, velocity: Velocity) -> float | None:
-        """Seconds until points would be in its shape; None if that is beyond the look-ahead time."""
+        """Return the seconds until points enter the shape.
+
+        Returns None if that is beyond the look-ahead time.
+        """
         if not len(points):
             return None
         step, x, y, yaw = self.simulation_time_step, 0.0, 0.0, 0.0
@@ -124,13 +132,14 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class SpeedRange:
-    """The shape of a zone at some velocities.
+    """The shape of a zone for a range of velocities.
 
     Attributes:
         shape: the shape.
-        linear: least and greatest speed along x, or in any direction for a robot that moves in all, in m/s.
-        angular: least and greatest turning, in rad/s.
-        direction: between which angles such a robot moves, counterclockwise, in rad; None for one that does not.
+        linear: the minimum and maximum speed along x in m/s; for a holonomic robot, of the speed in any direction.
+        angular: the minimum and maximum angular velocity, in rad/s.
+        direction: the range of directions in which a holonomic robot moves, counterclockwise, in rad; None for a robot
+            that is not holonomic.
     """
 
     shape: Outline
@@ -139,7 +148,7 @@ class SpeedRange:
     direction: tuple[float, float] | None = None
 
     def covers(self, velocity: Velocity) -> bool:
-        """Whether the shape is that for a velocity."""
+        """Return whether the shape applies to a velocity."""
         speed = velocity.x if self.direction is None else hypot(velocity.x, velocity.y)
         if not self.linear[0] <= speed <= self.linear[1] or not self.angular[0] <= velocity.yaw <= self.angular[1]:
             return False
@@ -151,12 +160,12 @@ class SpeedRange:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The result of all zones for a velocity.
+    """The combined result of all zones for a velocity.
 
     Attributes:
-        velocity: that the robot may have.
+        velocity: the permitted velocity.
         action: the applied action.
-        zone: the name of the zone that applied it; empty if none did.
+        zone: the name of the zone that applied it; empty if no zone did.
     """
 
     velocity: Velocity
@@ -168,8 +177,8 @@ def judged(velocity: Velocity, zones: Sequence[tuple[str, Rule, Shape, Points]])
     """Limit a velocity by all zones: the lowest limit wins, and a stop ends the search.
 
     Args:
-        velocity: that it is to have.
-        zones: the name, rule and shape of each zone, and the points of its sensors.
+        velocity: the requested velocity.
+        zones: for each zone its name, rule and shape, and the points measured by its sensors.
     """
     verdict = Verdict(velocity)
     for name, rule, shape, points in zones:

@@ -1,1 +1,1 @@
-"""Costmaps: the cost for a robot to be in a cell, from maps and sensors, in layers as nav2 has them."""
+"""Costmaps: the cost of each cell for a robot, computed from maps and sensors in layers as in nav2."""

@@ -1,4 +1,4 @@
-"""A costmap: a grid of costs, and the cost of points and footprints in it.
+"""A costmap: a grid of costs, with lookups of the cost of points and footprints.
 
 Source: nav2_costmap_2d (the values of costs) and its ``FootprintCollisionChecker``.
 """
@@ -28,13 +28,13 @@ _STEPS_PER_CELL = 2.0
 
 
 class Costmap:
-    """Costs in a grid that is axis-aligned in its frame.
+    """A grid of costs that is axis-aligned in its frame.
 
     Args:
         grid: cells of type uint8, from `FREE` to `UNKNOWN`.
 
     Raises:
-        ValueError: the cells have another type, or the grid is turned.
+        ValueError: the cells have another type, or the grid is rotated.
 
     Attributes:
         grid: the cells, changed by the owner of the costmap.
@@ -46,7 +46,7 @@ class Costmap:
         self.grid = grid
 
     def copy(self) -> Costmap:
-        """A copy with cells of its own."""
+        """Return a copy with its own cells."""
         grid = self.grid
         return Costmap(Grid(cells=grid.cells.copy(), resolution=grid.resolution, x=grid.x, y=grid.y))
 
@@ -69,14 +69,14 @@ class Costmap:
         return costs
 
     def footprint_cost(self, poses: NDArray[np.float64] | tuple[float, float, float], footprint: Footprint) -> Any:
-        """The highest cost below the outline of a footprint, for one pose or many.
+        """Return the highest cost under the outline of a footprint, for one pose or many.
 
         Args:
             poses: x, y (metres) and yaw (radians) in the frame of the costmap, of shape (..., 3).
             footprint: the corners in the frame of the robot, in metres, of shape (corners, 2).
 
         Returns:
-            Costs of shape (...), `LETHAL` where a part of the rim is outside of the grid and none is unknown.
+            Costs of shape (...); `LETHAL` if part of the outline is outside the grid and no part is in an unknown cell.
         """
         poses = np.asarray(poses, np.float64)
         rim = outline(footprint, self.grid.resolution / _STEPS_PER_CELL)

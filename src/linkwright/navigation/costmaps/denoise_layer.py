@@ -1,4 +1,4 @@
-"""The denoise layer: removes obstacles of too few cells.
+"""The denoise layer, which removes obstacles of too few cells.
 
 Source: nav2_costmap_2d ``DenoiseLayer``.
 """
@@ -16,11 +16,11 @@ _ALL_NEIGHBOURS = 8
 
 
 class DenoiseLayer(Layer):
-    """Frees groups of lethal cells that are too small.
+    """A layer that frees groups of lethal cells that are too small.
 
     Args:
-        minimal_group_size: the fewest cells of a group that is kept.
-        group_connectivity_type: 8 if cells whose corners touch belong together, else 4.
+        minimal_group_size: the minimum number of cells of a group that is kept.
+        group_connectivity_type: 8 if cells that touch only at a corner are connected, else 4.
     """
 
     def __init__(self, minimal_group_size: int = 2, group_connectivity_type: int = _ALL_NEIGHBOURS) -> None:
@@ -30,11 +30,14 @@ class DenoiseLayer(Layer):
             self._together[[0, 0, 2, 2], [0, 2, 0, 2]] = False
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """The window that changed below, padded by the size of a small group."""
+        """Return the window changed by the layers below, padded by the size of a small group."""
         return window.padded(self._least, grid)
 
     def write(self, grid: Grid, window: Window, moment: Moment) -> None:
-        """Free small groups; for groups at the edge of the window the cells around it count, too."""
+        """Free small groups of lethal cells.
+
+        Groups at the edge of the window are completed from the cells around it.
+        """
         if self._least <= 1:
             return
         around = window.padded(self._least, grid)

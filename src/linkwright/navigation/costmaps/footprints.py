@@ -1,4 +1,4 @@
-"""Footprints: the outline of a robot on the floor, in its frame.
+"""Footprints: the outline of a robot on the floor, in the robot's frame.
 
 Source: nav2_costmap_2d (``footprint.hpp``).
 """
@@ -20,21 +20,21 @@ _LEAST_CORNERS = 3
 
 
 class BadFootprintError(ValueError):
-    """A text is not a footprint; the message gives the reason."""
+    """Raised when a text is not a valid footprint; the message gives the reason."""
 
 
 def circle(radius: float) -> Footprint:
-    """The footprint of a round robot: 16 corners, for a radius in metres."""
+    """Return the footprint of a round robot with a radius in metres: a polygon of 16 corners."""
     angles = np.arange(_CORNERS_OF_A_CIRCLE) * (2.0 * pi / _CORNERS_OF_A_CIRCLE)
     corners: Footprint = radius * np.stack((np.cos(angles), np.sin(angles)), axis=-1)
     return corners
 
 
 def read_footprint(text: str) -> Footprint:
-    """Parse the footprint of a parameter, such as ``[[0.2, 0.1], [0.2, -0.1], [-0.2, 0.0]]``.
+    """Parse a footprint parameter, such as ``[[0.2, 0.1], [0.2, -0.1], [-0.2, 0.0]]``.
 
     Raises:
-        BadFootprintError: it is not a list of three or more points.
+        BadFootprintError: the text is not a list of three or more points.
     """
     try:
         value: Any = literal_eval(text.strip())
@@ -49,13 +49,13 @@ def read_footprint(text: str) -> Footprint:
 
 
 def padded(footprint: Footprint, padding: float) -> Footprint:
-    """A footprint whose corners are moved outwards along both axes, in metres."""
+    """Return a footprint whose corners are moved outward along both axes by a padding in metres."""
     larger: Footprint = footprint + padding * np.sign(footprint)
     return larger
 
 
 def radii(footprint: Footprint) -> tuple[float, float]:
-    """The radii of the inscribed and the circumscribed circle about the robot's origin, in metres."""
+    """Return the radii of the inscribed and circumscribed circles around the robot's origin, in metres."""
     following = np.roll(footprint, -1, axis=0)
     along = following - footprint
     length = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
@@ -66,7 +66,7 @@ def radii(footprint: Footprint) -> tuple[float, float]:
 
 
 def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
-    """Points along the outline of a footprint, of shape (points, 2), at most the spacing apart."""
+    """Return points along the outline of a footprint, of shape (points, 2), at most `spacing` metres apart."""
     parts = []
     for corner, following in zip(footprint, np.roll(footprint, -1, axis=0), strict=True):
         steps = max(1, ceil(hypot(*(following - corner)) / spacing))
@@ -75,7 +75,7 @@ def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
 
 
 def placed(footprint: Footprint, x: float, y: float, yaw: float) -> Footprint:
-    """The corners of a footprint at a pose of the robot, in the frame of the pose."""
+    """Return the corners of a footprint with the robot at a pose, in the frame of that pose."""
     cosine, sine = np.cos(yaw), np.sin(yaw)
     turned: Footprint = footprint @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)
     return turned

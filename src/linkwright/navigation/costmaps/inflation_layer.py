@@ -1,6 +1,6 @@
 """The inflation layer: costs that decay with the distance from obstacles.
 
-Source: nav2_costmap_2d ``InflationLayer``: up to the inscribed radius a cell costs `INSCRIBED`, from there on
+Source: nav2_costmap_2d ``InflationLayer``. A cell costs `INSCRIBED` up to the inscribed radius, then
 ``252 exp(-cost_scaling_factor (distance - inscribed radius))``, and nothing beyond the inflation radius.
 """
 
@@ -25,7 +25,8 @@ class Inflation:
     Attributes:
         inflation_radius: the distance up to which cells have a cost, in metres.
         cost_scaling_factor: the rate of the decay, per metre.
-        inflate_unknown: whether unknown cells get all costs; otherwise only those where the robot would touch an
+        inflate_unknown: whether unknown cells get all costs; otherwise they get only costs at which the robot would
+            touch an
             obstacle.
         inflate_around_unknown: whether unknown cells are inflated like obstacles.
     """
@@ -36,7 +37,7 @@ class Inflation:
     inflate_around_unknown: bool = False
 
     def costs(self, distances: NDArray[np.float64], inscribed_radius: float) -> Costs:
-        """Costs at distances from the nearest obstacle, in metres, of the same shape."""
+        """Return the costs at distances (in metres) from the nearest obstacle, in an array of the same shape."""
         beyond = np.maximum(distances - inscribed_radius, 0.0)
         fading = (MAX_PASSABLE * np.exp(-self.cost_scaling_factor * beyond)).astype(np.uint8)
         fading = np.where(distances <= inscribed_radius, INSCRIBED, fading).astype(np.uint8)
@@ -45,7 +46,7 @@ class Inflation:
 
 
 class InflationLayer(Layer):
-    """Writes costs around the lethal cells of the layers below."""
+    """A layer that writes costs around the lethal cells of the layers below."""
 
     def __init__(self, inflation: Inflation) -> None:
         self._inflation = inflation
@@ -53,7 +54,7 @@ class InflationLayer(Layer):
 
     @property
     def inflation(self) -> Inflation:
-        """The decay of costs."""
+        """The parameters of the decay of costs."""
         return self._inflation
 
     @inflation.setter
@@ -61,14 +62,17 @@ class InflationLayer(Layer):
         self._inflation, self._inscribed_radius = inflation, None
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """The window that changed below, padded by the inflation radius; everything when the footprint changed."""
+        """Return the window changed below, padded by the inflation radius.
+
+        If the footprint changed, the window is the whole grid.
+        """
         if self._inscribed_radius != moment.inscribed_radius:
             self._inscribed_radius = moment.inscribed_radius
             return Window.of(grid)
         return window.padded(self._reach(grid), grid)
 
     def write(self, grid: Grid, window: Window, moment: Moment) -> None:
-        """Write costs in the window, of obstacles inside and around it."""
+        """Write the costs in the window that are caused by obstacles inside and around it."""
         reach = self._reach(grid)
         if not reach:
             return

@@ -1,4 +1,4 @@
-"""The base classes of layers, which report where they changed, and write their costs there."""
+"""The base classes of layers, which report where they changed and write their costs there."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Costs = NDArray[np.uint8]
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """A rectangle of cells: from the first row and column up to, but excluding, the last ones."""
+    """A rectangle of cells: rows `top` to `bottom` and columns `left` to `right`, excluding the last ones."""
 
     top: int = 0
     left: int = 0
@@ -28,12 +28,15 @@ class Window:
 
     @classmethod
     def of(cls, grid: Grid) -> Window:
-        """The window of a whole grid."""
+        """Return the window that covers a whole grid."""
         return cls(0, 0, grid.rows, grid.columns)
 
     @classmethod
     def around(cls, indices: NDArray[np.int64], grid: Grid) -> Window:
-        """The window around cells, rows and columns of shape (n, 2), as far as it is in the grid."""
+        """Return the window around cells, clipped to the grid.
+
+        `indices` are rows and columns, of shape (n, 2).
+        """
         if not len(indices):
             return cls()
         (top, left), (bottom, right) = indices.min(axis=0), indices.max(axis=0) + 1
@@ -41,28 +44,31 @@ class Window:
 
     @property
     def is_empty(self) -> bool:
-        """Whether it contains no cells."""
+        """Whether the window contains no cells."""
         return self.bottom <= self.top or self.right <= self.left
 
     @property
     def cells(self) -> tuple[slice, slice]:
-        """The index of an array that gives its cells."""
+        """The array index that selects the window's cells."""
         return slice(self.top, self.bottom), slice(self.left, self.right)
 
     def within(self, grid: Grid) -> Window:
-        """Return the part within a grid."""
+        """Return the part of the window within a grid."""
         inside = Window(max(0, self.top), max(0, self.left), min(grid.rows, self.bottom), min(grid.columns, self.right))
         return Window() if inside.is_empty else inside
 
     def padded(self, cells: int, grid: Grid) -> Window:
-        """The window padded by a number of cells at each side, within the grid; an empty one stays empty."""
+        """Return the window padded by a number of cells on each side, clipped to the grid.
+
+        An empty window stays empty.
+        """
         if self.is_empty:
             return self
         larger = Window(self.top - cells, self.left - cells, self.bottom + cells, self.right + cells)
         return larger.within(grid)
 
     def joined(self, other: Window) -> Window:
-        """The smallest window around both."""
+        """Return the smallest window that contains both."""
         if self.is_empty or other.is_empty:
             return other if self.is_empty else self
         return Window(
@@ -75,13 +81,13 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """Time and robot pose of an update.
+    """The time of an update and the robot's pose at that time.
 
     Attributes:
-        x, y: of the robot, in metres, in the frame of the costmap.
+        x, y: the position of the robot, in metres, in the frame of the costmap.
         footprint: the corners of the robot in that frame, in metres, of shape (corners, 2).
-        inscribed_radius: of the circle in the footprint about the robot, in metres.
-        time_ns: when it is.
+        inscribed_radius: the radius of the circle inscribed in the footprint around the robot, in metres.
+        time_ns: the time of the update.
     """
 
     x: float
@@ -92,7 +98,7 @@ class Moment:
 
 
 class Layer(ABC):
-    """The base class of layers.
+    """The base class of costmap layers.
 
     Attributes:
         enabled: whether the layer contributes to the costmap.
@@ -103,7 +109,10 @@ class Layer(ABC):
     is_clearable: bool = False
 
     def match(self, grid: Grid, default: int) -> None:  # noqa: B027  # most keep nothing
-        """Adopt a new size or origin of the costmap; `default` is the cost of its cells without layers."""
+        """Adopt a new size or origin of the costmap.
+
+        `default` is the cost of its cells before any layer.
+        """
 
     @abstractmethod
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
@@ -111,11 +120,11 @@ class Layer(ABC):
 
         Args:
             window: the window that changed in the layers below.
-            moment: now.
+            moment: the current time and pose.
             grid: the costmap.
 
         Returns:
-            The window that changes with this layer.
+            The window that must be rewritten.
         """
 
     @abstractmethod
@@ -126,15 +135,15 @@ class Layer(ABC):
         """Reset to the state before any data."""
 
     def clear(self, window: Window, *, outside: bool) -> None:  # noqa: B027  # of those that can be cleared
-        """Clear the data in a window, or all outside of it."""
+        """Clear the data in a window, or everything outside it."""
 
     def is_current(self, time_ns: int) -> bool:
-        """Whether its data are recent enough."""
+        """Return whether the layer's data are recent enough."""
         return True
 
 
 class SeenLayer(Layer):
-    """A layer with cells of its own, which keep their values until they are cleared.
+    """A layer with its own cells, which keep their values until they are cleared.
 
     Attributes:
         seen: costs, as large as the costmap.
@@ -160,7 +169,7 @@ class SeenLayer(Layer):
         self._extra = Window.of(self.seen)
 
     def clear(self, window: Window, *, outside: bool) -> None:
-        """Clear the cells in a window, or all others."""
+        """Clear the cells in a window, or all cells outside it."""
         kept = self.seen.cells[window.cells].copy()
         if outside:
             self.seen.cells[:] = UNKNOWN
@@ -170,13 +179,13 @@ class SeenLayer(Layer):
         self._extra = Window.of(self.seen)
 
     def pop_extra(self) -> Window:
-        """The window that changed other than by observations since the last call."""
+        """Return the window changed since the last call by anything other than observations."""
         extra, self._extra = self._extra, Window()
         return extra
 
 
 def shifted(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray[Any]:
-    """The cells of a grid that are also in another one, in their places there; `fill` in the others."""
+    """Return the cells of a grid moved to another grid; cells outside the old grid are `fill`."""
     moved = np.full((new.rows, new.columns), fill, cells.dtype)
     if old.resolution != new.resolution:
         return moved
@@ -189,7 +198,7 @@ def shifted(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray[Any
 
 
 def footprint_window(moment: Moment, grid: Grid) -> Window:
-    """The window around the robot's footprint."""
+    """Return the window around the robot's footprint."""
     return Window.around(grid.cells_of(moment.footprint), grid)
 
 

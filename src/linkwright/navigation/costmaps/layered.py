@@ -1,4 +1,4 @@
-"""A costmap of several layers, which is static or rolls with the robot.
+"""A costmap of several layers, which is static or moves with the robot.
 
 Source: nav2_costmap_2d ``LayeredCostmap``.
 """
@@ -22,17 +22,17 @@ class LayeredCostmap:
     """A costmap computed from layers, the first at the bottom.
 
     Args:
-        grid: size and place; the cells are written by the layers.
-        layers: from the bottom to the top.
-        footprint: of the robot; see `Footprint`.
-        rolling: whether it moves so that the robot is in the middle.
+        grid: the size and origin; the cells are written by the layers.
+        layers: the layers from bottom to top.
+        footprint: the footprint of the robot; see `Footprint`.
+        rolling: whether the costmap moves to keep the robot in its middle.
         track_unknown: whether cells without data are unknown; otherwise they are free.
-        footprint_padding: by which the footprint is enlarged, in metres.
+        footprint_padding: the padding of the footprint, in metres.
 
     Attributes:
-        costmap: the costs, as of the last update.
+        costmap: the costs after the last update.
         layers: see above.
-        padding: by which the next footprint is enlarged, in metres.
+        padding: the padding of the next footprint, in metres.
         changed: the window that the last update wrote.
     """
 
@@ -66,7 +66,7 @@ class LayeredCostmap:
         self.inscribed_radius, self.circumscribed_radius = radii(self._footprint)
 
     def resize(self, grid: Grid) -> None:
-        """Set another size or origin; layers keep their cells that are in both."""
+        """Set another size or origin; layers keep the cells that are in both grids."""
         cells = np.full((grid.rows, grid.columns), self._default, np.uint8)
         self.costmap = Costmap(Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y))
         for layer in self.layers:
@@ -77,11 +77,11 @@ class LayeredCostmap:
         """Update the costs from the layers.
 
         Args:
-            pose: of the robot.
-            time_ns: when it is.
+            pose: the pose of the robot.
+            time_ns: the time of the update.
 
         Returns:
-            Whether any cell was written; `changed` has which.
+            Whether any cell was written; `changed` is the written window.
         """
         x, y, yaw = pose
         if self.rolling:
@@ -103,11 +103,11 @@ class LayeredCostmap:
         return True
 
     def touch(self) -> None:
-        """Write all cells in the next update."""
+        """Make the next update write all cells."""
         self._updated = False
 
     def is_current(self, time_ns: int) -> bool:
-        """Whether it was updated, and the data of all layers are recent enough."""
+        """Return whether the costmap was updated and the data of all layers are recent enough."""
         return self._updated and all(layer.is_current(time_ns) for layer in self.layers if layer.enabled)
 
     def clear_entirely(self) -> None:
@@ -121,9 +121,9 @@ class LayeredCostmap:
         """Clear the layers in a square, or everywhere else.
 
         Args:
-            pose: of the middle.
-            distance: side of the square, in metres.
-            except_it: whether the square is what is kept.
+            pose: the centre of the square.
+            distance: the side of the square, in metres.
+            except_it: whether to keep the square and clear the rest.
         """
         corners = np.array([[pose[0], pose[1]]]) + distance / 2.0 * np.array([[-1.0, -1.0], [1.0, 1.0]])
         window = Window.around(self.costmap.grid.cells_of(corners), self.costmap.grid)
@@ -133,7 +133,7 @@ class LayeredCostmap:
         self._updated = False
 
     def _centre(self, x: float, y: float) -> None:
-        """Move the origin by whole cells, so that a place is in the middle."""
+        """Move the origin by whole cells so that a position is in the middle of the grid."""
         grid = self.costmap.grid
         columns = int((x - grid.columns * grid.resolution / 2.0 - grid.x) / grid.resolution)
         rows = int((y - grid.rows * grid.resolution / 2.0 - grid.y) / grid.resolution)

@@ -1,4 +1,4 @@
-"""Observations of sensors for obstacle layers: points in the frame of the costmap, kept for some time.
+"""Sensor observations for obstacle layers: points in the frame of the costmap, kept for some time.
 
 Source: nav2_costmap_2d ``ObservationBuffer``.
 """
@@ -19,16 +19,16 @@ class Source:
     """Settings of a sensor; lengths in metres, times in seconds.
 
     Attributes:
-        marking: whether its points are obstacles.
-        clearing: whether there is nothing on the way to them.
+        marking: whether the sensor's points mark obstacles.
+        clearing: whether the space between the sensor and its points is cleared.
         obstacle_max_range: farther points are ignored.
         obstacle_min_range: nearer points are ignored.
         raytrace_max_range: farther cells are not cleared.
         raytrace_min_range: nearer cells are not cleared.
-        min_obstacle_height: lower points do not count at all.
-        max_obstacle_height: higher points do not count at all.
-        observation_persistence: how long points count; 0 for until there are others.
-        expected_update_rate: how long it may be silent until the costmap is not to be believed; 0 for ever.
+        min_obstacle_height: lower points are dropped.
+        max_obstacle_height: higher points are dropped.
+        observation_persistence: how long points count; 0 to keep only the latest observation.
+        expected_update_rate: the longest silence before the costmap is not current; 0 for no limit.
     """
 
     marking: bool = True
@@ -45,13 +45,13 @@ class Source:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Observation:
-    """A set of points observed at once.
+    """A set of points observed at the same time.
 
     Attributes:
-        origin: of the sensor, x, y and z in the frame of the costmap, in metres.
-        points: of shape (n, 3), likewise.
-        source: whose it is.
-        time_ns: when.
+        origin: x, y and z of the sensor in the frame of the costmap, in metres.
+        points: the points, of shape (n, 3), in the same frame.
+        source: the settings of the sensor.
+        time_ns: the time of the observation.
     """
 
     origin: NDArray[np.float64]
@@ -60,7 +60,7 @@ class Observation:
     time_ns: int
 
     def obstacles(self) -> NDArray[np.float64]:
-        """The points in the range for marking, of shape (n, 3)."""
+        """Return the points within the range for marking, of shape (n, 3)."""
         squares = ((self.points - self.origin) ** 2).sum(axis=1)
         counts = (squares < self.source.obstacle_max_range**2) & (squares >= self.source.obstacle_min_range**2)
         near: NDArray[np.float64] = self.points[counts]
@@ -76,7 +76,7 @@ class ObservationBuffer:
         self._updated_ns: int | None = None
 
     def add(self, origin: NDArray[np.float64], points: NDArray[np.float64], time_ns: int) -> None:
-        """Add an observation; points that are not finite, or outside of the height limits, are dropped."""
+        """Add an observation; points that are not finite or outside the height limits are dropped."""
         height = points[:, 2]
         counts = np.isfinite(points).all(axis=1)
         counts &= (height >= self.source.min_obstacle_height) & (height <= self.source.max_obstacle_height)
@@ -86,7 +86,7 @@ class ObservationBuffer:
         self._updated_ns = time_ns
 
     def observations(self, time_ns: int) -> list[Observation]:
-        """The observations that are valid at a time."""
+        """Return the observations that are valid at a time."""
         if self.source.observation_persistence:
             oldest = time_ns - round(self.source.observation_persistence * NANOSECONDS_PER_SECOND)
             while self._observations and self._observations[0].time_ns < oldest:
@@ -94,7 +94,7 @@ class ObservationBuffer:
         return list(self._observations)
 
     def is_current(self, time_ns: int) -> bool:
-        """Whether the sensor published within the expected time."""
+        """Return whether the sensor published within the expected time."""
         if not self.source.expected_update_rate:
             return True
         return (

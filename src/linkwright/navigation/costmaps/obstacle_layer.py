@@ -1,4 +1,6 @@
-"""The obstacle layer: cells of points are occupied, and those on the rays to them are free.
+"""The obstacle layer, which marks sensor points and clears the rays to them.
+
+Cells that contain points are occupied, and cells on the rays to the points are free.
 
 Source: nav2_costmap_2d ``ObstacleLayer``.
 """
@@ -25,20 +27,20 @@ Cells = NDArray[np.int64]
 
 @dataclass(frozen=True, kw_only=True)
 class Heights:
-    """The range of heights of obstacles, in metres."""
+    """The height range of obstacles, in metres."""
 
     min_obstacle_height: float = 0.0
     max_obstacle_height: float = 2.0
 
 
 class ObstacleLayer(SeenLayer):
-    """Marks the cells of points, and clears those on rays.
+    """A layer that marks the cells of points, and clears the cells on the rays to them.
 
     Args:
         buffers: the observations of sensors.
-        heights: of obstacles.
+        heights: the height range of obstacles.
         combination_method: `OVERWRITE`, `MAXIMUM` or `MAXIMUM_OF_KNOWN`.
-        footprint_clearing: whether to clear the cells below the robot.
+        footprint_clearing: whether to clear the cells under the robot.
     """
 
     def __init__(
@@ -57,16 +59,16 @@ class ObstacleLayer(SeenLayer):
         self._forgotten = False
 
     def reset(self) -> None:
-        """Clear everything; it is not current before its next update."""
+        """Clear everything; the layer is not current until its next update."""
         super().reset()
         self._forgotten = True
 
     def is_current(self, time_ns: int) -> bool:
-        """Whether all sensors published within the expected time."""
+        """Return whether all sensors published within the expected time."""
         return not self._forgotten and all(buffer.is_current(time_ns) for buffer in self.buffers)
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """The window that rays and points of the new observations touch."""
+        """Return the window touched by the rays and points of the new observations."""
         self._forgotten = False
         window = window.joined(self.pop_extra())
         seen = [
@@ -85,7 +87,7 @@ class ObstacleLayer(SeenLayer):
         return window
 
     def write(self, grid: Grid, window: Window, moment: Moment) -> None:
-        """Merge its cells into the costmap."""
+        """Merge the layer's cells into the costmap."""
         if self._footprint_clearing:
             free_footprint(self.seen.cells, moment, self.seen, window)
         ours, below = self.seen.cells[window.cells], grid.cells[window.cells]
@@ -97,7 +99,7 @@ class ObstacleLayer(SeenLayer):
         below[known] = ours[known]
 
     def clear_rays(self, observation: Observation, grid: Grid) -> Window:
-        """Free the cells on the rays to the points; the window that they touch."""
+        """Free the cells on the rays to the points, and return the window that the rays touch."""
         start, ends, _ = ray_ends(observation, grid)
         cells, _ = cells_on_lines(start, ends)
         cells = cells[grid.has(cells) & _far_enough(cells, start, observation, grid)]
@@ -105,14 +107,14 @@ class ObstacleLayer(SeenLayer):
         return Window.around(cells, grid)
 
     def mark_points(self, observation: Observation, grid: Grid) -> Window:
-        """Occupy the cells of points; the window that they touch."""
+        """Mark the cells of points as occupied, and return the window that they touch."""
         cells = grid.cells_of(self.obstacles(observation)[:, :2])
         cells = cells[grid.has(cells)]
         self.seen.cells[cells[:, 0], cells[:, 1]] = LETHAL
         return Window.around(cells, grid)
 
     def obstacles(self, observation: Observation) -> NDArray[np.float64]:
-        """The points that are obstacles, of shape (n, 3)."""
+        """Return the points that are obstacles, of shape (n, 3)."""
         points = observation.obstacles()
         height = points[:, 2]
         high: NDArray[np.float64] = points[
@@ -122,11 +124,11 @@ class ObstacleLayer(SeenLayer):
 
 
 def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArray[np.float64]]:
-    """The ends of the rays that clear.
+    """Return the sensor's cell and the cells in which its clearing rays end.
 
     Returns:
-        The cell of the sensor, of shape (2,); those in which rays end that come no farther than they may, each once, of
-        shape (n, 2); and the height at which each ends, in metres, of shape (n,).
+        The cell of the sensor, of shape (2,); the cells in which rays end, clipped to the maximum range and without
+        duplicates, of shape (n, 2); and the height at which each ray ends, in metres, of shape (n,).
     """
     origin, points = observation.origin, observation.points
     offsets = points - origin
@@ -135,7 +137,7 @@ def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArra
     ends = origin + share[:, None] * offsets
     start = grid.cells_of(origin[None, :2])[0]
     cells = grid.cells_of(ends[:, :2])
-    # Clouds have many points in a cell; a table of the cells around the sensor finds those without sorting.
+    # A point cloud has many points per cell. A table of the cells around the sensor removes duplicates without sorting.
     reach = ceil(observation.source.raytrace_max_range / grid.resolution) + 1
     places = (cells - start + reach) @ np.array([2 * reach + 1, 1])
     last = np.full((2 * reach + 1) ** 2, -1)
@@ -145,7 +147,7 @@ def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArra
 
 
 def _far_enough(cells: Cells, start: Cells, observation: Observation, grid: Grid) -> NDArray[np.bool_]:
-    """Which cells of rays are beyond the least distance for clearing."""
+    """Return which cells of rays are beyond the minimum distance for clearing."""
     least = observation.source.raytrace_min_range / grid.resolution
     offsets = cells - start
     far: NDArray[np.bool_] = (offsets**2).sum(axis=1) >= least**2

@@ -1,6 +1,6 @@
-"""The range layer, for sensors with a wide cone such as sonars: probabilities of occupied cells.
+"""The range layer, for sensors with a wide cone such as sonars: probabilities that cells are occupied.
 
-Source: nav2_costmap_2d ``RangeSensorLayer``. Different on purpose: only cells within the field of view change.
+Source: nav2_costmap_2d ``RangeSensorLayer``. Unlike nav2, only cells within the field of view change.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ _BEYOND: Final = 1.2
 
 @dataclass(frozen=True, kw_only=True)
 class RangeSettings:
-    """Settings of the sensor model; names and defaults are nav2's.
+    """Settings of the sensor model, with nav2's names and defaults.
 
     Attributes:
         phi: the distance beyond which readings are uncertain, in metres.
-        clear_threshold: cells that are less likely occupied are free.
-        mark_threshold: cells that are more likely occupied are obstacles.
-        clear_on_max_reading: whether a sensor that measures its greatest distance sees that there is nothing.
-        no_readings_timeout: so long the sensors may be silent until the costmap is not to be believed, in seconds; 0
-            for ever.
+        clear_threshold: cells with a lower probability of being occupied are free.
+        mark_threshold: cells with a higher probability of being occupied are obstacles.
+        clear_on_max_reading: whether a reading of the maximum range clears the cone.
+        no_readings_timeout: the longest silence of the sensors before the costmap is not current, in seconds; 0 for no
+            limit.
     """
 
     phi: float = 1.2
@@ -51,15 +51,15 @@ class RangeSettings:
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """A reading of a sensor.
+    """A reading of a range sensor.
 
     Attributes:
-        x, y: of the sensor in the frame of the costmap, in metres.
-        yaw: where it looks, in radians.
+        x, y: the position of the sensor in the frame of the costmap, in metres.
+        yaw: the direction of the sensor, in radians.
         distance: the measured distance, in metres.
-        field_of_view: its whole width, in radians.
-        free: whether it saw that there is nothing up to there.
-        time_ns: when.
+        field_of_view: the full angle of the cone, in radians.
+        free: whether the sensor found no obstacle up to the distance.
+        time_ns: the time of the reading.
     """
 
     x: float
@@ -72,7 +72,7 @@ class Reading:
 
 
 class RangeLayer(SeenLayer):
-    """Probabilities that readings update: in `seen`, 0 is surely free and 254 surely occupied."""
+    """A layer of probabilities updated by readings: in `seen`, 0 is certainly free and 254 certainly occupied."""
 
     def __init__(self, settings: RangeSettings) -> None:
         super().__init__()
@@ -90,30 +90,30 @@ class RangeLayer(SeenLayer):
         super().match(grid, _EVEN)
 
     def clear(self, window: Window, *, outside: bool) -> None:
-        """Clear the cells in a window, or all others."""
+        """Clear the cells in a window, or all cells outside it."""
         super().clear(window, outside=outside)
         self.seen.cells[self.seen.cells == UNKNOWN] = _EVEN
 
     def is_current(self, time_ns: int) -> bool:
-        """Whether a sensor published within the expected time."""
+        """Return whether a sensor published within the expected time."""
         most = self.settings.no_readings_timeout
         return not most or (self._heard_ns is not None and (time_ns - self._heard_ns) / NANOSECONDS_PER_SECOND <= most)
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """The window that new readings touch."""
+        """Return the window that new readings touch."""
         window = window.joined(self.pop_extra())
         while self._readings:
             window = window.joined(self._learn(self._readings.popleft(), grid))
         return window
 
     def write(self, grid: Grid, window: Window, moment: Moment) -> None:
-        """Write occupied and free cells where the probability is beyond a threshold."""
+        """Write cells as occupied or free where their probability is beyond a threshold."""
         likely, below = self.seen.cells[window.cells], grid.cells[window.cells]
         below[(likely < self.settings.clear_threshold * _CERTAIN) & (below == UNKNOWN)] = FREE
         below[likely > self.settings.mark_threshold * _CERTAIN] = LETHAL
 
     def _learn(self, reading: Reading, grid: Grid) -> Window:
-        """Update probabilities by Bayes' rule."""
+        """Update the probabilities by Bayes' rule, and return the window that changed."""
         reach = ceil(_BEYOND * reading.distance / grid.resolution) + 1
         row, column = grid.cells_of(np.array((reading.x, reading.y))).tolist()
         window = Window(row - reach, column - reach, row + reach + 1, column + reach + 1).within(grid)
@@ -142,13 +142,13 @@ class RangeLayer(SeenLayer):
     def _likelihood(
         self, distance: NDArray[np.float64], aside: NDArray[np.float64], reading: Reading, resolution: float
     ) -> NDArray[np.float64]:
-        """The probability that a cell is occupied, given a reading alone.
+        """Return the probability that a cell is occupied, given this reading alone.
 
         Args:
-            distance: of cells from the sensor, in metres.
-            aside: how far from the middle of its view they are, 1 at its rim.
+            distance: the distance of cells from the sensor, in metres.
+            aside: the angular offset of cells from the sensor's axis, scaled to 1 at the edge of the cone.
             reading: the measurement.
-            resolution: side of a cell, in metres.
+            resolution: the side of a cell, in metres.
         """
         if reading.free:
             return np.where(distance <= reading.distance, 0.0, 0.5)

@@ -1,4 +1,4 @@
-"""The static layer: a map of an occupancy grid.
+"""The static layer: costs from the occupancy grid of a map.
 
 Source: nav2_costmap_2d ``StaticLayer``.
 """
@@ -28,10 +28,10 @@ class Interpretation:
     """The conversion of an occupancy grid's values to costs.
 
     Attributes:
-        track_unknown_space: whether cells without knowledge stay so; else they are free.
-        unknown_cost_value: the number that means unknown, as a byte: 255 is -1.
-        lethal_threshold: from which number on a cell is an obstacle.
-        trinary: whether the others are free; else they cost in proportion.
+        track_unknown_space: whether unknown cells stay unknown; otherwise they are free.
+        unknown_cost_value: the value that means unknown, as a byte: 255 is -1.
+        lethal_threshold: the lowest value of an obstacle.
+        trinary: whether all other cells are free; otherwise their cost is proportional to the value.
     """
 
     track_unknown_space: bool = False
@@ -40,7 +40,7 @@ class Interpretation:
     trinary: bool = True
 
     def table(self) -> Costs:
-        """The cost for each byte of an occupancy grid, of shape (256,)."""
+        """Return the cost for each byte of an occupancy grid, of shape (256,)."""
         values = np.arange(256)
         costs = np.full(256, FREE) if self.trinary else values * LETHAL // max(1, self.lethal_threshold)
         costs[values >= self.lethal_threshold] = LETHAL
@@ -50,16 +50,16 @@ class Interpretation:
 
 
 class StaticLayer(Layer):
-    """Writes the costs of a map.
+    """A layer that writes the costs of a map.
 
     Args:
-        interpretation: of its numbers.
-        use_maximum: whether it only makes cells more expensive.
-        footprint_clearing: whether to clear the cells below the robot.
-        pose: of the costmap's frame in that of the map; None where that is not known at the moment.
+        interpretation: the conversion of the map's values.
+        use_maximum: whether the layer may only raise costs.
+        footprint_clearing: whether to clear the cells under the robot.
+        pose: the pose of the costmap's frame in the map's frame; None while it is unknown.
 
     Attributes:
-        map: costs in the frame of the map; None before there is one.
+        map: costs in the frame of the map; None before the first map.
     """
 
     def __init__(
@@ -79,13 +79,16 @@ class StaticLayer(Layer):
         self._news = True
 
     def set_map(self, occupancy: Grid) -> None:
-        """Set a new map; cells of type int8, in per cent or -1."""
+        """Set a new map, whose cells are of type int8: per cent, or -1 for unknown."""
         costs = self.interpretation.table()[occupancy.cells.astype(np.uint8)]
         self.map = Grid(cells=costs, resolution=occupancy.resolution, x=occupancy.x, y=occupancy.y, yaw=occupancy.yaw)
         self._news = True
 
     def update_map(self, top: int, left: int, occupancy: Costs) -> bool:
-        """Update a part of the map; False, without effect, if it is not within the map."""
+        """Update a part of the map.
+
+        Returns False and changes nothing if the part is not within the map.
+        """
         rows, columns = occupancy.shape
         known = self.map
         if known is None or min(top, left) < 0 or top + rows > known.rows or left + columns > known.columns:
@@ -95,19 +98,19 @@ class StaticLayer(Layer):
         return True
 
     def match(self, grid: Grid, default: int) -> None:
-        """Write everything in the next update."""
+        """Make the next update write everything."""
         self._news = True
 
     def reset(self) -> None:
-        """Write everything in the next update."""
+        """Make the next update write everything."""
         self._news = True
 
     def is_current(self, time_ns: int) -> bool:
-        """Whether there is a map, and its transform is known."""
+        """Return whether a map exists and its transform is known."""
         return self.map is not None and (self._placed is not None or self._news)
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """Return the changed window: all of it after a new map or transform."""
+        """Return the changed window; after a new map or transform it is the whole grid."""
         if self.map is None:
             return window
         pose = self._pose()
@@ -131,7 +134,10 @@ class StaticLayer(Layer):
             free_footprint(grid.cells, moment, grid, window)
 
     def _lying_straight(self, grid: Grid, window: Window) -> tuple[tuple[slice, slice], Costs] | None:
-        """Which cells of a window the map has, and its costs; None where the two grids' cells are not aligned."""
+        """Return the cells of a window that the map covers, and their costs.
+
+        Returns None if the grids are not aligned.
+        """
         known = self.map
         assert known is not None
         if self._placed != _SAME_PLACE or known.yaw or known.resolution != grid.resolution:
@@ -150,7 +156,7 @@ class StaticLayer(Layer):
         return there, known.cells[seen.cells]
 
     def _lying_anyhow(self, grid: Grid, window: Window) -> tuple[NDArray[np.bool_], Costs]:
-        """As `_lying_straight`, for grids that are not aligned: the map's values at the centres of the cells."""
+        """Return the same as `_lying_straight` for grids that are not aligned, sampled at the cell centres."""
         assert self.map is not None
         assert self._placed is not None
         rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]

@@ -1,4 +1,6 @@
-"""The voxel layer: an obstacle layer with levels of height, so that a ray clears only the levels that it crosses.
+"""The voxel layer: an obstacle layer with height levels.
+
+A ray clears only the levels that it crosses.
 
 Source: nav2_costmap_2d ``VoxelLayer``.
 """
@@ -29,7 +31,7 @@ Levels = NDArray[np.uint16]
 
 @dataclass(frozen=True, kw_only=True)
 class Voxels:
-    """The levels of height in a column of cells.
+    """The height levels in a column of cells.
 
     Attributes:
         origin_z: the bottom of the lowest level, in metres.
@@ -47,7 +49,7 @@ class Voxels:
 
 
 class VoxelLayer(ObstacleLayer):
-    """Marks and clears voxels; see `ObstacleLayer`."""
+    """A layer that marks and clears voxels; see `ObstacleLayer`."""
 
     def __init__(
         self,
@@ -77,7 +79,7 @@ class VoxelLayer(ObstacleLayer):
         self._unknown[:] = _ALL
 
     def clear(self, window: Window, *, outside: bool) -> None:
-        """Clear the cells in a window, or all others."""
+        """Clear the cells in a window, or all cells outside it."""
         gone = np.zeros(self._unknown.shape, np.bool_)
         gone[window.cells] = True
         gone ^= outside
@@ -85,7 +87,7 @@ class VoxelLayer(ObstacleLayer):
         super().clear(window, outside=outside)
 
     def clear_rays(self, observation: Observation, grid: Grid) -> Window:
-        """Free the voxels on the rays to the points; the window that they touch."""
+        """Free the voxels on the rays to the points, and return the window that the rays touch."""
         start, ends, heights = ray_ends(observation, grid)
         cells, ray = cells_on_lines(start, ends)
         steps = np.bincount(ray, minlength=len(ends))
@@ -102,7 +104,7 @@ class VoxelLayer(ObstacleLayer):
         return Window.around(cells, grid)
 
     def mark_points(self, observation: Observation, grid: Grid) -> Window:
-        """Occupy the voxels of points; the window that they touch."""
+        """Mark the voxels of points as occupied, and return the window that they touch."""
         points = self.obstacles(observation)
         cells = grid.cells_of(points[:, :2])
         levels, counts = self._levels(points[:, 2])
@@ -114,13 +116,13 @@ class VoxelLayer(ObstacleLayer):
         return Window.around(cells, grid)
 
     def _levels(self, heights: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """The level of each height, and which heights are within them."""
+        """Return the level of each height, and which heights are within the levels."""
         levels = np.floor((heights - self._voxels.origin_z) / self._voxels.z_resolution).astype(np.int64)
         there = (levels >= 0) & (levels < self._voxels.z_voxels)
         return np.where(there, levels, 0), there
 
     def _judge(self, cells: Cells) -> None:
-        """The costs of columns, from the counts of their marked and unknown voxels."""
+        """Compute the costs of columns from the counts of their marked and unknown voxels."""
         rows, columns = cells[:, 0], cells[:, 1]
         occupied, unknown = _BITS[self._occupied[rows, columns]], _BITS[self._unknown[rows, columns]]
         known = np.where(unknown > self._unknown_threshold, UNKNOWN, FREE)

@@ -1,1 +1,1 @@
-"""Estimators of pose and motion from measurements of sensors. Arithmetic without ROS."""
+"""Estimators of pose and motion from sensor measurements, independent of ROS."""

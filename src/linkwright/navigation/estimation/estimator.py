@@ -1,4 +1,4 @@
-"""Measurements of several sensors, in whatever order they arrive, through one filter."""
+"""Fusion of measurements of several sensors, received in any order, in one filter."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ class Timing:
     """When an estimator predicts without measurements, and how far it rewinds for late ones.
 
     Attributes:
-        sensor_timeout_ns: after which time without measurements the state is predicted.
-        predict_to_now: whether it is always predicted up to now.
-        history_ns: how long states are kept, for measurements that come late to be put where they belong; None where
-            late ones correct the state as it is.
+        sensor_timeout_ns: the time without measurements after which the state is predicted.
+        predict_to_now: whether the state is always predicted up to the current time.
+        history_ns: how long states are kept so that late measurements can be applied at their own time; None to apply
+            late measurements to the current state.
     """
 
     sensor_timeout_ns: int
@@ -26,11 +26,11 @@ class Timing:
 
 
 class Estimator:
-    """Keeps measurements until they are due, and hands them to a filter in the order of their stamps.
+    """Queues measurements until they are due, and passes them to a filter in the order of their stamps.
 
     Args:
         kalman: the filter.
-        timing: see there.
+        timing: when to predict and rewind; see `Timing`.
     """
 
     def __init__(self, kalman: KalmanFilter, timing: Timing) -> None:
@@ -42,8 +42,8 @@ class Estimator:
         self._states: deque[Snapshot] = deque()
 
     def add(self, measurement: Measurement) -> None:
-        """Add a measurement; it is used in the first `advance` to its time or a later one."""
-        self._count += 1  # with equal stamps, the first received is used first
+        """Add a measurement; the first `advance` to its time or later uses it."""
+        self._count += 1  # Measurements with equal stamps are used in the order of their arrival.
         heapq.heappush(self._queue, (measurement.time_ns, self._count, measurement))
 
     def clear(self) -> None:
@@ -53,7 +53,7 @@ class Estimator:
         self._states.clear()
 
     def advance(self, now_ns: int) -> None:
-        """Use the measurements up to now, and predict the state after a long gap."""
+        """Use the measurements up to now, and predict the state if there was no measurement for long."""
         kalman, history_ns = self.filter, self._timing.history_ns
         predict = self._timing.predict_to_now
         if self._queue:
@@ -82,7 +82,7 @@ class Estimator:
                     self._states.append(kalman.snapshot())
 
     def _go_back(self, time_ns: int) -> int:
-        """Restore the last state before a time and queue the measurements since then again; return their number."""
+        """Restore the last state before a time, queue the later measurements again and return their number."""
         oldest = None
         while self._states and self._states[-1].time_ns >= time_ns:
             oldest = self._states.pop()

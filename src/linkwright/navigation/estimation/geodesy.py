@@ -1,7 +1,7 @@
-"""Geodetic coordinates (degrees, WGS 84) as metres: UTM, and planes tangent to the ellipsoid.
+"""Conversion of geodetic coordinates (degrees, WGS 84) to metres: UTM, and planes tangent to the ellipsoid.
 
 Sources: L. Krüger 1912 for the transverse Mercator projection, with the coefficients of C. Karney, "Transverse Mercator
-with an accuracy of a few nanometers", 2011, to the fourth order, which leaves far less than a millimetre within a zone;
+with an accuracy of a few nanometers", 2011, to the fourth order, whose error is far below a millimetre within a zone;
 EPSG Guidance Note 7-2 for the zones, false origins and the plane.
 """
 
@@ -37,19 +37,19 @@ _ROUNDS = 6
 
 
 class Zone(NamedTuple):
-    """A zone of UTM, 1 to 60, on the northern or the southern half of the earth."""
+    """A UTM zone, 1 to 60, in the northern or southern hemisphere."""
 
     number: int
     northern: bool
 
     @property
     def meridian(self) -> float:
-        """The longitude of its central meridian, rad."""
+        """The longitude of the zone's central meridian, in rad."""
         return radians(6.0 * self.number - 183.0)
 
 
 def zone_of(latitude: float, longitude: float) -> Zone:
-    """The zone of a position in degrees, with the wider ones of Norway and Svalbard."""
+    """Return the UTM zone of a position in degrees, including the wider zones of Norway and Svalbard."""
     longitude = (longitude + 180.0) % 360.0 - 180.0
     number = floor((longitude + 180.0) / 6.0) + 1
     if 56.0 <= latitude < 64.0 and 3.0 <= longitude < 12.0:
@@ -60,7 +60,7 @@ def zone_of(latitude: float, longitude: float) -> Zone:
 
 
 def utm_of(latitude: float, longitude: float, zone: Zone) -> tuple[float, float]:
-    """Easting and northing in metres of a position in degrees."""
+    """Convert a position in degrees to easting and northing in metres."""
     tau = tan(radians(latitude))
     sigma = sinh(_ECCENTRICITY * atanh(_ECCENTRICITY * tau / hypot(1.0, tau)))
     conformal = tau * hypot(1.0, sigma) - sigma * hypot(1.0, tau)
@@ -76,7 +76,10 @@ def utm_of(latitude: float, longitude: float, zone: Zone) -> tuple[float, float]
 
 
 def degrees_of_utm(easting: float, northing: float, zone: Zone) -> tuple[float, float]:
-    """Latitude and longitude in degrees of a position in metres; the inverse of `utm_of`."""
+    """Convert easting and northing in metres to latitude and longitude in degrees.
+
+    This is the inverse of `utm_of`.
+    """
     north = (northing - (0.0 if zone.northern else _FALSE_NORTHING)) / (_SCALE * _RECTIFYING)
     east = (easting - _FALSE_EASTING) / (_SCALE * _RECTIFYING)
     xi, eta = north, east
@@ -95,18 +98,21 @@ def degrees_of_utm(easting: float, northing: float, zone: Zone) -> tuple[float, 
 
 
 def convergence(latitude: float, longitude: float, zone: Zone) -> float:
-    """The meridian convergence at a position in degrees: the angle in rad, clockwise, from true to grid north."""
+    """Return the meridian convergence, in rad, at a position in degrees.
+
+    It is the clockwise angle from true north to grid north.
+    """
     return atan(tan(radians(longitude) - zone.meridian) * sin(radians(latitude)))
 
 
 @dataclass(frozen=True, slots=True)
 class TangentPlane:
-    """A plane tangent to the ellipsoid, whose x, y and z point to the east, north and up.
+    """A plane tangent to the ellipsoid, whose x, y and z axes point east, north and up.
 
     Args:
-        latitude: of its origin, degrees.
-        longitude: of its origin, degrees.
-        altitude: of its origin above the ellipsoid, metres.
+        latitude: the latitude of its origin, in degrees.
+        longitude: the longitude of its origin, in degrees.
+        altitude: the altitude of its origin above the ellipsoid, in metres.
     """
 
     latitude: float
@@ -114,7 +120,7 @@ class TangentPlane:
     altitude: float
 
     def point_of(self, latitude: float, longitude: float, altitude: float) -> Vector3:
-        """A point in metres, for a position in degrees and metres above the ellipsoid."""
+        """Convert a position (degrees, and metres above the ellipsoid) to a point in metres."""
         x, y, z = _geocentric(latitude, longitude, altitude)
         ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
         east, north, up = self._axes()
@@ -122,7 +128,7 @@ class TangentPlane:
         return dot(east, apart), dot(north, apart), dot(up, apart)
 
     def place_of(self, point: Vector3) -> Vector3:
-        """A point in metres as latitude and longitude in degrees and altitude in metres."""
+        """Convert a point in metres to latitude and longitude in degrees and altitude in metres."""
         ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
         axes = self._axes()
         x, y, z = (sum(axis[index] * along for axis, along in zip(axes, point, strict=True)) for index in range(3))

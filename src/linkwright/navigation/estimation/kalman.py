@@ -1,8 +1,8 @@
-"""Kalman filters of the motion of a body: extended and unscented.
+"""Extended and unscented Kalman filters for the motion of a body.
 
-Both keep a state (see `motion_model`) with its covariance, predict them over time and correct them by measurements of
-some of the 15 quantities. Sources: T. Moore and D. Stouch 2014 for the extended filter and its default noise; S. Julier
-and J. Uhlmann, "Unscented Filtering and Nonlinear Estimation", 2004, for the other.
+Both predict a state (see `motion_model`) and its covariance over time, and correct them by measurements of some of the
+15 quantities. Sources: T. Moore and D. Stouch 2014 for the extended filter and its default noise; S. Julier and J.
+Uhlmann, "Unscented Filtering and Nonlinear Estimation", 2004, for the unscented filter.
 """
 
 from __future__ import annotations
@@ -42,13 +42,13 @@ class Measurement:
     """A measurement of some of the state's quantities.
 
     Attributes:
-        source: which sensor.
-        time_ns: when it was measured.
+        source: the name of the sensor.
+        time_ns: the time of the measurement.
         values: shape (15,).
         covariance: shape (15, 15).
-        used: which values count.
-        threshold: the most standard deviations from the expected value; a reading further away is rejected.
-        control: velocities that were commanded then, shape (6,), and when.
+        used: which values are used.
+        threshold: the maximum deviation from the expected value, in standard deviations; farther readings are rejected.
+        control: the velocities commanded at that time, shape (6,), and the time of the command.
     """
 
     source: str
@@ -62,15 +62,15 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """The response of a body to commanded velocities: for vx vy vz and the rates of roll, pitch and yaw.
+    """The response of a body to commanded velocities: vx, vy, vz and the rates of roll, pitch and yaw.
 
     Attributes:
-        used: which of the six count.
-        timeout_ns: after which time a command means standing still.
+        used: which of the six velocities are controlled.
+        timeout_ns: the age from which a command counts as zero velocity.
         acceleration_limits: m/s2 and rad/s2.
-        acceleration_gains: acceleration for an error of velocity of 1.
-        deceleration_limits: as the others, for slowing down.
-        deceleration_gains: as the others.
+        acceleration_gains: the acceleration per unit of velocity error.
+        deceleration_limits: the limits for slowing down.
+        deceleration_gains: the gains for slowing down.
     """
 
     used: tuple[bool, ...]
@@ -81,7 +81,7 @@ class Control:
     deceleration_gains: tuple[float, ...]
 
     def acceleration(self, index: int, velocity: float, commanded: float) -> float:
-        """The acceleration of one of the six towards its commanded velocity."""
+        """Return the acceleration of one of the six velocities towards its commanded value."""
         error = commanded - velocity
         goal = commanded if abs(error) <= abs(commanded) + 0.01 else 0.0
         if abs(goal) < abs(velocity):
@@ -93,7 +93,7 @@ class Control:
 
 @dataclass(slots=True, eq=False)
 class Snapshot:
-    """A filter at one moment; see `KalmanFilter.snapshot`."""
+    """The state of a filter at one moment; see `KalmanFilter.snapshot`."""
 
     state: Vector
     covariance: Matrix
@@ -104,14 +104,14 @@ class Snapshot:
 
 @dataclass(slots=True, eq=False)
 class Settings:
-    """Settings of a filter.
+    """The settings of a filter.
 
     Attributes:
-        noise: covariance that a second adds, shape (15, 15).
-        initial_covariance: at the start, shape (15, 15).
-        initial_state: at the start, shape (15,).
-        dynamic_noise: whether the noise of the pose grows with the velocity, and is none at rest.
-        control: how commands are followed; None where they are not.
+        noise: the covariance added per second, shape (15, 15).
+        initial_covariance: the covariance at the start, shape (15, 15).
+        initial_state: the state at the start, shape (15,).
+        dynamic_noise: whether the noise of the pose grows with the velocity and is zero at rest.
+        control: the response to commands; None to ignore commands.
     """
 
     noise: Matrix = field(default_factory=lambda: np.diag(DEFAULT_NOISE))
@@ -125,13 +125,13 @@ class KalmanFilter(ABC):
     """A state and its covariance, predicted from measurement to measurement.
 
     Args:
-        settings: see there.
+        settings: the settings; see `Settings`.
 
     Attributes:
         state: shape (15,).
         covariance: shape (15, 15).
-        time_ns: when that holds.
-        initialized: whether there was a measurement.
+        time_ns: the time of the state.
+        initialized: whether a measurement was received.
     """
 
     def __init__(self, settings: Settings | None = None) -> None:
@@ -142,14 +142,14 @@ class KalmanFilter(ABC):
         self.reset()
 
     def reset(self) -> None:
-        """Reset: the next measurement is the first."""
+        """Reset the filter; the next measurement initializes it."""
         self.state = self.settings.initial_state.copy()
         self.covariance = self.settings.initial_covariance.copy()
         self.initialized = False
         self.command: tuple[Vector, int] = (np.zeros(6), 0)
 
     def snapshot(self) -> Snapshot:
-        """The state, for `restore`."""
+        """Return the state of the filter, for `restore`."""
         return Snapshot(self.state.copy(), self.covariance.copy(), self.time_ns, self.initialized, self.command)
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -158,9 +158,9 @@ class KalmanFilter(ABC):
         self.time_ns, self.initialized, self.command = snapshot.time_ns, snapshot.initialized, snapshot.command
 
     def process(self, measurement: Measurement) -> bool:
-        """Predict up to the time of a measurement, unless that has passed, and correct the state by it.
+        """Predict up to the time of a measurement, unless that is in the past, and correct the state by it.
 
-        The first measurement is taken as it is. Returns whether it was used.
+        The first measurement initializes the state. Returns whether the measurement was used.
         """
         if not self.initialized:
             self._begin(measurement)
@@ -235,7 +235,7 @@ class KalmanFilter(ABC):
 
 
 class ExtendedKalmanFilter(KalmanFilter):
-    """A filter that linearises the motion at the state."""
+    """A Kalman filter that linearises the motion at the state."""
 
     def _predict(self, seconds: float) -> None:
         jacobian, noise = derivatives(self.state, seconds), self._noise_of(seconds)
@@ -244,13 +244,13 @@ class ExtendedKalmanFilter(KalmanFilter):
 
 
 class UnscentedKalmanFilter(KalmanFilter):
-    """A filter that propagates sigma points, and takes their mean and covariance.
+    """A Kalman filter that propagates sigma points, and takes their mean and covariance.
 
     Args:
-        settings: see there.
-        alpha: how far from the state the points are.
-        kappa: moves the weight from the state to the points.
-        beta: prior knowledge of the distribution; 2 for a normal one.
+        settings: the settings; see `Settings`.
+        alpha: the spread of the sigma points around the state.
+        kappa: shifts the weight from the state to the sigma points.
+        beta: prior knowledge of the distribution; 2 for a normal distribution.
     """
 
     def __init__(
@@ -269,7 +269,7 @@ class UnscentedKalmanFilter(KalmanFilter):
         root = _square_root(self.covariance) * self._scale
         points = [self.state, *(self.state + column for column in root.T), *(self.state - column for column in root.T)]
         moved = np.array([predicted(point, seconds) for point in points])
-        # Angles near +-pi are averaged around the first point's.
+        # Angles near +-pi are averaged relative to the first point.
         centre = moved[0]
         away = moved - centre
         for index in _ANGLES:
@@ -282,7 +282,7 @@ class UnscentedKalmanFilter(KalmanFilter):
 
 
 def _square_root(covariance: Matrix) -> Matrix:
-    """A matrix whose product with its transpose is the covariance; of the nearest valid one, if rounding spoilt it."""
+    """Return a matrix square root of a covariance, or of the nearest valid one if rounding made it invalid."""
     try:
         root: Matrix = np.asarray(np.linalg.cholesky(covariance), dtype=np.float64)
     except np.linalg.LinAlgError:
@@ -292,7 +292,7 @@ def _square_root(covariance: Matrix) -> Matrix:
 
 
 def _used(measurement: Measurement) -> list[int]:
-    """Which quantities a measurement has: those that are used and finite."""
+    """Return the indices of the quantities that a measurement provides: the used values that are finite."""
     values, covariance = measurement.values, measurement.covariance
     return [
         index

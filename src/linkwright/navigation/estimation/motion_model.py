@@ -1,8 +1,9 @@
-"""The motion model of a body in space: a state of 15 numbers, its prediction and the Jacobian of it.
+"""The motion model of a body in space: its state, prediction, and the prediction's Jacobian.
 
-The state is position (m) and roll, pitch, yaw (rad) in the world, linear (m/s) and angular velocity (rad/s) and linear
-acceleration (m/s2) in the body. Between measurements acceleration and angular velocity stay as they are. Source: T.
-Moore and D. Stouch, "A Generalized Extended Kalman Filter Implementation for the Robot Operating System", 2014.
+The state consists of position (m) and roll, pitch, yaw (rad) in the world, and of linear velocity (m/s), angular
+velocity (rad/s) and linear acceleration (m/s2) in the body. Acceleration and angular velocity are constant between
+measurements. Source: T. Moore and D. Stouch, "A Generalized Extended Kalman Filter Implementation for the Robot
+Operating System", 2014.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ Matrix = NDArray[np.float64]
 
 
 class State(IntEnum):
-    """The indices of quantities in the state."""
+    """The indices of the quantities in the state."""
 
     X = 0
     Y = 1
@@ -46,17 +47,17 @@ ACCELERATION = slice(12, 15)
 
 
 def wrapped(angle: float) -> float:
-    """An angle between -pi and pi."""
+    """Return an angle wrapped to -pi to pi."""
     return (angle + pi) % (2.0 * pi) - pi if not -pi <= angle <= pi else angle
 
 
 def wrap_angles(state: Vector) -> None:
-    """Bring roll, pitch and yaw of a state between -pi and pi, in place."""
+    """Wrap roll, pitch and yaw of a state to -pi to pi, in place."""
     state[ANGLES] = [wrapped(angle) for angle in state[ANGLES].tolist()]
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Matrix:
-    """The matrix that takes vectors of the body to the world: Rz(yaw) Ry(pitch) Rx(roll), shape (3, 3)."""
+    """Return the matrix that rotates vectors from the body to the world: Rz(yaw) Ry(pitch) Rx(roll), shape (3, 3)."""
     sr, cr, sp, cp, sy, cy = sin(roll), cos(roll), sin(pitch), cos(pitch), sin(yaw), cos(yaw)
     return np.array(
         [
@@ -68,7 +69,7 @@ def rotation(roll: float, pitch: float, yaw: float) -> Matrix:
 
 
 def predicted(state: Vector, seconds: float) -> Vector:
-    """The state some seconds later; a new array, shape (15,), its angles between -pi and pi."""
+    """Return the state after some seconds as a new array of shape (15,), with angles between -pi and pi."""
     turn, angle_rates = rotation(*state[ANGLES].tolist()), _angle_rates(state)
     later = state.copy()
     later[POSITION] += turn @ _shift(state, seconds)
@@ -79,7 +80,7 @@ def predicted(state: Vector, seconds: float) -> Vector:
 
 
 def derivatives(state: Vector, seconds: float) -> Matrix:
-    """The Jacobian of `predicted` with respect to the state, shape (15, 15)."""
+    """Return the Jacobian of `predicted` with respect to the state, shape (15, 15)."""
     roll, pitch, yaw = state[ANGLES].tolist()
     turn, angle_rates = rotation(roll, pitch, yaw), _angle_rates(state)
     jacobian = np.eye(SIZE)
@@ -108,13 +109,13 @@ def derivatives(state: Vector, seconds: float) -> Matrix:
 
 
 def _shift(state: Vector, seconds: float) -> Vector:
-    """The displacement of the body, in its own axes."""
+    """Return the displacement of the body, in its own axes."""
     shift: Vector = state[VELOCITY] * seconds + state[ACCELERATION] * (0.5 * seconds * seconds)
     return shift
 
 
 def _angle_rates(state: Vector) -> Matrix:
-    """The matrix that takes the body's angular velocity to the rates of roll, pitch and yaw, shape (3, 3)."""
+    """Return the matrix that maps the body's angular velocity to the rates of roll, pitch and yaw, shape (3, 3)."""
     roll, pitch = float(state[State.ROLL]), float(state[State.PITCH])
     sr, cr, sp, cp = sin(roll), cos(roll), sin(pitch), cos(pitch)
     return np.array([[1.0, sr * sp / cp, cr * sp / cp], [0.0, cr, -sr], [0.0, sr / cp, cr / cp]])

@@ -1,7 +1,7 @@
-"""Poses, twists and accelerations of sensors as measurements of a body's state, wherever the sensor is mounted.
+"""Conversion of poses, twists and accelerations of sensors to measurements of the body that carries them.
 
-Source of the rules: robot_localization. Two are exact here that are approximate there: the orientation of an IMU that
-is mounted turned, and the attitude by which gravity is taken away where the IMU has none.
+Source of the rules: robot_localization. Two computations that are approximate there are exact here: the orientation of
+an IMU that is mounted rotated, and the attitude with which gravity is removed if the IMU provides no orientation.
 """
 
 from __future__ import annotations
@@ -49,7 +49,10 @@ Used = tuple[bool, ...]
 
 
 class Reading(NamedTuple):
-    """Values of the state, their covariance, and which of them were measured: shapes (15,), (15, 15) and 15."""
+    """Values of the state, their covariance, and which of them were measured.
+
+    Their shapes are (15,) and (15, 15), with 15 flags.
+    """
 
     values: Vector
     covariance: Matrix
@@ -61,9 +64,9 @@ class PoseReader:
     """Converts the poses of one sensor.
 
     Args:
-        used: which of the 15 values of the state it gives; all but the first six are left out.
-        differential: whether the difference of two poses is taken, as a velocity.
-        relative: whether poses count from the first one.
+        used: which of the 15 values of the state the sensor provides; only the first six count.
+        differential: whether the difference of two successive poses is used, as a velocity.
+        relative: whether poses are relative to the first one.
         two_d: whether the body moves on a plane.
     """
 
@@ -75,21 +78,22 @@ class PoseReader:
     _last: tuple[Transform, Matrix, int] | None = None
 
     def forget(self) -> None:
-        """Take the next pose as the first one."""
+        """Treat the next pose as the first one."""
         self._first = self._last = None
 
     def read(self, pose: Transform, covariance: Matrix, sensor: Transform, time_ns: int) -> Reading | None:
         """Convert a pose.
 
         Args:
-            pose: of the body in the sensor's world.
+            pose: the pose of the body in the sensor's world.
             covariance: shape (6, 6).
-            sensor: the pose of the sensor's world in ours.
-            time_ns: when it was measured.
+            sensor: the pose of the sensor's world in the filter's world.
+            time_ns: the time of the measurement.
 
         Returns:
-            The reading without the values that are not numbers; None for the first pose of a differential sensor, and
-            for a pose without any number.
+            The reading without values that are not finite; None for the first pose of a differential sensor, and for a
+            pose
+            without any finite value.
         """
         turn = rotation_matrix(sensor[3:])
         return self._read(pose, covariance, sensor, turn, time_ns)
@@ -100,10 +104,10 @@ class PoseReader:
         """Convert the orientation of an IMU.
 
         Args:
-            orientation: of the IMU in the world.
+            orientation: the orientation of the IMU in the world.
             covariance: shape (6, 6).
             mounting: the pose of the IMU in the body.
-            time_ns: when it was measured.
+            time_ns: the time of the measurement.
         """
         body = quaternion_multiply(orientation, quaternion_inverse(mounting[3:]))
         _, _, yaw = rpy_from_quaternion(mounting[3:])
@@ -156,8 +160,8 @@ def read_twist(
         angular: rad/s, in the sensor's frame.
         covariance: shape (6, 6).
         mounting: the pose of the sensor in the body.
-        rates: angular velocity of the body as it is estimated, which moves a sensor that is not at its origin.
-        used: which of the 15 values it gives; all but the velocities are left out.
+        rates: the estimated angular velocity of the body, which moves a sensor mounted away from the body's origin.
+        used: which of the 15 values the sensor provides; only the velocities count.
         two_d: whether the body moves on a plane.
     """
     turn = rotation_matrix(mounting[3:])
@@ -182,8 +186,8 @@ def read_acceleration(
     Args:
         acceleration: m/s2, in the sensor's frame, without gravity.
         covariance: shape (3, 3).
-        mounting: the pose of the sensor in the body; only its rotation counts.
-        used: which of the 15 values it gives; all but the accelerations are left out.
+        mounting: the pose of the sensor in the body; only its rotation is used.
+        used: which of the 15 values the sensor provides; only the accelerations count.
         two_d: whether the body moves on a plane.
     """
     turn = rotation_matrix(mounting[3:])
@@ -199,7 +203,7 @@ def without_gravity(acceleration: Vector, orientation: Quaternion, gravity: floa
 
     Args:
         acceleration: m/s2, in the sensor's frame.
-        orientation: of the sensor in the world.
+        orientation: the orientation of the sensor in the world.
         gravity: m/s2.
     """
     rest: Vector = acceleration - rotation_matrix(orientation)[2] * gravity
@@ -220,7 +224,7 @@ def _finished(reading: Reading, used: Used, *, two_d: bool) -> Reading:
 
 
 def _known_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
-    """Return a pose with zeros and no rotation for values that are not finite, and which of the 15 values remain."""
+    """Return a pose whose non-finite values are replaced by identity, and which of the 15 values remain."""
     x, y, z = (value if isfinite(value) else 0.0 for value in pose[:3])
     known = _finite(used, POSITION, np.array(pose[:3]))
     if all(isfinite(value) for value in pose[3:]):
@@ -229,7 +233,7 @@ def _known_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
 
 
 def _finite(used: Used, part: slice, values: Vector) -> Used:
-    """Which values are used, without those that are not finite."""
+    """Return which values are used and finite."""
     flags = list(used)
     flags[part] = [bool(value) for value in np.array(used[part]) & np.isfinite(values)]
     return tuple(flags)
@@ -241,7 +245,7 @@ def _numbers(values: Vector) -> Vector:
 
 
 def _turned(used: Used, known: Used, turn: Matrix, part: slice) -> Used:
-    """Which components are known in our axes when some are known in the sensor's."""
+    """Return which components are known in the body's axes when only some are known in the sensor's."""
     lost = tuple(each and not here for each, here in zip(used, known, strict=True))
     return tuple(
         bool(here and not gone)
@@ -250,7 +254,7 @@ def _turned(used: Used, known: Used, turn: Matrix, part: slice) -> Used:
 
 
 def _touched(flags: Used, turn: Matrix, part: slice) -> NDArray[np.bool_]:
-    """Which components in our axes depend on one of the flagged ones in the sensor's."""
+    """Return which components in the body's axes depend on a flagged component in the sensor's axes."""
     columns = turn[:, np.array(flags[part], dtype=bool)]
     touched: NDArray[np.bool_] = np.sum(columns * columns, axis=1) >= _LEAST * _LEAST
     return touched

@@ -1,1 +1,1 @@
-"""Controllers that follow paths, and the checkers of goal and progress."""
+"""Controllers that follow paths, and checkers of the goal and of progress."""

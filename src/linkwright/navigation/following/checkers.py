@@ -1,4 +1,4 @@
-"""Checkers of the goal and of progress, as nav2's controller_server has them.
+"""Goal checkers and progress checkers, as in nav2's controller_server.
 
 Source: nav2_controller's goal checkers and progress checkers, with their parameters.
 """
@@ -13,22 +13,22 @@ from linkwright.navigation.following.follower import Pose, Velocity, wrapped
 
 
 class GoalChecker(ABC):
-    """Decides whether a goal is reached."""
+    """The base class of checkers that decide whether a goal is reached."""
 
     xy_tolerance: float = 0.25
     """In metres."""
 
     @abstractmethod
     def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
-        """Whether the goal is reached; all in one frame."""
+        """Return whether the goal is reached; all arguments are in one frame."""
 
     def begin(self) -> None:  # noqa: B027 - not all keep something
-        """Reset for another goal."""
+        """Reset for a new goal."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SimpleGoalParameters:
-    """Parameters of `SimpleGoalChecker`; metres and radians."""
+    """Parameters of `SimpleGoalChecker`, in metres and radians."""
 
     xy_goal_tolerance: float = 0.25
     yaw_goal_tolerance: float = 0.25
@@ -36,7 +36,10 @@ class SimpleGoalParameters:
 
 
 class SimpleGoalChecker(GoalChecker):
-    """Place and heading within tolerances; once the place was reached, the heading alone counts (`stateful`)."""
+    """A goal checker with tolerances of position and heading.
+
+    If `stateful` is set, only the heading is checked once the position was reached.
+    """
 
     def __init__(self, parameters: SimpleGoalParameters | None = None) -> None:
         self._parameters = parameters or SimpleGoalParameters()
@@ -44,11 +47,11 @@ class SimpleGoalChecker(GoalChecker):
         self._is_there = False
 
     def begin(self) -> None:
-        """Reset for another goal."""
+        """Reset for a new goal."""
         self._is_there = False
 
     def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
-        """Whether the goal is reached."""
+        """Return whether the goal is reached."""
         if not self._is_there:
             if hypot(pose[0] - goal[0], pose[1] - goal[1]) > self._parameters.xy_goal_tolerance:
                 return False
@@ -58,21 +61,21 @@ class SimpleGoalChecker(GoalChecker):
 
 @dataclass(frozen=True, kw_only=True)
 class StoppedGoalParameters(SimpleGoalParameters):
-    """Parameters of `StoppedGoalChecker`; metres, radians, seconds."""
+    """Parameters of `StoppedGoalChecker`, in metres, radians and seconds."""
 
     trans_stopped_velocity: float = 0.25
     rot_stopped_velocity: float = 0.25
 
 
 class StoppedGoalChecker(SimpleGoalChecker):
-    """As `SimpleGoalChecker`, and the robot must have stopped."""
+    """A `SimpleGoalChecker` that also requires the robot to have stopped."""
 
     def __init__(self, parameters: StoppedGoalParameters | None = None) -> None:
         self._still = parameters or StoppedGoalParameters()
         super().__init__(self._still)
 
     def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
-        """Whether the goal is reached."""
+        """Return whether the goal is reached."""
         return (
             super().is_reached(pose, goal, velocity)
             and hypot(velocity.x, velocity.y) <= self._still.trans_stopped_velocity
@@ -82,7 +85,7 @@ class StoppedGoalChecker(SimpleGoalChecker):
 
 @dataclass(frozen=True, kw_only=True)
 class ProgressParameters:
-    """Parameters of `ProgressChecker`, nav2's SimpleProgressChecker; metres and seconds."""
+    """Parameters of `ProgressChecker` (nav2's SimpleProgressChecker), in metres and seconds."""
 
     required_movement_radius: float = 0.5
     movement_time_allowance: float = 10.0
@@ -90,13 +93,13 @@ class ProgressParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class PoseProgressParameters(ProgressParameters):
-    """Parameters of nav2's PoseProgressChecker: rotation counts as progress, too; radians."""
+    """Parameters of nav2's PoseProgressChecker, in radians: rotation also counts as progress."""
 
     required_movement_angle: float = 0.5
 
 
 class ProgressChecker:
-    """Detects that a robot makes no progress: it must move or turn by a minimum within a time."""
+    """Detects that a robot makes no progress: it must move or turn by a minimum within a time limit."""
 
     def __init__(self, parameters: ProgressParameters | None = None) -> None:
         self._parameters = parameters or ProgressParameters()
@@ -104,11 +107,11 @@ class ProgressChecker:
         self._since_ns = 0
 
     def begin(self) -> None:
-        """Reset for another goal."""
+        """Reset for a new goal."""
         self._from = None
 
     def gets_on(self, pose: Pose, time_ns: int) -> bool:
-        """Whether the robot made progress within the time."""
+        """Return whether the robot made enough progress within the time limit."""
         if self._from is None or self._has_moved(self._from, pose):
             self._from, self._since_ns = pose, time_ns
             return True

@@ -1,4 +1,4 @@
-"""The base class of path followers, their input in each cycle, and geometry that they share."""
+"""The base class of path followers, their input in each cycle, and shared geometry."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Velocity(NamedTuple):
     """A planar velocity of the robot, in its own frame.
 
     Attributes:
-        x: forward, in m/s.
-        y: to the left, in m/s.
-        yaw: to the left, in rad/s.
+        x: the velocity forward, in m/s.
+        y: the velocity to the left, in m/s.
+        yaw: the counterclockwise angular velocity, in rad/s.
     """
 
     x: float = 0.0
@@ -36,16 +36,16 @@ STILL: Final = Velocity()
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Situation:
-    """The input of a cycle; all in the frame of the costmap.
+    """The input of a control cycle, in the frame of the costmap.
 
     Attributes:
-        pose: of the robot.
-        velocity: which the robot has.
-        path: the remaining path, of shape (poses, 3): x, y (metres) and yaw (radians); two poses at least.
-        costmap: around the robot.
-        footprint: of the robot, in its own frame.
-        period: of the cycles, in seconds.
-        xy_tolerance: how close to its end the path counts as driven, in metres.
+        pose: the pose of the robot.
+        velocity: the current velocity of the robot.
+        path: the remaining path, of shape (poses, 3): x, y (metres) and yaw (radians); at least two poses.
+        costmap: the costmap around the robot.
+        footprint: the footprint of the robot, in its own frame.
+        period: the period of the cycles, in seconds.
+        xy_tolerance: the distance from the end within which the path counts as completed, in metres.
     """
 
     pose: Pose
@@ -58,21 +58,21 @@ class Situation:
 
 
 class FollowingError(Exception):
-    """No valid velocity exists; the message gives the reason."""
+    """Raised when no valid velocity exists; the message gives the reason."""
 
 
 class Follower(ABC):
-    """Finds velocities that drive a robot along a path."""
+    """The base class of controllers that compute velocities to drive a robot along a path."""
 
     def begin(self) -> None:  # noqa: B027 - most keep nothing from the path before
-        """Reset for another path."""
+        """Reset for a new path."""
 
     @abstractmethod
     def velocity(self, situation: Situation) -> Velocity:
-        """The velocity for the next cycle.
+        """Return the velocity for the next cycle.
 
         Raises:
-            FollowingError: none can be driven.
+            FollowingError: there is no valid velocity.
         """
 
     @abstractmethod
@@ -80,25 +80,25 @@ class Follower(ABC):
         """Limit the speed; 0 removes the limit.
 
         Args:
-            speed: in m/s, or in per cent of the highest.
-            is_percentage: which of both.
+            speed: the limit in m/s, or in per cent of the maximum speed.
+            is_percentage: whether `speed` is in per cent.
         """
 
 
 def limited(highest: float, speed: float, *, is_percentage: bool) -> float:
-    """The greatest speed under a limit; see `Follower.limit_speed`."""
+    """Return the maximum speed under a limit; see `Follower.limit_speed`."""
     if not speed > 0.0:
         return highest
     return highest * min(speed, 100.0) / 100.0 if is_percentage else min(highest, speed)
 
 
 def wrapped(angle: float) -> float:
-    """An angle in (-pi, pi]."""
+    """Return an angle wrapped to (-pi, pi]."""
     return float(np.arctan2(np.sin(angle), np.cos(angle)))
 
 
 def in_frame_of(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Points, of shape (..., 2), in the frame of a robot at a pose: x forward, y to the left."""
+    """Transform points, of shape (..., 2), to the frame of a robot at a pose: x forward, y to the left."""
     x, y, yaw = pose
     cosine, sine = np.cos(yaw), np.sin(yaw)
     dx, dy = points[..., 0] - x, points[..., 1] - y
@@ -107,17 +107,17 @@ def in_frame_of(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def lengths_along(path: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The distance along a path of each pose from its beginning, in metres; of shape (poses,)."""
+    """Return the distance of each pose from the beginning of a path along the path, in metres, of shape (poses,)."""
     steps = np.hypot(*np.diff(path[:, :2], axis=0).T)
     lengths: NDArray[np.float64] = np.concatenate(([0.0], np.cumsum(steps)))
     return lengths
 
 
 def motions(pose: Pose, velocities: NDArray[np.float64], times: NDArray[Any]) -> NDArray[np.float64]:
-    """The poses of a robot with a constant velocity: exactly, on circles.
+    """Return the poses of a robot that moves at constant velocity: exactly, on circular arcs.
 
     Args:
-        pose: at the beginning.
+        pose: the initial pose.
         velocities: along x and y (m/s) and about z (rad/s) in the robot's frame, of shape (velocities, 3).
         times: the times in seconds, of shape (times,).
 

@@ -13,12 +13,13 @@ from linkwright.navigation.following.follower import lengths_along
 class FollowedPath:
     """A path, and the robot's progress on it.
 
-    The place of the robot is looked for only so far ahead of where it was, so that a path that crosses itself is
-    driven in its order.
+    The robot is searched for only within a limited distance ahead of its last position, so a path that crosses itself
+    is
+    followed in order.
 
     Args:
-        poses: of shape (poses, 3): x, y (metres) and yaw (radians); two at least.
-        search: how far along the path the robot's place is looked for, in metres.
+        poses: of shape (poses, 3): x, y (metres) and yaw (radians); at least two.
+        search: how far along the path the robot is searched for, in metres.
     """
 
     def __init__(self, poses: NDArray[np.float64], search: float) -> None:
@@ -28,18 +29,21 @@ class FollowedPath:
         self._index = 0
 
     def progress(self, x: float, y: float) -> None:
-        """Update the progress by the robot's position, in metres."""
+        """Update the progress from the robot's position, in metres."""
         limit = int(np.searchsorted(self._lengths, self._lengths[self._index] + self._search, side="right"))
         near = self.poses[self._index : max(limit, self._index + 1), :2]
         self._index += int(np.argmin((near[:, 0] - x) ** 2 + (near[:, 1] - y) ** 2))
 
     def ahead(self, distance: float) -> NDArray[np.float64]:
-        """The poses ahead of the robot, up to a distance along the path in metres; two at least."""
+        """Return the poses ahead of the robot up to a distance along the path in metres.
+
+        There are at least two.
+        """
         end = int(np.searchsorted(self._lengths, self._lengths[self._index] + distance, side="right"))
         first = min(self._index, len(self.poses) - 2)
         return self.poses[first : max(end, first + 2)]
 
     def remaining(self, x: float, y: float) -> float:
-        """The distance along the path from a position to its end, in metres."""
+        """Return the distance along the path from a position to the end of the path, in metres."""
         px, py = self.poses[self._index, :2]
         return hypot(px - x, py - y) + float(self._lengths[-1] - self._lengths[self._index])

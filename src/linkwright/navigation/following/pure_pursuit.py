@@ -1,4 +1,6 @@
-"""Regulated pure pursuit: follow an arc to a point of the path ahead, slower in curves and near obstacles.
+"""Regulated pure pursuit, a path follower.
+
+It follows an arc to a point on the path ahead, and slows down in curves and near obstacles.
 
 Source: Macenski et al., "Regulated Pure Pursuit for Robot Path Tracking" (2023), and the parameters of
 nav2_regulated_pure_pursuit_controller.
@@ -30,7 +32,7 @@ from linkwright.navigation.following.follower import (
 
 @dataclass(frozen=True, kw_only=True)
 class PurePursuitParameters:
-    """The parameters, under nav2's names and with its defaults; metres, seconds, radians."""
+    """Parameters of `RegulatedPurePursuit`, with nav2's names and defaults, in metres, seconds and radians."""
 
     desired_linear_vel: float = 0.5
     lookahead_dist: float = 0.6
@@ -59,7 +61,7 @@ class PurePursuitParameters:
 
 
 class RegulatedPurePursuit(Follower):
-    """Follows paths by regulated pure pursuit."""
+    """A follower that uses regulated pure pursuit."""
 
     def __init__(self, parameters: PurePursuitParameters | None = None) -> None:
         self.parameters = parameters or PurePursuitParameters()
@@ -70,7 +72,7 @@ class RegulatedPurePursuit(Follower):
         self._top = limited(self.parameters.desired_linear_vel, speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
-        """The velocity for the next cycle; see `Follower.velocity`."""
+        """Return the velocity for the next cycle; see `Follower.velocity`."""
         parameters = self.parameters
         seen = in_frame_of(situation.pose, situation.path[:, :2])
         cusp = _distance_to_cusp(seen) if parameters.allow_reversing else len(seen)
@@ -121,7 +123,7 @@ class RegulatedPurePursuit(Follower):
         )
 
     def _speed(self, curvature: float, seen: NDArray[np.float64], situation: Situation) -> float:
-        """The speed, in m/s."""
+        """Return the speed, in m/s."""
         parameters = self.parameters
         speed = self._top
         if parameters.use_regulated_linear_velocity_scaling:
@@ -136,7 +138,10 @@ class RegulatedPurePursuit(Follower):
         return speed
 
     def _speed_near_obstacles(self, pose: Pose, costmap: Costmap, footprint: Footprint) -> float:
-        """The speed within `cost_scaling_dist` of an obstacle, whose distance follows from the inflated cost."""
+        """Return the speed limit near obstacles, from the distance that the inflated cost implies.
+
+        It applies within `cost_scaling_dist` of an obstacle.
+        """
         parameters = self.parameters
         cost = int(costmap.cost_at(np.array(pose[:2])))
         if cost in (FREE, UNKNOWN):
@@ -150,7 +155,10 @@ class RegulatedPurePursuit(Follower):
         return self._top * parameters.cost_scaling_gain * distance / parameters.cost_scaling_dist
 
     def _check(self, command: Velocity, carrot_distance: float, situation: Situation) -> None:
-        """Raise where the footprint meets an obstacle within the look-ahead time, before the carrot."""
+        """Raise `FollowingError` if there is an obstacle ahead.
+
+        The footprint is checked within the look-ahead time and up to the carrot.
+        """
         limit = self.parameters.max_allowed_time_to_collision_up_to_carrot
         if abs(command.x) > 0.0:
             limit = min(limit, carrot_distance / abs(command.x))
@@ -159,7 +167,7 @@ class RegulatedPurePursuit(Follower):
 
 
 def carrot_on(seen: NDArray[np.float64], lookahead: float) -> NDArray[np.float64]:
-    """The point of a path at a distance from the robot, interpolated; the end of the path where that is closer.
+    """Return the interpolated point of a path at a distance from the robot, or the end of a shorter path.
 
     Args:
         seen: the points in the robot's frame, of shape (points, 2), in metres.
@@ -180,26 +188,32 @@ def carrot_on(seen: NDArray[np.float64], lookahead: float) -> NDArray[np.float64
 
 
 def curvature_to(point: NDArray[np.float64]) -> float:
-    """The curvature of the arc from the robot, which looks along x, to a point: 2 y / (x^2 + y^2), in 1/m."""
+    """Return the curvature, in 1/m, of the arc from the robot to a point.
+
+    The robot faces along x, so the curvature is 2 y / (x^2 + y^2).
+    """
     squared = float(point @ point)
     return 2.0 * float(point[1]) / squared if squared > _NOWHERE else 0.0
 
 
 def speed_in_curve(speed: float, curvature: float, least_radius: float) -> float:
-    """The speed in a curve, reduced in proportion where its radius is below the least, in metres."""
+    """Return the speed in a curve, reduced if the curve is narrow.
+
+    Below `least_radius`, in metres, the speed is proportional to the radius.
+    """
     radius = 1.0 / abs(curvature) if curvature else np.inf
     return speed * min(1.0, float(radius) / least_radius) if least_radius > 0.0 else speed
 
 
 def turning_speed(angle: float, now: float, period: float, highest: float, acceleration: float) -> float:
-    """The angular velocity in rad/s for a rotation by an angle, from which it can be stopped there.
+    """Return an angular velocity, in rad/s, from which a rotation by an angle can be stopped in time.
 
     Args:
         angle: the remaining angle, in radians.
-        now: how fast the robot turns, in rad/s.
-        period: of the cycles, in seconds.
-        highest: speed, in rad/s.
-        acceleration: up and down, in rad/s^2.
+        now: the current angular velocity, in rad/s.
+        period: the period of the cycles, in seconds.
+        highest: the maximum angular velocity, in rad/s.
+        acceleration: the limit for speeding up and slowing down, in rad/s^2.
     """
     wanted = copysign(min(highest, sqrt(2.0 * acceleration * abs(angle))), angle)
     if abs(wanted) * period > abs(angle):
@@ -209,7 +223,7 @@ def turning_speed(angle: float, now: float, period: float, highest: float, accel
 
 
 def is_free(situation: Situation, command: Velocity, seconds: float) -> bool:
-    """Whether the footprint stays free of obstacles for a time at a constant velocity."""
+    """Return whether the footprint stays free of obstacles for a time at a constant velocity."""
     _, circumscribed = radii(situation.footprint)
     fastest = hypot(command.x, command.y) + abs(command.yaw) * circumscribed
     if fastest <= 0.0:
@@ -222,7 +236,7 @@ def is_free(situation: Situation, command: Velocity, seconds: float) -> bool:
 
 
 def _distance_to_cusp(seen: NDArray[np.float64]) -> int:
-    """The index of the first point at which the path reverses, or that of its end."""
+    """Return the index of the first point at which the path reverses, or of its last point."""
     steps = np.diff(seen, axis=0)
     back = np.flatnonzero((steps[:-1] * steps[1:]).sum(axis=1) < 0.0)
     return int(back[0]) + 1 if len(back) else len(seen) - 1

@@ -1,4 +1,4 @@
-"""Rotation shim: turns the robot on the spot towards a new path before another follower takes over.
+"""Rotation shim: rotates the robot in place towards a new path before another follower takes over.
 
 Source: nav2_rotation_shim_controller, with its parameters.
 """
@@ -23,7 +23,7 @@ from linkwright.navigation.following.pure_pursuit import is_free, turning_speed
 
 @dataclass(frozen=True, kw_only=True)
 class RotationShimParameters:
-    """The parameters, under nav2's names and with its defaults; metres, seconds, radians."""
+    """Parameters of `RotationShim`, with nav2's names and defaults, in metres, seconds and radians."""
 
     angular_dist_threshold: float = 0.785
     angular_disengage_threshold: float = 0.3925
@@ -34,11 +34,11 @@ class RotationShimParameters:
 
 
 class RotationShim(Follower):
-    """Rotates first, then lets another follower drive.
+    """A follower that first rotates the robot, then lets another follower drive.
 
     Args:
-        primary: the other one.
-        parameters: see there.
+        primary: the other follower.
+        parameters: the parameters; see `RotationShimParameters`.
     """
 
     def __init__(self, primary: Follower, parameters: RotationShimParameters | None = None) -> None:
@@ -48,7 +48,7 @@ class RotationShim(Follower):
         self._turns = False
 
     def begin(self) -> None:
-        """Reset for another path."""
+        """Reset for a new path."""
         self._is_new = True
         self._primary.begin()
 
@@ -57,7 +57,7 @@ class RotationShim(Follower):
         self._primary.limit_speed(speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
-        """The velocity for the next cycle; see `Follower.velocity`."""
+        """Return the velocity for the next cycle; see `Follower.velocity`."""
         parameters = self._parameters
         seen = in_frame_of(situation.pose, situation.path[:, :2])
         lengths = lengths_along(situation.path)

@@ -1,7 +1,7 @@
-"""Following paths by sampling velocities: each is simulated for some time, and the best is commanded.
+"""Path following by sampling velocities: each is simulated for some time, and the best one is commanded.
 
-It replaces both of nav2's sampling controllers, DWB and MPPI: limits and times have the names of either; the rating of
-the sampled motions is our own.
+It replaces both of nav2's sampling controllers, DWB and MPPI. Limits and times use the parameter names of either; the
+scoring of the sampled motions is Linkwright's own.
 
 Source: Fox, Burgard, Thrun, "The Dynamic Window Approach to Collision Avoidance" (1997).
 """
@@ -33,13 +33,13 @@ _LEAST, _MOST, _CHANGE = Velocity(0.0, 0.0, -1.0), Velocity(0.26, 0.0, 1.0), Vel
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """Limits of velocity and acceleration; m/s, rad/s, m/s^2, rad/s^2.
+    """Limits of velocity and acceleration, in m/s, rad/s, m/s^2 and rad/s^2.
 
     Attributes:
-        least: velocities along x, along y and about z, at the least.
-        most: at the most.
-        acceleration: of each, upwards.
-        deceleration: of each, towards zero; positive.
+        least: the minimum velocities along x, along y and about z.
+        most: the maximum velocities along x, along y and about z.
+        acceleration: the maximum acceleration of each.
+        deceleration: the maximum deceleration of each; positive.
     """
 
     least: Velocity = _LEAST
@@ -53,14 +53,14 @@ class SamplingParameters:
     """Settings of the sampling.
 
     Attributes:
-        limits: of the robot.
-        samples: how many velocities along x, along y and about z are tried.
-        seconds: how far each motion is simulated.
-        steps: in how many steps.
-        off_path: the cost of a metre beside the path, in metres of the path.
-        off_heading: the cost of a radian away from the path ahead.
+        limits: the limits of the robot.
+        samples: the number of velocities sampled along x, along y and about z.
+        seconds: how long each motion is simulated.
+        steps: the number of simulation steps.
+        off_path: the cost per metre of distance from the path, in metres of the path.
+        off_heading: the cost per radian of deviation from the direction of the path ahead.
         near_obstacle: the weight of the costmap's highest cost.
-        turn_first: the robot turns on the spot while the path leads away by more than this, in radians.
+        turn_first: the robot rotates in place while the path's direction differs by more than this, in radians.
     """
 
     limits: Limits = field(default_factory=Limits)
@@ -80,7 +80,7 @@ _LOOK_AHEAD = 0.35
 
 
 class SamplingFollower(Follower):
-    """Follows paths by sampling velocities."""
+    """A follower that samples velocities."""
 
     def __init__(self, parameters: SamplingParameters | None = None) -> None:
         self.parameters = parameters or SamplingParameters()
@@ -88,7 +88,7 @@ class SamplingFollower(Follower):
         self._turns = False
 
     def begin(self) -> None:
-        """Reset for another path."""
+        """Reset for a new path."""
         self._turns = False
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
@@ -96,7 +96,7 @@ class SamplingFollower(Follower):
         self._top = limited(self.parameters.limits.most.x, speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
-        """The velocity for the next cycle; see `Follower.velocity`."""
+        """Return the velocity for the next cycle; see `Follower.velocity`."""
         x, y, yaw = situation.pose
         goal = situation.path[-1]
         if hypot(goal[0] - x, goal[1] - y) < situation.xy_tolerance:
@@ -113,7 +113,10 @@ class SamplingFollower(Follower):
         return atan2(float(seen[index, 1]), float(seen[index, 0]))
 
     def _checked_turn(self, angle: float, situation: Situation) -> Velocity:
-        """Rotate in place and stop at an angle."""
+        """Return the velocity to rotate in place by an angle.
+
+        Raises `FollowingError` if an obstacle is in the way.
+        """
         limits, now = self.parameters.limits, situation.velocity
         wanted = Velocity(
             _braked(now.x, limits.deceleration.x, situation.period),
@@ -127,7 +130,10 @@ class SamplingFollower(Follower):
         return wanted
 
     def _best(self, situation: Situation) -> Velocity:
-        """The best collision-free velocity; footprints are checked from the best one on."""
+        """Return the best collision-free velocity.
+
+        Footprints are checked in the order of the scores, best first.
+        """
         parameters = self.parameters
         candidates = self._candidates(situation)
         ways = motions(situation.pose, candidates, np.linspace(0.0, parameters.seconds, parameters.steps + 1)[1:])
@@ -143,7 +149,7 @@ class SamplingFollower(Follower):
         raise FollowingError("every velocity that was tried leads into an obstacle")
 
     def _candidates(self, situation: Situation) -> NDArray[np.float64]:
-        """Velocities that can be reached within the simulated time, of shape (candidates, 3)."""
+        """Return velocities that can be reached within the simulated time, of shape (candidates, 3)."""
         parameters, limits = self.parameters, self.parameters.limits
         highest = (min(limits.most.x, self._top), limits.most.y, limits.most.yaw)
         axes = []
@@ -157,7 +163,10 @@ class SamplingFollower(Follower):
         return candidates
 
     def _reachable(self, wanted: Velocity, situation: Situation) -> Velocity:
-        """The velocity of the next cycle towards another one; all axes cover the same part of the way."""
+        """Return the next cycle's velocity on the way to another one.
+
+        All axes complete the same share of their change.
+        """
         limits, now, period = self.parameters.limits, situation.velocity, situation.period
         share = 1.0
         for before, after, faster, slower in zip(now, wanted, limits.acceleration, limits.deceleration, strict=True):
@@ -169,7 +178,7 @@ class SamplingFollower(Follower):
     def _judged(
         self, ways: NDArray[np.float64], costs: NDArray[np.float64], situation: Situation
     ) -> NDArray[np.float64]:
-        """The costs of motions, in metres of the path, of shape (motions,)."""
+        """Return the costs of motions, in metres of the path, of shape (motions,)."""
         parameters = self.parameters
         path = situation.path
         lengths = lengths_along(path)
@@ -193,7 +202,7 @@ class SamplingFollower(Follower):
 
 
 def _braked(speed: float, deceleration: float, period: float) -> float:
-    """The speed after a cycle of braking."""
+    """Return the speed after a cycle of braking."""
     return float(np.sign(speed)) * max(0.0, abs(speed) - deceleration * period)
 
 

@@ -1,4 +1,4 @@
-"""Distance fields: the distance of each cell from the nearest marked one."""
+"""Distance fields: the distance of each cell from the nearest marked cell."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from linkwright.navigation.grids.library import load_scipy
 
 
 def distance_field(marked: NDArray[np.bool_], resolution: float) -> NDArray[np.float64]:
-    """Return the distances of cells from the nearest marked one, from centre to centre.
+    """Return the distance from the centre of each cell to the centre of the nearest marked cell.
 
     Args:
         marked: the marked cells, of shape (rows, columns).
         resolution: the side of a cell, in metres.
 
     Returns:
-        Metres, of the same shape, 0 in marked cells; infinite if no cell is marked.
+        Distances in metres, of the same shape; 0 in marked cells, infinite if no cell is marked.
 
     Raises:
         LinkwrightError: NAV101, SciPy is not installed.

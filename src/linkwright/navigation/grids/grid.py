@@ -20,12 +20,13 @@ class Grid:
     """A grid of square cells, and its pose in a frame.
 
     Args:
-        cells: their values, of shape (rows, columns): ``cells[row, column]``, rows along y. In messages, files and
-            costmaps they have their own meanings and types (int8 for nav_msgs/OccupancyGrid, uint8 for costs).
-        resolution: side of a cell, in metres.
-        x: of the outer corner of cell (0, 0) in the frame of the grid, in metres.
-        y: of that corner.
-        yaw: by which the rows are turned about that corner, in radians.
+        cells: the values, of shape (rows, columns): ``cells[row, column]``, rows along y. Their type and meaning depend
+            on
+            the use (int8 for nav_msgs/OccupancyGrid, uint8 for costs).
+        resolution: the side of a cell, in metres.
+        x: the x coordinate of the outer corner of cell (0, 0) in the frame of the grid, in metres.
+        y: the y coordinate of that corner, in metres.
+        yaw: the rotation of the rows about that corner, in radians.
     """
 
     cells: NDArray[Any]
@@ -45,7 +46,7 @@ class Grid:
         return int(self.cells.shape[1])
 
     def cells_of(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
-        """The cells that contain points; they may be outside of the grid.
+        """Return the cells that contain points; the cells may be outside the grid.
 
         Args:
             points: of shape (..., 2), x and y in the frame of the grid, in metres.
@@ -62,7 +63,7 @@ class Grid:
         return indices
 
     def centres_of(self, indices: NDArray[np.integer[Any]]) -> NDArray[np.float64]:
-        """The centres of cells.
+        """Return the centres of cells.
 
         Args:
             indices: rows and columns, of shape (..., 2).
@@ -79,7 +80,7 @@ class Grid:
         return points
 
     def has(self, indices: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
-        """Which cells are inside of the grid, of shape (...) for rows and columns of shape (..., 2)."""
+        """Return which cells are inside the grid, of shape (...), for rows and columns of shape (..., 2)."""
         rows, columns = indices[..., 0], indices[..., 1]
         inside: NDArray[np.bool_] = (rows >= 0) & (rows < self.rows) & (columns >= 0) & (columns < self.columns)
         return inside

@@ -1,4 +1,4 @@
-"""The library SciPy, which the extra ``navigation`` brings."""
+"""Import of SciPy, which the extra ``navigation`` installs."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from linkwright.diagnostics import missing_extra
 
 @cache
 def load_scipy(part: str) -> Any:
-    """Import a part of SciPy, such as ``ndimage``; it has no types.
+    """Import a part of SciPy, such as ``ndimage``, as an untyped module.
 
     Raises:
-        LinkwrightError: NAV101 it is not installed.
+        LinkwrightError: NAV101, SciPy is not installed.
     """
     try:
         return import_module(f"scipy.{part}")

@@ -1,4 +1,4 @@
-"""Grids as messages: nav_msgs/OccupancyGrid both ways."""
+"""Conversion between grids and nav_msgs/OccupancyGrid messages."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from linkwright.navigation.grids.grid import Grid
 
 
 class BadGridError(ValueError):
-    """A message is not a valid grid; the text gives the reason."""
+    """Raised when a message is not a valid grid; the text gives the reason."""
 
 
 def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
     """Convert a grid to a nav_msgs/OccupancyGrid.
 
     Args:
-        grid: cells of per cent, or `UNKNOWN`.
+        grid: the grid, whose cells are per cent or `UNKNOWN`.
         frame: the frame of the grid.
-        stamp: the builtin_interfaces/Time of the message, and the time when the map was loaded.
+        stamp: the builtin_interfaces/Time of the message, and the time at which the map was loaded.
     """
     message = get_message("nav_msgs/msg/OccupancyGrid")()
     message.header.frame_id = frame
@@ -38,10 +38,10 @@ def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
 
 
 def grid_of(message: Any) -> Grid:
-    """Convert a nav_msgs/OccupancyGrid to a grid with cells of its own, of type int8.
+    """Convert a nav_msgs/OccupancyGrid to a grid with its own int8 cells.
 
     Raises:
-        BadGridError: it has no cells, or another number than its size requires, or no resolution.
+        BadGridError: the message has no cells, no resolution, or a number of cells that does not match its size.
     """
     info = message.info
     cells = np.array(np.frombuffer(message.data, np.int8))
@@ -52,7 +52,7 @@ def grid_of(message: Any) -> Grid:
     turned = info.origin.orientation
     return Grid(
         cells=cells.reshape(info.height, info.width),
-        resolution=float(str(np.float32(info.resolution))),  # 0.05 comes over the wire as 0.0500000007
+        resolution=float(str(np.float32(info.resolution))),  # As float32, 0.05 arrives as 0.0500000007.
         x=info.origin.position.x,
         y=info.origin.position.y,
         yaw=rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2],

@@ -1,4 +1,4 @@
-"""Counting the rays that end in each cell of a grid or pass through it."""
+"""Counts of the rays that end in each cell of a grid or pass through it."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ def ray_counts(
     ends: NDArray[np.integer[Any]],
     hits: NDArray[np.bool_] | None = None,
 ) -> tuple[Counts, Counts]:
-    """Count the rays from a cell that end in each cell, and those that pass through it.
+    """Count the rays that end in each cell, and those that pass through it.
 
     Args:
-        shape: the rows and columns of the grid; cells outside are ignored.
-        start: the row and column, of shape (2,), or those of each ray, of shape (rays, 2).
+        shape: the rows and columns of the grid; cells outside it are ignored.
+        start: the row and column of the common start, of shape (2,), or of each ray's start, of shape (rays, 2).
         ends: the row and column of each ray's end, of shape (rays, 2).
-        hits: whether each ray hit something, of shape (rays,); None for all. The others pass through their last cell
-            too.
+        hits: whether each ray hit something, of shape (rays,); None if all did. A ray without a hit passes through its
+            last cell, too.
 
     Returns:
         Counts of hits and of passes, each of the given shape.

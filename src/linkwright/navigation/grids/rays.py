@@ -17,15 +17,15 @@ _OUTSIDE: Final = -1.0
 
 
 def cells_on_lines(starts: NDArray[np.integer[Any]], ends: NDArray[np.integer[Any]]) -> tuple[Cells, Cells]:
-    """The cells on straight lines between cells, as Bresenham's algorithm draws them, for all lines at once.
+    """Return the cells on straight lines between cells, by Bresenham's algorithm for all lines at a time.
 
     Args:
-        starts: rows and columns, of shape (lines, 2), or (2,) where all lines start at one cell.
-        ends: of shape (lines, 2).
+        starts: rows and columns, of shape (lines, 2), or (2,) if all lines start at one cell.
+        ends: rows and columns, of shape (lines, 2).
 
     Returns:
-        Rows and columns of shape (n, 2), line after line from start to end, neither left out; and of shape (n,) the
-        number of the line that each belongs to.
+        Rows and columns of shape (n, 2), line by line, including both ends; and the index of the line that each cell
+        belongs to, of shape (n,).
     """
     ends = np.asarray(ends, np.int64).reshape(-1, 2)
     starts = np.broadcast_to(np.asarray(starts, np.int64), ends.shape)
@@ -34,16 +34,17 @@ def cells_on_lines(starts: NDArray[np.integer[Any]], ends: NDArray[np.integer[An
     line: Cells = np.repeat(np.arange(len(ends)), steps + 1)
     first: Cells = np.concatenate(([0], np.cumsum(steps + 1)[:-1])) if len(ends) else steps
     step: Cells = np.arange(len(line)) - first[line]
-    # Integer rounding, so that a line is the same on every machine.
+    # Round with integers so that a line is the same on every machine.
     length: Cells = np.maximum(steps[line], 1)[:, None]
     cells: Cells = starts[line] + (2 * step[:, None] * delta[line] + length) // (2 * length)
     return cells, line
 
 
 def ranges(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.float64], limit: float) -> Any:
-    """Return the ranges of rays up to the first occupied cell.
+    """Return the distance to the first occupied cell along each ray.
 
-    Each ray advances by the distance to the nearest occupied cell, from a distance field, until that is nearly 0.
+    Each ray advances by the distance to the nearest occupied cell, from a distance field, until that distance is nearly
+    0.
 
     Args:
         distances: the metres to the nearest occupied cell (see `distance_field`), 0 in occupied cells.
@@ -52,16 +53,18 @@ def ranges(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.floa
         limit: the range of rays that hit nothing or leave the grid, in metres.
 
     Returns:
-        Metres, of shape (...), exact to about half a cell.
+        Ranges in metres, of shape (...), accurate to about half a cell.
     """
     shape = np.broadcast_shapes(points.shape[:-1], angles.shape)
     c, s, size = cos(distances.yaw), sin(distances.yaw), distances.resolution
     x, y, turned = points[..., 0] - distances.x, points[..., 1] - distances.y, angles - distances.yaw
-    # In cells of the grid with a rim around it, in which rays leave; single precision does for half a cell.
+    # In cells of the grid with a border, where rays leave the grid. Single precision suffices for half a cell.
     column, row = _flat((c * x + s * y) / size + 1.0, shape), _flat((c * y - s * x) / size + 1.0, shape)
     along, across = _flat(np.cos(turned), shape), _flat(np.sin(turned), shape)
     field = np.pad((distances.cells / size).astype(np.float32), 1, constant_values=_OUTSIDE)
-    # No farther than the rim of the cell that the distance is to, and never less than half a cell, or nothing moves.
+    # Advance no farther than the border of the cell to which the distance was measured, and always at least half a
+    # cell;
+    # otherwise rays could stop.
     ways = np.where(field > 0.0, np.maximum(field - np.float32(0.75), np.float32(0.5)), field).ravel()
     most = np.float32(limit / size)
     travelled: NDArray[np.float32] = np.full(row.size, most)
@@ -86,6 +89,6 @@ def _flat(values: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.flo
 
 
 def _index(values: NDArray[np.float32], last: int) -> NDArray[np.int32]:
-    """The row or column of a coordinate in cells; coordinates beyond the border get the nearest."""
+    """Return the row or column index of a coordinate in cells, clipped to the grid."""
     np.minimum(np.maximum(values, np.float32(0.0), out=values), np.float32(last), out=values)
     return values.astype(np.int32)

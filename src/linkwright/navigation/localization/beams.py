@@ -1,4 +1,4 @@
-"""The beams of a laser scan, in the frame of the robot."""
+"""Beams of a laser scan, in the frame of the robot."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ Points = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Beams:
-    """Some beams of a scan, in the plane.
+    """Selected beams of a scan, in the plane.
 
     Attributes:
         origin: x and y of the laser in the frame of the robot, in metres.
-        ends: where the beams end, x and y in that frame, of shape (n, 2); those that met nothing end at `range_max`.
-        ranges: how long they are, of shape (n,), in metres.
-        range_max: how long a beam can be.
+        ends: the end points of the beams, x and y in that frame, of shape (n, 2); a beam without a return ends at
+            `range_max`.
+        ranges: the lengths of the beams, of shape (n,), in metres.
+        range_max: the maximum length of a beam, in metres.
     """
 
     origin: tuple[float, float]
@@ -32,13 +33,13 @@ class Beams:
 
     @property
     def hits(self) -> NDArray[np.bool_]:
-        """Which beams hit something, of shape (n,)."""
+        """A mask of the beams that hit something, of shape (n,)."""
         met: NDArray[np.bool_] = self.ranges < self.range_max
         return met
 
     @property
     def angles(self) -> NDArray[np.float64]:
-        """Their directions in the frame of the robot, of shape (n,), in radians."""
+        """The directions of the beams in the frame of the robot, of shape (n,), in radians."""
         way = self.ends - np.array(self.origin)
         angles: NDArray[np.float64] = np.arctan2(way[:, 1], way[:, 0])
         return angles
@@ -47,13 +48,13 @@ class Beams:
 def beams_of_scan(
     scan: Any, laser_in_robot: Transform, most: int, least_range: float = -1.0, range_max: float = -1.0
 ) -> Beams:
-    """Evenly spread beams of a sensor_msgs/LaserScan, without those that are not finite.
+    """Return evenly spaced beams of a sensor_msgs/LaserScan, without beams that are not finite.
 
     Args:
         scan: the message.
-        laser_in_robot: pose of the laser, which may be upside down or tilted.
-        most: how many beams at most.
-        least_range: shorter ranges count as without a return, in metres; negative for the scan's own limit.
+        laser_in_robot: the pose of the laser, which may be upside down or tilted.
+        most: the maximum number of beams.
+        least_range: shorter ranges count as no return, in metres; negative for the scan's own limit.
         range_max: longer ranges count as this range, in metres; negative for the scan's own limit.
     """
     ranges = np.asarray(scan.ranges, np.float64)

@@ -1,4 +1,4 @@
-"""Motion models of particles from odometry: those of nav2_amcl.
+"""Motion models that move particles by odometry, as in nav2_amcl.
 
 Source: "Probabilistic Robotics" (Thrun, Burgard, Fox), section 5.4, with the noise of nav2_amcl.
 """
@@ -21,14 +21,14 @@ _STANDS_STILL = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """Noise of odometry: ``alpha1`` to ``alpha5`` of nav2.
+    """The noise of odometry: nav2's ``alpha1`` to ``alpha5``.
 
     Attributes:
         turn_of_turn: the rotation error caused by rotation.
         turn_of_drive: the rotation error caused by translation.
         drive_of_drive: the translation error caused by translation.
         drive_of_turn: the translation error caused by rotation.
-        strafe: the sideways error, of omnidirectional robots.
+        strafe: the sideways error of omnidirectional robots.
     """
 
     turn_of_turn: float = 0.2
@@ -46,7 +46,7 @@ MotionModel = Callable[[Poses, Pose, Pose, Noise, np.random.Generator], None]
 
 
 def turned_by(angle: float) -> float:
-    """An angle between -pi and pi."""
+    """Return an angle wrapped to -pi to pi."""
     return atan2(sin(angle), cos(angle))
 
 
@@ -62,7 +62,7 @@ def differential(
     drive = hypot(x, y)
     first = 0.0 if drive < _STANDS_STILL else turned_by(atan2(y, x) - before[2])
     second = turned_by(turn - first)
-    # Driving backwards is not a half turn.
+    # Driving backward must not count as a half turn.
     first_size, second_size = (min(abs(rotation), abs(turned_by(rotation - pi))) for rotation in (first, second))
     count = len(particles)
     drive_sigma = sqrt(

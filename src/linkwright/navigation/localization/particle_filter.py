@@ -21,15 +21,15 @@ _CONVERGED = 0.5
 
 @dataclass(frozen=True, slots=True)
 class FilterSettings:
-    """Numbers of particles, and when random ones are added.
+    """Number of particles, and when random ones are added.
 
     Attributes:
-        min_particles: at least.
-        max_particles: at most.
-        pf_err: how wrong the distribution may be.
-        pf_z: upper quantile for that.
-        recovery_alpha_slow: how fast the slow mean of likelihoods follows; 0 for never making particles anywhere.
-        recovery_alpha_fast: how fast the fast one does.
+        min_particles: the minimum number of particles.
+        max_particles: the maximum number of particles.
+        pf_err: the maximum error of the distribution.
+        pf_z: the upper standard normal quantile of the probability that the error is not exceeded.
+        recovery_alpha_slow: the rate of the slow average of likelihoods; 0 to never add random particles.
+        recovery_alpha_fast: the rate of the fast average.
     """
 
     min_particles: int = 500
@@ -45,9 +45,9 @@ class Estimate:
     """The estimated pose.
 
     Attributes:
-        pose: x and y in metres and yaw in radians, the mean of the likeliest cluster.
-        weight: of that cluster, 0 to 1.
-        covariance: of all particles, of shape (3, 3).
+        pose: x and y in metres and yaw in radians: the mean of the most likely cluster.
+        weight: the weight of that cluster, 0 to 1.
+        covariance: the covariance of all particles, of shape (3, 3).
     """
 
     pose: tuple[float, float, float]
@@ -81,7 +81,7 @@ class ParticleFilter:
         self._slow = self._fast = 0.0
 
     def begin_at(self, pose: tuple[float, float, float], covariance: NDArray[np.float64]) -> None:
-        """Draw particles around a pose: the greatest number, with a covariance of shape (3, 3)."""
+        """Draw the maximum number of particles around a pose, with a covariance of shape (3, 3)."""
         count = self.settings.max_particles
         values, axes = np.linalg.eigh((covariance + covariance.T) / 2.0)
         drawn = self.random.normal(size=(count, 3)) * np.sqrt(np.maximum(values, 0.0))
@@ -94,7 +94,8 @@ class ParticleFilter:
         if not total > 0.0:
             self.weights = np.full(len(weights), 1.0 / len(weights))
             return
-        # The mean likelihood; nav2 divides it by the number of particles once more, and so takes fewer for worse.
+        # This is the mean likelihood. nav2 divides it once more by the number of particles, and so reacts to their
+        # number.
         slow, fast = self.settings.recovery_alpha_slow, self.settings.recovery_alpha_fast
         self._slow = total if self._slow == 0.0 else self._slow + slow * (total - self._slow)
         self._fast = total if self._fast == 0.0 else self._fast + fast * (total - self._fast)
@@ -104,7 +105,7 @@ class ParticleFilter:
         """Resample the particles by their weights; KLD sampling determines their number.
 
         Args:
-            anywhere: returns a number of random particles, which are added while scans fit worse than before.
+            anywhere: returns a given number of random particles, which are added while scans fit worse than before.
         """
         settings, random = self.settings, self.random
         lost = max(0.0, 1.0 - self._fast / self._slow) if self._slow > 0.0 else 0.0
@@ -121,12 +122,12 @@ class ParticleFilter:
         self._slow, self._fast = slow, fast
 
     def has_converged(self) -> bool:
-        """Whether all particles are near their mean."""
+        """Return whether all particles are near their mean."""
         away: NDArray[np.float64] = np.abs(self.particles[:, :2] - self.particles[:, :2].mean(axis=0))
         return bool(away.max() <= _CONVERGED)
 
     def estimate(self) -> Estimate:
-        """The pose of the most likely cluster."""
+        """Return the pose of the most likely cluster."""
         clusters = _clusters(self.particles)
         weights = np.bincount(clusters, self.weights)
         best = int(weights.argmax())
@@ -143,7 +144,7 @@ class ParticleFilter:
         return covariance
 
     def _needed(self, drawn: Poses) -> int:
-        """Return the number of drawn particles that suffices: the first that satisfies the limit for its bins."""
+        """Return how many of the drawn particles suffice for the number of bins that they occupy."""
         _, first = np.unique(_bins(drawn)[0], return_index=True)
         new = np.zeros(len(drawn), np.int64)
         new[first] = 1
@@ -153,7 +154,10 @@ class ParticleFilter:
         return int(enough[0]) + 1 if len(enough) else len(drawn)
 
     def _limit(self, bins: int) -> int:
-        """The number of particles for a number of bins: Fox, "KLD-sampling", approximated after Wilson and Hilferty."""
+        """Return the number of particles needed for a number of bins.
+
+        Source: Fox, "KLD-sampling", with the approximation of Wilson and Hilferty.
+        """
         settings = self.settings
         if bins <= 1:
             return settings.max_particles
@@ -163,10 +167,11 @@ class ParticleFilter:
 
 
 def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
-    """Return the bin of each particle as a number, and the step from one bin along x to the next.
+    """Return the bin of each particle as a number, and the difference between neighbouring bins along x.
 
-    Along y the number grows by the number of bins in a turn, along yaw by 1, wrapping after a turn. A rim of empty bins
-    surrounds all.
+    The number changes by the number of bins in a full turn per step along y, and by 1 along yaw, wrapping after a full
+    turn. A
+    border of empty bins surrounds all others.
     """
     bins: NDArray[np.int64] = np.floor(particles / _BIN).astype(np.int64)
     bins[:, :2] -= bins[:, :2].min(axis=0) - 1
@@ -175,13 +180,13 @@ def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
 
 
 def _clusters(particles: Poses) -> NDArray[np.int64]:
-    """The cluster of each particle: adjacent bins belong together."""
+    """Return the cluster of each particle; adjacent bins belong to the same cluster."""
     numbers, along_x = _bins(particles)
     bins, where = np.unique(numbers, return_inverse=True)
     yaw = bins % _TURNS
     here = np.arange(len(bins))
     pairs = []
-    for way in (along_x + _TURNS, along_x, along_x - _TURNS, _TURNS, 0):  # the others are these from the other side
+    for way in (along_x + _TURNS, along_x, along_x - _TURNS, _TURNS, 0):  # the opposite directions are symmetric
         for turn in (-1, 0, 1):
             beside = bins - yaw + way + (yaw + turn) % _TURNS
             at = np.minimum(np.searchsorted(bins, beside), len(bins) - 1)
@@ -195,7 +200,7 @@ def _clusters(particles: Poses) -> NDArray[np.int64]:
 
 
 def _mean(particles: Poses, weights: NDArray[np.float64]) -> tuple[float, float, float, float]:
-    """The weighted mean of x, y and yaw, and the concentration of the yaws, 0 to 1."""
+    """Return the weighted mean of x, y and yaw, and the concentration of the yaws, 0 to 1."""
     total = float(weights.sum())
     shares = weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
     x, y = shares @ particles[:, :2]

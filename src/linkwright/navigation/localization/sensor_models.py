@@ -1,7 +1,8 @@
 """Likelihoods of scans on a map from many poses: the sensor models of nav2_amcl.
 
-Source: "Probabilistic Robotics", chapter 6, with nav2_amcl's way of putting beams together: a pose is as likely as 1
-plus the sum of the cubes of its beams, which is milder than their product. ``likelihood_field_prob`` takes the product.
+Source: "Probabilistic Robotics", chapter 6. Beams are combined as in nav2_amcl: the likelihood of a pose is 1 plus the
+sum of the cubes of its beams' likelihoods, which is less strict than their product. ``likelihood_field_prob`` uses the
+product.
 """
 
 from __future__ import annotations
@@ -25,12 +26,12 @@ _FITS = 0.15
 
 @dataclass(frozen=True, slots=True)
 class BeamSkipping:
-    """Beam skipping: beams that fit only few particles are ignored, such as those that hit people.
+    """Beam skipping: beams that fit only few particles, such as beams that hit people, are ignored.
 
     Attributes:
-        distance: the distance from the nearest obstacle of the map up to which a beam fits a particle, in metres.
+        distance: the maximum distance from the map's nearest obstacle at which a beam fits a particle, in metres.
         threshold: the share of particles that a beam must fit.
-        error_threshold: if more than this share of beams would be skipped, none is.
+        error_threshold: if more than this share of beams would be skipped, all beams are used.
     """
 
     distance: float = 0.5
@@ -40,7 +41,7 @@ class BeamSkipping:
 
 @dataclass(frozen=True, slots=True)
 class LaserSettings:
-    """The parameters of the models under nav2's names."""
+    """Parameters of the sensor models, with nav2's names."""
 
     z_hit: float = 0.5
     z_short: float = 0.05
@@ -52,11 +53,11 @@ class LaserSettings:
 
 
 class MapLikelihoods:
-    """The likelihood model of a map.
+    """Computes the likelihood of scans on a map.
 
     Args:
-        grid: an occupancy grid; cells of exactly `OCCUPIED` stop beams.
-        settings: of the models.
+        grid: an occupancy grid; cells equal to `OCCUPIED` stop beams.
+        settings: the settings of the models.
 
     Raises:
         LinkwrightError: NAV101, SciPy is not installed.
@@ -69,7 +70,7 @@ class MapLikelihoods:
         distances = distance_field(occupied, grid.resolution)
         self.distances = Grid(cells=distances, resolution=grid.resolution, x=grid.x, y=grid.y, yaw=grid.yaw)
         limited = np.minimum(distances, settings.laser_likelihood_max_dist)
-        # A rim of far cells represents everything outside, so that indices need no check.
+        # A border of cells far from obstacles represents everything outside the map, so indices need no check.
         far = settings.laser_likelihood_max_dist
         self._distances = np.pad(limited, 1, constant_values=far).astype(np.float32)
         self._gaussian = settings.z_hit * np.exp(-0.5 * (self._distances / settings.sigma_hit) ** 2)
@@ -79,7 +80,10 @@ class MapLikelihoods:
     def likelihoods(
         self, model: str, particles: Poses, beams: Beams, skipping: BeamSkipping | None = None
     ) -> Likelihoods:
-        """The likelihood of each pose by one of `MODELS`, of shape (particles,); positive, not normalised."""
+        """Return the likelihood of each pose by one of `MODELS`, of shape (particles,).
+
+        The result is positive, not normalised.
+        """
         if model == "beam":
             return self._by_rays(particles, beams)
         product = model == "likelihood_field_prob"
@@ -94,12 +98,15 @@ class MapLikelihoods:
         if skipping is not None:
             values = values[:, self._kept(cells, skipping)]
         exponents = values.sum(axis=1, dtype=np.float64)
-        # Relative to the best: a product of this many factors would be 0.
+        # Relative to the best: a product of so many factors would underflow to 0.
         likelihoods: Likelihoods = np.exp(exponents - exponents.max())
         return likelihoods
 
     def fit(self, pose: tuple[float, float, float], beams: Beams) -> float | None:
-        """The part of the beams that end near something on the map, from a pose; None where no beam hit anything."""
+        """Return the share of beams from a pose that end near an obstacle of the map.
+
+        Returns None if no beam hit anything.
+        """
         hits = beams.ends[beams.hits]
         if not len(hits):
             return None
@@ -107,14 +114,14 @@ class MapLikelihoods:
         return float((distances <= _FITS).mean())
 
     def random_poses(self, count: int, random: np.random.Generator) -> Poses:
-        """Uniformly random poses in free cells, of shape (count, 3); where no cell is free, anywhere on the map."""
+        """Return random poses, of shape (count, 3), uniform in the free cells, or on the whole map if none is free."""
         free = self._free if len(self._free) else np.argwhere(np.ones_like(self.grid.cells, np.bool_))
         cells = free[random.integers(0, len(free), count)]
         points = self.grid.centres_of(cells) + random.uniform(-0.5, 0.5, (count, 2)) * self.grid.resolution
         return np.column_stack((points, random.uniform(-np.pi, np.pi, count)))
 
     def _values(self, model: str, range_max: float) -> NDArray[np.float32]:
-        """The contribution of a beam that ends in each cell."""
+        """Return the contribution of a beam for each cell in which it can end."""
         key = (model, range_max)
         if self._table is None or self._table[0] != key:
             chance = self._gaussian + self._settings.z_rand / range_max
@@ -123,14 +130,18 @@ class MapLikelihoods:
         return self._table[1]
 
     def _cells(self, particles: Poses, ends: NDArray[np.float64]) -> NDArray[np.int64]:
-        """The flat indices of the cells in which beams end, of the map with its border; shape (particles, beams)."""
+        """Return the flat indices, on the map with its border, of the cells in which beams end.
+
+        The shape is (particles, beams).
+        """
         grid = self.grid
         c, s = np.cos(grid.yaw), np.sin(grid.yaw)
         x, y = particles[:, 0] - grid.x, particles[:, 1] - grid.y
         turned = particles[:, 2] - grid.yaw
         cosine, sine = np.cos(turned), np.sin(turned)
         column, row = (c * x + s * y) / grid.resolution + 1.0, (c * y - s * x) / grid.resolution + 1.0
-        # One product of matrices for all; single precision holds a tenth of a cell on maps of a million cells a side.
+        # One matrix product for all beams; single precision resolves a tenth of a cell on maps of a million cells a
+        # side.
         ends = np.vstack((ends.T / grid.resolution, np.ones(len(ends)))).astype(np.float32)
         columns = np.column_stack((cosine, -sine, column)).astype(np.float32) @ ends
         rows = np.column_stack((sine, cosine, row)).astype(np.float32) @ ends

@@ -1,1 +1,1 @@
-"""Map files: a YAML file and an image."""
+"""Map files: a YAML file with an image."""

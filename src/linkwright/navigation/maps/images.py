@@ -1,4 +1,4 @@
-"""Images of maps: PGM, read and written here, and Pillow's formats (PNG, BMP, ...)."""
+"""Images of maps: PGM, read and written here, and other formats (PNG, BMP, ...) by Pillow."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ _PGM = re.compile(rb"P([25])" + rb"(?:\s|#[^\n]*\n)+(\d{1,9})" * 3 + rb"\s")
 
 @dataclass(frozen=True, slots=True)
 class MapImage:
-    """Pixels from the top row down, each between 0 and 1.
+    """The pixels of an image from the top row down, each between 0 and 1.
 
     Attributes:
-        shade: how bright they are, the mean of the colours, of shape (rows, columns).
-        opacity: 1 where they are opaque, of the same shape; None if the image has no transparency.
+        shade: the brightness, the mean of the colour channels, of shape (rows, columns).
+        opacity: the opacity, 1 for opaque pixels, of the same shape; None if the image has no transparency.
     """
 
     shade: NDArray[np.float64]
@@ -46,7 +46,8 @@ def read_image(path: Path) -> MapImage:
     """Read an image.
 
     Raises:
-        LinkwrightError: NAV203, the file does not exist, is not an image, or is broken; NAV204, it is not PGM, and
+        LinkwrightError: NAV203, the file does not exist, is not an image, or is broken; NAV204, the file is not PGM,
+            and
             Pillow, which reads other formats, is not installed.
     """
     try:
@@ -61,17 +62,19 @@ def read_image(path: Path) -> MapImage:
 
 
 def pgm_bytes(pixels: NDArray[np.uint8]) -> bytes:
-    """A binary PGM of grey pixels, of shape (rows, columns), as ImageMagick and nav2 write it."""
+    """Return grey pixels of shape (rows, columns) as a binary PGM, as ImageMagick and nav2 write it."""
     rows, columns = pixels.shape
     return b"P5\n%d %d\n255\n" % (columns, rows) + np.ascontiguousarray(pixels).tobytes()
 
 
 def pillow_bytes(pixels: NDArray[np.uint8], kind: str) -> bytes:
-    """An image file of grey pixels (rows, columns), or of grey and opacity (rows, columns, 2), in a format of Pillow.
+    """Encode grey pixels as an image file in one of Pillow's formats.
+
+    The shape is (rows, columns) for grey, or (rows, columns, 2) for grey and opacity.
 
     Raises:
         LinkwrightError: NAV204, Pillow is not installed.
-        ValueError: Pillow writes no such format, or not such pixels.
+        ValueError: Pillow cannot write the format, or not such pixels.
     """
     image = _pillow().fromarray(pixels) if pixels.ndim == 2 else _grey_with_opacity(pixels)
     file = BytesIO()
@@ -124,7 +127,7 @@ def _by_pillow(path: Path, data: bytes) -> MapImage:
 
 def _pillow() -> Any:
     try:
-        from PIL import Image  # not above: an extra
+        from PIL import Image  # Imported here because Pillow is an optional extra.
     except ModuleNotFoundError as error:
         raise missing_extra("NAV204", error) from None
     return Image

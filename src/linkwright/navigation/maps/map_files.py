@@ -1,4 +1,4 @@
-"""Loading and saving maps, YAML and image, as nav2_map_server does."""
+"""Loading and saving of maps, a YAML file with an image, as in nav2_map_server."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class SavedAs:
 
     Attributes:
         name: the path of the files, without an extension.
-        occupied_thresh: cells of this probability or more are occupied, 0 to 1.
-        free_thresh: cells of this probability or less are free.
+        occupied_thresh: cells with at least this probability are occupied, 0 to 1.
+        free_thresh: cells with at most this probability are free.
         image_format: the extension of the image; "" for the default of the mode.
         mode: the meaning of the pixels.
     """
@@ -45,7 +45,7 @@ class SavedAs:
 
 
 def load_map(path: str | Path) -> Grid:
-    """Load the grid of a map's YAML and image, in the frame of the map.
+    """Load a map from its YAML file and image, as a grid in the frame of the map.
 
     Raises:
         LinkwrightError: NAV201 or NAV202, see `read_map_yaml`; NAV203 or NAV204, see `read_image`.
@@ -57,19 +57,19 @@ def load_map(path: str | Path) -> Grid:
 
 
 def save_map(grid: Grid, saved: SavedAs, warn: Callable[[str], object] = _unheard) -> tuple[Path, Path]:
-    """Write a map.
+    """Save a grid as a map.
 
     Args:
-        grid: the cells, per cent or unknown.
+        grid: the grid; its cells are per cent or unknown.
         saved: the name and settings.
         warn: called with warnings for the user.
 
     Returns:
-        The image and the YAML.
+        The paths of the image and the YAML file.
 
     Raises:
-        LinkwrightError: NAV205, the thresholds make no sense; NAV206, a file cannot be written; NAV204, Pillow is
-            needed and not installed.
+        LinkwrightError: NAV205, the thresholds are invalid; NAV206, a file cannot be written; NAV204, Pillow is needed
+            and not installed.
     """
     _check(saved)
     kind = (saved.image_format or ("png" if saved.mode is MapMode.SCALE else "pgm")).lower()
@@ -133,6 +133,6 @@ def _yaml(grid: Grid, saved: SavedAs, image: str) -> str:
 
 
 def _number(value: float) -> str:
-    """A number with three digits as nav2 writes it, or with more where a millimetre needs them."""
+    """Format a number with three digits as nav2 does, or with more if a millimetre needs them."""
     digits = 3 if value == 0.0 else max(3, floor(log10(abs(value))) + 4)
     return f"{value:.{digits}g}"

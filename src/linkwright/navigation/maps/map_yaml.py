@@ -1,7 +1,7 @@
 """The YAML file of a map: image, resolution, origin, and the meaning of pixels.
 
-Keys, their meanings and the required ones are those of nav2_map_server. Errors have a line and column. Stricter than
-nav2: a resolution must be greater than 0, and thresholds must be between 0 and 1.
+The keys, their meanings and the required keys are those of nav2_map_server. Errors have a line and column. Stricter
+than nav2: the resolution must be greater than 0, and thresholds must be between 0 and 1.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _FALSE = frozenset({"false", "no", "off", "n"})
 
 
 class MapMode(Enum):
-    """The modes of converting between pixels and cells."""
+    """The modes of conversion between pixels and cells."""
 
     TRINARY = "trinary"
     SCALE = "scale"
@@ -41,13 +41,13 @@ class MapYaml:
     """The content of a map's YAML file.
 
     Attributes:
-        image: the file of the pixels.
-        resolution: side of a cell, in metres.
+        image: the path of the image.
+        resolution: the side of a cell, in metres.
         origin: x and y of the lower left corner in the frame of the map, in metres, and yaw, in radians.
         negate: whether white is occupied and black is free.
-        occupied_thresh: darkness, 0 to 1, above which a pixel is occupied.
-        free_thresh: darkness below which it is free.
-        mode: how pixels become cells.
+        occupied_thresh: the darkness, 0 to 1, above which a pixel is occupied.
+        free_thresh: the darkness below which a pixel is free.
+        mode: how pixels are converted to cells.
     """
 
     image: Path
@@ -60,10 +60,10 @@ class MapYaml:
 
 
 def read_map_yaml(path: str | Path) -> MapYaml:
-    """Read a map's YAML; the image's path is relative to it.
+    """Read a map's YAML file; the image's path is resolved relative to it.
 
     Raises:
-        LinkwrightError: NAV201, it cannot be read; NAV202, something in it is wrong.
+        LinkwrightError: NAV201, the file cannot be read; NAV202, the content is invalid.
     """
     if not str(path):
         raise LinkwrightError(Diagnostic("NAV201", phrase("YAML file name is empty, can't load!")))
@@ -72,7 +72,7 @@ def read_map_yaml(path: str | Path) -> MapYaml:
 
 
 class _Reader:
-    """Reads one text."""
+    """The reader of one YAML text."""
 
     def __init__(self, source: SourceText) -> None:
         self._document = YamlDocument(source, "NAV202")

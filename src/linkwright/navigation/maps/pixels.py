@@ -1,4 +1,4 @@
-"""Conversion between the pixels of an image and the cells of an occupancy grid, as nav2_map_server has it."""
+"""Conversion between the pixels of an image and the cells of an occupancy grid, as in nav2_map_server."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def cells_of_image(image: MapImage, map_yaml: MapYaml) -> NDArray[np.int8]:
         value = np.floor(shade * 255.0 + 0.5)
         return np.where(value <= OCCUPIED, value, UNKNOWN).astype(np.int8)
     if map_yaml.mode is MapMode.TRINARY and opacity is not None:
-        shade = (shade * 3.0 + opacity) / 4.0  # opacity counts as a fourth colour there
+        shade = (shade * 3.0 + opacity) / 4.0  # nav2 counts opacity as a fourth colour channel.
     dark = shade if map_yaml.negate else 1.0 - shade
     if map_yaml.mode is MapMode.SCALE:
         span = map_yaml.occupied_thresh - map_yaml.free_thresh
@@ -51,11 +51,11 @@ def pixels_of_cells(
     Args:
         cells: the cells, per cent or `UNKNOWN`, from the lowest row up.
         mode: the meaning of the pixels.
-        occupied_thresh: the least probability of an occupied cell in the mode ``trinary``, 0 to 1.
-        free_thresh: the greatest probability of a free cell.
+        occupied_thresh: the minimum probability of an occupied cell in the mode ``trinary``, 0 to 1.
+        free_thresh: the maximum probability of a free cell.
 
     Returns:
-        Grey, of the shape of the cells; with ``scale`` grey and opacity, of shape (rows, columns, 2).
+        Grey pixels, of the shape of the cells; with ``scale`` grey and opacity, of shape (rows, columns, 2).
     """
     turned = cells[::-1].astype(np.int16)
     known = (turned >= 0) & (turned <= 100)

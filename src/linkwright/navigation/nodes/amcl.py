@@ -1,8 +1,8 @@
-"""amcl of nav2: localizes the robot on a map by a laser and odometry.
+"""nav2's amcl: localizes the robot on a map from laser scans and odometry.
 
 Parameters, topics, services and texts are those of nav2. Deliberate differences: the random seed is fixed, so the same
-data give the same result; a scan that matches nowhere near is logged; clusters of particles continue across the end of
-a turn; ``save_pose_rate`` and ``freespace_downsampling`` have no effect.
+data give the same result; a persistent mismatch of scans and map is logged; clusters of particles are continuous
+across +-pi in yaw; ``save_pose_rate`` and ``freespace_downsampling`` have no effect.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ _MISFITS = 5
 
 
 class AmclNode(ManagedNode):
-    """amcl as a managed node."""
+    """The managed node of amcl."""
 
     def declare(self) -> None:
-        """Declare the parameters of nav2."""
+        """Declare nav2's parameters."""
         declare_parameters(self)
         self._pose: Pose | None = None
         self._covariance: NDArray[np.float64] = _UNKNOWN_COVARIANCE
@@ -54,10 +54,10 @@ class AmclNode(ManagedNode):
         self.add_post_set_parameters_callback(lambda _: self._follow())
 
     def configure(self) -> None:
-        """Read the parameters and join the topics.
+        """Read the parameters and create the topics.
 
         Raises:
-            LinkwrightError: NODE433, a parameter cannot have its value.
+            LinkwrightError: NODE433, a parameter has an invalid value.
         """
         self._settings = read_parameters(self)
         if self._settings.given.always_reset_initial_pose:
@@ -91,7 +91,7 @@ class AmclNode(ManagedNode):
         register(self.create_service(initial, "set_initial_pose", self._on_set_initial_pose))
 
     def activate(self) -> None:
-        """Start, at the initial pose if there is one."""
+        """Start localizing, from the initial pose if one is set."""
         self._heard_ns = self.get_clock().now().nanoseconds
         self._silence = self.create_timer(_SECONDS_OF_SILENCE, self._look_for_scans)
         if self._settings.initial_pose is not None:
@@ -99,7 +99,7 @@ class AmclNode(ManagedNode):
         self._active = True
 
     def deactivate(self) -> None:
-        """Stop; the pose stays known."""
+        """Stop localizing and keep the pose."""
         self._active = False
         self._silence.destroy()
         self._waiting.clear()
@@ -112,7 +112,7 @@ class AmclNode(ManagedNode):
     # --- input -------------------------------------------------------------------------------------------------------
 
     def update(self, message: TFMessage, *, static: bool, now_ns: int) -> None:
-        """Take over new transforms, and process the scans that waited for them."""
+        """Add new transforms, and process the scans that waited for them."""
         self._buffer.update(message, static=static, now_ns=now_ns)
         if self._waiting:
             self._work()
@@ -154,7 +154,10 @@ class AmclNode(ManagedNode):
             )
 
     def _work(self) -> None:
-        """Process the scans whose transforms are known; others wait until the transform tolerance is over."""
+        """Process the scans whose transforms are known.
+
+        Others wait until the transform tolerance has passed.
+        """
         while self._waiting:
             scan = self._waiting[0]
             stamp_ns = scan.header.stamp.nanoseconds
@@ -213,7 +216,7 @@ class AmclNode(ManagedNode):
         )
 
     def _begin_at(self, pose: Pose | None, covariance: NDArray[np.float64]) -> None:
-        """Initialise the particles around a pose; if it is unknown, around the origin of the map."""
+        """Initialise the particles around a pose, or around the origin of the map if the pose is unknown."""
         self._pose, self._covariance = pose, covariance
         self._filter.begin_at(pose or (0.0, 0.0, 0.0), covariance)
         self._reset()
@@ -223,7 +226,7 @@ class AmclNode(ManagedNode):
         self._measured = self._misfits = 0
 
     def _follow(self) -> None:
-        """Apply changed parameters while it is active; frames and topics stay as configured."""
+        """Apply changed parameters to the active node; frames and topics remain as configured."""
         if not hasattr(self, "_settings"):
             return
         before, self._settings = self._settings, read_parameters(self)
@@ -307,20 +310,20 @@ class AmclNode(ManagedNode):
         if not all(map(isfinite, pose)) or not np.isfinite(covariance).all():
             logger.error("Received initial pose contains NaNs or Infs! Ignoring as invalid!")
             return
-        covariance[2, :2] = covariance[:2, 2] = 0.0  # as in nav2
+        covariance[2, :2] = covariance[:2, 2] = 0.0  # as nav2 does
         self._set_pose(self._since(pose, message.header.stamp.nanoseconds), covariance)
         if not self._active:
             logger.warning("Received initial pose request, but AMCL is not yet in the active state")
 
     def _since(self, pose: Pose, stamp_ns: int) -> Pose:
-        """An earlier pose moved by the odometry since then, as far as that is known."""
+        """Return an earlier pose moved by the odometry since then, as far as the odometry is known."""
         if not stamp_ns:
             return pose
         try:
             then, _ = self._buffer.lookup(self._settings.odom, self._settings.base, stamp_ns)
             now, _ = self._buffer.lookup(self._settings.odom, self._settings.base, 0)
         except TransformException:
-            return pose  # without odometry there is no known motion
+            return pose  # Without odometry the motion is unknown.
         return _flat(compose(_transform(pose), compose(invert(then), now)))
 
     def _set_pose(self, pose: Pose, covariance: NDArray[np.float64]) -> None:
@@ -379,7 +382,7 @@ def _write_pose(message: Any, pose: Pose) -> None:
 
 
 class Amcl(ManagedServer):
-    """The running node."""
+    """The running amcl node."""
 
     NODE = AmclNode
     DEFAULT_NAME = "amcl"

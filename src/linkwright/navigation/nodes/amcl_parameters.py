@@ -1,4 +1,4 @@
-"""The parameters of amcl, under nav2's names and with its defaults."""
+"""The parameters of amcl, with nav2's names and defaults."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _NOT_NEGATIVE = ("laser_likelihood_max_dist", *(f"alpha{number}" for number in r
 
 @dataclass(frozen=True, kw_only=True)
 class InitialPose:
-    """``initial_pose``: metres, and radians."""
+    """The parameters ``initial_pose.*``, in metres and radians."""
 
     x: float = 0.0
     y: float = 0.0
@@ -34,7 +34,10 @@ class InitialPose:
 
 @dataclass(frozen=True, kw_only=True)
 class AmclParameters:
-    """The parameters beside `LaserSettings` and `FilterSettings`: metres, radians and seconds."""
+    """The parameters that are in neither `LaserSettings` nor `FilterSettings`.
+
+    They are in metres, radians and seconds.
+    """
 
     alpha1: float = 0.2
     alpha2: float = 0.2
@@ -70,10 +73,10 @@ class AmclParameters:
 
 @dataclass(frozen=True, slots=True)
 class AmclSettings:
-    """The parameters, and the objects that they describe.
+    """The parameters, and the objects that are made from them.
 
     Attributes:
-        given: the parameters as they are.
+        given: the parameter values.
         base: the frame of the robot.
         odom: the frame of odometry.
         world: the frame of the map.
@@ -98,7 +101,7 @@ class AmclSettings:
 
 
 def declare_parameters(node: Node) -> tuple[AmclParameters, LaserSettings, FilterSettings]:
-    """Declare all parameters, unless they are declared, and read them."""
+    """Declare all parameters that are not declared yet, and read them."""
     return declared(node, AmclParameters), declared(node, LaserSettings), declared(node, FilterSettings)
 
 
@@ -106,7 +109,7 @@ def read_parameters(node: Node) -> AmclSettings:
     """Read all parameters.
 
     Raises:
-        LinkwrightError: NODE433, one cannot have its value.
+        LinkwrightError: NODE433, a parameter has an invalid value.
     """
     given, laser, particles = declare_parameters(node)
     for name in (*_POSITIVE, *_NOT_NEGATIVE):
@@ -127,7 +130,7 @@ def read_parameters(node: Node) -> AmclSettings:
         odom=given.odom_frame_id.removeprefix("/"),
         world=given.global_frame_id.removeprefix("/"),
         motion=_motion(node, given.robot_model_type),
-        # alpha1 turn of turn, alpha2 turn of drive, alpha3 drive of drive, alpha4 drive of turn
+        # alpha1: turn of turn, alpha2: turn of drive, alpha3: drive of drive, alpha4: drive of turn
         noise=Noise(given.alpha1, given.alpha2, given.alpha3, given.alpha4, given.alpha5),
         laser=laser,
         skipping=skipping,

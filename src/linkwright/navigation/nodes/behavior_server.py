@@ -1,7 +1,8 @@
-"""behavior_server of nav2: spin, back up, drive on heading, wait and assisted teleoperation as actions.
+"""nav2's behavior_server: spin, back up, drive on heading, wait and assisted teleoperation as actions.
 
-Source: nav2_behaviors, Humble and Jazzy. Obstacles are those of ``local_costmap/costmap_raw``, the footprint is that of
-``local_costmap/published_footprint``. Deliberate differences: a costmap that falls silent ends a behaviour that moves.
+Source: nav2_behaviors, Humble and Jazzy. Obstacles are read from ``local_costmap/costmap_raw``, and the footprint from
+``local_costmap/published_footprint``. A deliberate difference: a moving behaviour ends when the costmap is no longer
+published.
 """
 
 from __future__ import annotations
@@ -53,11 +54,11 @@ _TYPES = {
 
 
 class _AssistedTeleop(Behavior):
-    """Drives by an operator's velocities, slowed down near obstacles; ends when canceled or by a time limit.
+    """Drive with an operator's velocities, slowed down near obstacles, until canceled or timed out.
 
     Args:
-        allowance: how long it may take, in seconds; 0 for ever.
-        seconds: how far ahead obstacles count.
+        allowance: the time limit in seconds; 0 for no limit.
+        seconds: how far ahead obstacles are checked, in seconds.
         asked: the requested velocity.
     """
 
@@ -70,23 +71,23 @@ class _AssistedTeleop(Behavior):
 
 
 class BehaviorNode(ManagedNode):
-    """behavior_server as a managed node."""
+    """The managed node of behavior_server."""
 
     _FRAME: ClassVar[str] = "odom"
 
     def declare(self) -> None:
-        """Declare the parameters of nav2."""
+        """Declare nav2's parameters."""
         declare = self.declare_parameter
         given = set(self.undeclared_overrides())
         self._humble = {"costmap_topic", "footprint_topic"} & given
         for which in ("local", "global"):
             declare(f"{which}_costmap_topic", f"{which}_costmap/costmap_raw")
             declare(f"{which}_footprint_topic", f"{which}_costmap/published_footprint")
-        declare("costmap_topic", "local_costmap/costmap_raw")  # Humble's names of the same
+        declare("costmap_topic", "local_costmap/costmap_raw")  # Humble's names of the same parameters
         declare("footprint_topic", "local_costmap/published_footprint")
         declare("cycle_frequency", 10.0)
         declare("local_frame", self._FRAME)
-        declare("global_frame", "")  # Humble's name of the local one is this
+        declare("global_frame", "")  # Humble uses this name for the local frame.
         declare("robot_base_frame", "base_link")
         declare("transform_tolerance", 0.1)
         declare("simulate_ahead_time", 2.0)
@@ -108,10 +109,10 @@ class BehaviorNode(ManagedNode):
         self._asked = STILL
 
     def configure(self) -> None:
-        """Make the topics and the action servers.
+        """Create the topics and the action servers.
 
         Raises:
-            LinkwrightError: a parameter is not given or means nothing.
+            LinkwrightError: a parameter is missing or has an invalid value.
         """
         self._period = 1.0 / positive(self, "cycle_frequency", self._value("cycle_frequency"))
         raw, polygon = get_message("nav2_msgs/msg/Costmap"), get_message("geometry_msgs/msg/PolygonStamped")
@@ -174,7 +175,7 @@ class BehaviorNode(ManagedNode):
         self.begin_cycles(self._period, self._cycle)
 
     def _behavior(self, name: str, goal: Any, start: Pose) -> Behavior | str:
-        """Make the behaviour of a goal, or the reason for refusing it."""
+        """Return the behaviour for a goal, or the reason for refusing the goal."""
         if name == "wait":
             return Wait(_seconds(goal.time))
         allowance = _seconds(goal.time_allowance)
@@ -235,7 +236,7 @@ class BehaviorNode(ManagedNode):
         server.abort(code, reason, total_elapsed_time=_duration(elapsed))
 
     def _halt(self) -> None:
-        """Stop the robot, if it was moved."""
+        """Cancel the cycles, and stop the robot if a behaviour moved it."""
         self.end_cycles()
         if self._running is not None and self._running[2] != "wait":
             self._output.stop()
@@ -244,7 +245,7 @@ class BehaviorNode(ManagedNode):
     # --- what is known of the surroundings ----------------------------------------------------------------------------
 
     def _blind(self) -> str:
-        """The reason why obstacles are unknown; empty if they are known."""
+        """Return the reason why obstacles are unknown; empty if they are known."""
         if self._costmap is None or self._footprint is None:
             return "no costmap has come yet"
         if self.now_ns() - self._heard_ns > _SILENT_COSTMAP * 1e9:
@@ -257,7 +258,7 @@ class BehaviorNode(ManagedNode):
         return not bool(np.any(self._costmap.footprint_cost(poses, self._footprint) == LETHAL))
 
     def _pose(self) -> Pose | None:
-        """The robot's pose in the frame of the costmap."""
+        """Return the robot's pose in the frame of the costmap."""
         frame = self._costmap_frame or self._value("local_frame")
         found = self._poses.pose(frame, self._value("robot_base_frame"), 0)
         return None if found is None else (found[0], found[1], rpy_from_quaternion(found[3:])[2])
@@ -268,7 +269,7 @@ class BehaviorNode(ManagedNode):
         self._heard_ns = self.now_ns()
 
     def _on_footprint(self, message: Any) -> None:
-        """Set the footprint from a message, which has it at the robot's pose; converts it to the robot's frame."""
+        """Set the footprint from a message, transformed from the robot's pose to the robot's frame."""
         found = self._poses.pose(
             message.header.frame_id,
             self._value("robot_base_frame"),
@@ -287,7 +288,7 @@ class BehaviorNode(ManagedNode):
         self._asked = Velocity(twist.linear.x, twist.linear.y, twist.angular.z)
 
     def _topic(self, what: str) -> str:
-        """The name of a topic, from Humble's or Jazzy's parameter."""
+        """Return the name of a topic, from Humble's or Jazzy's parameter."""
         old = str(self._value(f"{what}_topic"))
         new = str(self._value(f"local_{what}_topic"))
         return old if f"{what}_topic" in self._humble else new
@@ -297,14 +298,14 @@ class BehaviorNode(ManagedNode):
 
 
 class BehaviorServer(ManagedServer):
-    """The running node."""
+    """The running behavior_server node."""
 
     DEFAULT_NAME = "behavior_server"
     NODE = BehaviorNode
 
 
 def _feedback(name: str, step: Step, elapsed: float, goal: Any) -> dict[str, Any]:
-    """The fields of a behaviour's feedback."""
+    """Return the fields of a behaviour's feedback."""
     if name == "spin":
         return {"angular_distance_traveled": float(step.traveled)}
     if name == "wait":

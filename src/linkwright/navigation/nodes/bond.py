@@ -1,8 +1,9 @@
-"""Bonds (bondcpp), with which nav2's servers and their manager notice when the other process dies.
+"""Bonds (bondcpp), by which nav2's servers and their manager notice when the other process dies.
 
-Both sides publish heartbeats on ``bond`` under the same id. A side that leaves sends a last message; one that dies
-falls silent. Unlike bondcpp, a side waits for the other without a timeout instead of 10 s, so either may start first;
-and silence is counted in own heartbeats, so a process that was itself suspended does not declare the other dead.
+Both sides publish heartbeats on ``bond`` with the same id. A side that leaves sends a last message; a side that dies
+stops publishing. Unlike in bondcpp, a side waits for the other without a timeout instead of 10 s, so either may start
+first. Silence is counted in the side's own heartbeats, so a process that was itself suspended does not declare the
+other one dead.
 """
 
 from __future__ import annotations
@@ -31,9 +32,9 @@ class Bond:
 
     Args:
         node: the node that exchanges the heartbeats.
-        name: id of the bond; with nav2, the name of the managed node.
-        timeout: seconds of silence after which the other side is dead.
-        period: seconds between heartbeats.
+        name: the id of the bond; with nav2, the name of the managed node.
+        timeout: the seconds of silence after which the other side is considered dead.
+        period: the seconds between heartbeats.
         on_formed: called once at the first heartbeat of the other side.
         on_broken: called once when the other side left or fell silent; not after `end`.
     """
@@ -88,7 +89,7 @@ class Bond:
                 self._break()
         elif not self.formed:
             self.formed = True
-            self._send(active=True)  # the other side need not wait for the next heartbeat
+            self._send(active=True)  # Answer immediately, so that the other side need not wait for the next heartbeat.
             self._on_formed()
 
     def _break(self) -> None:

@@ -1,10 +1,10 @@
-"""bt_navigator of nav2: navigates to poses with the planner, controller and behaviour servers.
+"""nav2's bt_navigator: navigates to poses with the planner, controller and behaviour servers.
 
-The actions ``navigate_to_pose`` and ``navigate_through_poses``, and the topic ``goal_pose`` (RViz's 2D Goal Pose). It
-does what nav2's default trees do (``navigate_to_pose_w_replanning_and_recovery.xml``): it plans a new path each second;
-when planning or driving fails it clears the costmaps, and if that does not help the robot spins, waits, backs up and
-tries again, six times at most. A deliberate difference: it does not read behaviour trees of users, and logs a line
-about that.
+It offers the actions ``navigate_to_pose`` and ``navigate_through_poses``, and subscribes to ``goal_pose`` (RViz's 2D
+Goal Pose). It behaves as nav2's default trees do (``navigate_to_pose_w_replanning_and_recovery.xml``): it plans a new
+path each second. When planning or driving fails, it clears the costmaps; if that does not help, the robot spins, waits,
+backs up and tries again, up to six times. A deliberate difference: it does not read users' behaviour trees, and logs
+this.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ _ALLOWANCE = 10.0
 
 
 class NavigatorNode(StepNode):
-    """bt_navigator as a managed node."""
+    """The managed node of bt_navigator."""
 
     def declare(self) -> None:
-        """Declare the parameters of nav2."""
+        """Declare nav2's parameters."""
         declare = self.declare_parameter
         for name, value in _PARAMETERS.items():
             declare(name, value)
@@ -62,7 +62,7 @@ class NavigatorNode(StepNode):
         self._speed = 0.0
 
     def configure(self) -> None:
-        """Make the topics and the action servers."""
+        """Create the topics and the action servers."""
         pose, odometry = get_message("geometry_msgs/msg/PoseStamped"), get_message("nav_msgs/msg/Odometry")
         self.register(self.create_subscription(pose, "goal_pose", self._on_goal_pose, _DEPTH))
         self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
@@ -114,7 +114,10 @@ class NavigatorNode(StepNode):
         self.get_logger().warning(f"behaviour trees are not read: the usual one runs instead of {path}")
 
     def _start(self, which: str, goal: Any) -> None:
-        """Start with a goal; one of the other action is aborted, and a path is followed further meanwhile."""
+        """Start with a goal and abort a goal of the other action.
+
+        The robot keeps following its path meanwhile.
+        """
         poses = [goal.pose] if which == "pose" else list(goal.poses)
         at = poses[-1].pose.position
         x, y = self._pose() or (float("nan"),) * 2
@@ -126,7 +129,7 @@ class NavigatorNode(StepNode):
         self.work_on(self._servers[which], self._navigate(which))
 
     def publish_feedback(self, server: GoalServer) -> None:
-        """Publish the feedback of the goal."""
+        """Publish the feedback for the goal."""
         pose = get_message("geometry_msgs/msg/PoseStamped")()
         found = self._transform()
         if found is not None:
@@ -163,7 +166,7 @@ class NavigatorNode(StepNode):
             yield from self._recover(recoveries)
 
     def _recover(self, recoveries: Sequence[Any]) -> Step:
-        """Run the next of the recoveries that succeeds, in turn as nav2's RoundRobin."""
+        """Run recoveries in turn, as nav2's RoundRobin, until one succeeds."""
         for _ in recoveries:
             recovery = recoveries[self._turn % len(recoveries)]
             self._turn += 1
@@ -205,7 +208,7 @@ class NavigatorNode(StepNode):
             driving.cancel()
 
     def _planned(self, which: str) -> Step:
-        """Plan a path; if that fails, once more after clearing the global costmap."""
+        """Plan a path; if that fails, clear the global costmap and try once more."""
         try:
             return (yield from self._plan(which))
         except StepError as failure:
@@ -235,7 +238,7 @@ class NavigatorNode(StepNode):
         return path
 
     def _objection(self) -> str:
-        """The reason for refusing a goal by the global costmap; empty for none."""
+        """Return the reason why the global costmap prevents a goal; empty if it does not."""
         at, frame = self._poses[-1].pose.position, self._poses[-1].header.frame_id
         if self._costmap is None or (frame and frame != self._costmap_frame):
             return ""
@@ -264,7 +267,7 @@ class NavigatorNode(StepNode):
         yield from self._clear("global")
 
     def _clear(self, which: str) -> Step:
-        """Clear a costmap if its server is available."""
+        """Clear a costmap if the service for it is available."""
         client = self._clearing[which]
         if not client.service_is_ready():
             self.get_logger().warning(f"the {which} costmap is not cleared: there is no {client.service_name}")
@@ -291,7 +294,7 @@ class NavigatorNode(StepNode):
     # --- topics -------------------------------------------------------------------------------------------------------
 
     def _on_goal_pose(self, message: Any) -> None:
-        """Navigate to a pose of RViz's 2D Goal Pose."""
+        """Navigate to a pose sent by RViz's 2D Goal Pose."""
         if not self.is_active:
             self.get_logger().warning("a goal came on goal_pose, and this node is not active")
             return
@@ -308,7 +311,7 @@ class NavigatorNode(StepNode):
             self._left = _left_on(self._path, *place)
 
     def _transform(self) -> Any:
-        """The robot's pose in the global frame; None if it is unknown."""
+        """Return the robot's pose in the global frame; None if it is unknown."""
         try:
             return self._buffer.lookup(self._value("global_frame"), self._value("robot_base_frame"), 0)[0]
         except TransformException:
@@ -323,14 +326,14 @@ class NavigatorNode(StepNode):
 
 
 class BtNavigator(ManagedServer):
-    """The running node."""
+    """The running bt_navigator node."""
 
     DEFAULT_NAME = "bt_navigator"
     NODE = NavigatorNode
 
 
 def _is_usual(path: str) -> bool:
-    """Whether a behaviour tree is one of nav2's defaults."""
+    """Return whether a behaviour tree is one of nav2's defaults."""
     return path.rpartition("/")[2] in _USUAL_TREES
 
 
@@ -340,7 +343,10 @@ def _length(path: Any) -> float:
 
 
 def _left_on(path: Any, x: float, y: float) -> float:
-    """The distance along a path from its pose closest to a place to its end, in metres."""
+    """Return the remaining distance along a path, in metres.
+
+    It is the distance from a position to the nearest pose of the path, plus the length from there to the end.
+    """
     places = [pose.pose.position for pose in path.poses]
     nearest = min(range(len(places)), key=lambda index: hypot(places[index].x - x, places[index].y - y))
     rest = places[nearest:]

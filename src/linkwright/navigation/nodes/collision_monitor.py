@@ -1,9 +1,10 @@
-"""collision_monitor of nav2: forwards velocities, slowed down or stopped when sensors see something in a zone.
+"""nav2's collision_monitor: slows down or stops the robot when sensors detect something in a zone.
 
 Parameters, topics and rules are those of nav2, Humble's and Jazzy's. Deliberate differences: unless
-``enable_stamped_cmd_vel`` is set it takes Twist and TwistStamped, and publishes what the subscribers take; a sensor
-that is silent stops the robot, which in Humble it does not; and so does a driver that was lost. Sensors of the types
-``polygon`` and ``costmap`` are not had, and ``transform_tolerance`` has no effect: what has no place yet waits.
+``enable_stamped_cmd_vel`` is set it accepts Twist and TwistStamped, and publishes the type that subscribers expect. A
+silent sensor stops the robot, unlike in Humble, and so does the loss of the commanding publisher. Sensors of the types
+``polygon`` and ``costmap`` are not supported. ``transform_tolerance`` has no effect: data whose transform is unknown
+waits.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ _DONE = {
 
 @dataclass(frozen=True, kw_only=True)
 class MonitorParameters:
-    """The parameters that do not belong to a zone or a sensor, under nav2's names: seconds."""
+    """The parameters that do not belong to a zone or a sensor, with nav2's names; in seconds."""
 
     cmd_vel_in_topic: str = "cmd_vel_smoothed"
     cmd_vel_out_topic: str = "cmd_vel"
@@ -57,7 +58,7 @@ class MonitorParameters:
 
 
 class MonitorNode(ManagedNode):
-    """collision_monitor as a managed node."""
+    """The managed node of collision_monitor."""
 
     def declare(self) -> None:
         """Declare the parameters that do not belong to a zone or a sensor."""
@@ -73,10 +74,10 @@ class MonitorNode(ManagedNode):
         self._stamped = self._table.values.enable_stamped_cmd_vel
 
     def configure(self) -> None:
-        """Read the zones and sensors, and make the topics.
+        """Read the zones and sensors, and create the topics.
 
         Raises:
-            LinkwrightError: NODE431, NODE433, a parameter is not given or cannot have its value.
+            LinkwrightError: NODE431, NODE433, a parameter is missing or has an invalid value.
         """
         given = self._table.values
         base, fixed = given.base_frame_id, given.odom_frame_id if given.base_shift_correction else None
@@ -96,12 +97,12 @@ class MonitorNode(ManagedNode):
             commander.watch(self.register(heard))
 
     def activate(self) -> None:
-        """Start to forward velocities."""
+        """Start forwarding velocities."""
         for zone in self._zones:
             zone.publish()
 
     def deactivate(self) -> None:
-        """Stop the robot, and forward nothing."""
+        """Stop the robot, and stop forwarding velocities."""
         if self._output is not None and self._verdict.velocity != STILL:
             self._output.stop()
         self._verdict = Verdict(STILL)
@@ -144,7 +145,7 @@ class MonitorNode(ManagedNode):
         return judged(velocity, [zone for zone in zones if zone is not None])
 
     def _publish(self, velocity: Velocity) -> None:
-        """Publish a velocity; zeros only for ``stop_pub_timeout``, so that others can drive then."""
+        """Publish a velocity; zeros end after ``stop_pub_timeout``, so that other nodes can drive the robot."""
         assert self._output is not None, "it is configured"
         now_ns = self.get_clock().now().nanoseconds
         if velocity != STILL:
@@ -171,7 +172,7 @@ class MonitorNode(ManagedNode):
 
 
 class CollisionMonitor(ManagedServer):
-    """The running node."""
+    """The running collision_monitor node."""
 
     DEFAULT_NAME = "collision_monitor"
     NODE = MonitorNode

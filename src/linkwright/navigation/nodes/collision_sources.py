@@ -1,4 +1,4 @@
-"""Sensors of collision_monitor: their newest points, in the robot's frame of now."""
+"""Sensors of collision_monitor: their latest points, in the robot's current frame."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _WAITING = 20
 
 
 class Source:
-    """A sensor and its newest message.
+    """A sensor and its latest message.
 
     Args:
         node: the node that subscribes.
@@ -66,11 +66,14 @@ class Source:
         self._subscription.destroy()
 
     def points(self, now_ns: int, timeout: float) -> Points | None:
-        """The newest points, none if it is switched off; None if it is silent or its transform is unknown.
+        """Return the latest points; None if the sensor is silent or its transform is unknown.
+
+        A sensor that is switched off has no points.
 
         Args:
-            now_ns: the time.
-            timeout: seconds after which it is silent, where it has no ``source_timeout`` of its own; 0 for never.
+            now_ns: the current time.
+            timeout: the seconds of silence that are allowed, unless the sensor has its own ``source_timeout``; 0 for no
+                limit.
         """
         if not self._value("enabled", True):
             return np.zeros((0, 2))
@@ -92,7 +95,7 @@ class Source:
         return placed[:, :2]
 
     def _newest(self) -> tuple[Any, Transform] | None:
-        """Return the newest message with a known transform, and the transform, which often arrives later."""
+        """Return the latest message whose transform is known, and the transform, which often arrives later."""
         for message in reversed(self._waiting):
             pose = self._pose(message.header.frame_id, message.header.stamp.nanoseconds)
             if pose is not None:
@@ -102,7 +105,7 @@ class Source:
         return None
 
     def _pose(self, frame: str, stamp_ns: int) -> Transform | None:
-        """The sensor's pose at the time of a message, in the robot's frame of now."""
+        """Return the sensor's pose at the time of a message, in the robot's current frame."""
         try:
             if self._fixed is None:
                 return self._transforms.lookup(self._base, frame, 0)[0]
@@ -122,7 +125,10 @@ class Source:
         return None if points is None else points[np.isfinite(points).all(axis=1)]
 
     def _of_range(self, message: Any) -> NDArray[np.float64]:
-        """Points on the arc of a range reading; none for a reading outside of the sensor's range."""
+        """Return points on the arc of a range reading.
+
+        There are none if the reading is outside the sensor's range.
+        """
         if not message.min_range <= message.range <= message.max_range:
             return np.zeros((0, 3))
         half = message.field_of_view / 2.0

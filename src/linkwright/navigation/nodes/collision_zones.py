@@ -33,13 +33,13 @@ class Zone:
     """A zone with its rule and shape.
 
     Args:
-        node: whose it is.
-        name: of the zone, before its parameters.
-        transforms: where frames of shapes are.
-        base: frame of the robot.
+        node: the node that has the zone's parameters.
+        name: the name of the zone, the prefix of its parameters.
+        transforms: the transforms of the frames of shapes.
+        base: the frame of the robot.
 
     Raises:
-        LinkwrightError: NODE433, a parameter cannot have its value.
+        LinkwrightError: NODE433, a parameter has an invalid value.
     """
 
     def __init__(self, node: Node, name: str, transforms: BufferCore, base: str) -> None:
@@ -70,7 +70,10 @@ class Zone:
             part.destroy()
 
     def judging(self, velocity: Velocity, seen: Mapping[str, Points]) -> tuple[str, Rule, Shape, Points] | None:
-        """Its name, rule, shape at a velocity and points; None if it is switched off or has no shape."""
+        """Return the zone's name, rule, shape at a velocity, and points.
+
+        Returns None if it is disabled or has no shape.
+        """
         if not self._value("enabled", True):
             return None
         for speed_range in self._ranges:
@@ -85,7 +88,7 @@ class Zone:
         return self.name, self.rule, self._shape, np.concatenate(mine) if mine else np.zeros((0, 2))
 
     def publish(self) -> None:
-        """Publish its polygon for displays."""
+        """Publish the zone's polygon for displays."""
         if (
             self._publisher is None
             or not isinstance(self._shape, Outline)
@@ -108,7 +111,7 @@ class Zone:
         if word not in _ACTIONS:
             raise bad_value(f"{self.name}.action_type", word, self._node.get_name(), list(_ACTIONS))
         least = int(self._value("min_points", 4))
-        if f"{self.name}.max_points" in self._node.undeclared_overrides():  # Humble's
+        if f"{self.name}.max_points" in self._node.undeclared_overrides():  # Humble's parameter
             least = int(self._value("max_points", 3)) + 1
         usual = Rule(_ACTIONS[word])
         names = [
@@ -162,7 +165,10 @@ class Zone:
             self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
 
     def _corners(self, name: str) -> Footprint | None:
-        """Return the corners from Jazzy's parameter, a text, or Humble's, a list of numbers; None if there are none."""
+        """Return the corners from Jazzy's parameter (a text) or Humble's (a list of numbers).
+
+        Returns None if there are none.
+        """
         full = f"{self.name}.{name}"
         if not self._node.has_parameter(full):
             self._node.declare_parameter(full, None, ParameterDescriptor(dynamic_typing=True))
@@ -191,9 +197,9 @@ class Zone:
         self._place()
 
     def _place(self) -> None:
-        """Transform the corners of a topic to the robot's frame of now.
+        """Transform the corners received on a topic to the robot's current frame.
 
-        Footprints are published at the robot's pose, so they are transformed back with the transform of their stamp.
+        Footprints are published at the robot's pose, so they are transformed back with the transform at their stamp.
         """
         if self._polygon is None:
             return

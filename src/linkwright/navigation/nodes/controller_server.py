@@ -1,7 +1,7 @@
-"""controller_server of nav2: follows the paths of the action ``follow_path``.
+"""nav2's controller_server: follows paths for the action ``follow_path``.
 
-Parameters, topics and results are those of nav2. Deliberate differences: unless ``enable_stamped_cmd_vel`` is set,
-Twist or TwistStamped is published, whichever is listened to; while the costmap is not current the robot stands still.
+Parameters, topics and results are those of nav2. Deliberate differences: unless ``enable_stamped_cmd_vel`` is set, the
+type that subscribers expect, Twist or TwistStamped, is published; the robot stops while the costmap is not current.
 """
 
 from __future__ import annotations
@@ -38,20 +38,20 @@ _STALE_PATH_FRAME = 5.0
 
 
 class _NotNowError(GoalError):
-    """Something is unknown for the moment, and the goal fails if that lasts."""
+    """Raised when data is temporarily unavailable; the goal fails if that lasts."""
 
 
 class ControllerNode(ManagedNode):
-    """controller_server as a managed node.
+    """The managed node of controller_server.
 
     Attributes:
-        costmap: around the robot; set before it is configured.
+        costmap: the costmap around the robot; set before the node is configured.
     """
 
     costmap: CostmapNode
 
     def declare(self) -> None:
-        """Declare the parameters of nav2 that do not belong to a plugin."""
+        """Declare nav2's parameters that do not belong to a plugin."""
         declare = self.declare_parameter
         declare("controller_frequency", 20.0)
         for axis in ("x", "y", "theta"):
@@ -65,17 +65,17 @@ class ControllerNode(ManagedNode):
         declare("use_realtime_priority", False)
         declare("action_server_result_timeout", 10.0)
         self._stamped: bool | None = declare("enable_stamped_cmd_vel", ParameterType.BOOL).value
-        self._old_progress: str = declare("progress_checker_plugin", "").value  # Humble's
+        self._old_progress: str = declare("progress_checker_plugin", "").value  # Humble's parameter
         self._followers: dict[str, Follower] = {}
         self._goals: GoalServer | None = None
         self._measured = STILL
         self._command: Velocity | None = None
 
     def configure(self) -> None:
-        """Make the plugins, the costmap and the action server.
+        """Create the plugins, the costmap and the action server.
 
         Raises:
-            LinkwrightError: a parameter is not given or means nothing.
+            LinkwrightError: a parameter is missing or has an invalid value.
         """
         self._frequency = positive(self, "controller_frequency", self._value("controller_frequency"))
         progress = [self._old_progress] if self._old_progress else None
@@ -185,7 +185,7 @@ class ControllerNode(ManagedNode):
             self.get_logger().warning(message, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
 
     def _drive(self, goals: GoalServer) -> None:
-        """Run a cycle of following."""
+        """Run one cycle of path following."""
         now_ns = self.now_ns()
         frame = self._pose(self._path_frame, _STALE_PATH_FRAME)
         pose = self._pose(self.costmap.robot_base_frame, self.costmap.get_parameter("transform_tolerance").value)
@@ -220,7 +220,7 @@ class ControllerNode(ManagedNode):
         goals.feedback(distance_to_goal=self._path.remaining(x, y), speed=hypot(self._measured.x, self._measured.y))
 
     def _bear(self, reason: str, now_ns: int) -> None:
-        """Stop the robot without a valid velocity, for as long as ``failure_tolerance`` allows."""
+        """Stop the robot when there is no valid velocity; abort after ``failure_tolerance``."""
         tolerance = self._value("failure_tolerance")
         if not tolerance:
             raise GoalError("NO_VALID_CONTROL", reason)
@@ -230,14 +230,14 @@ class ControllerNode(ManagedNode):
             raise GoalError("PATIENCE_EXCEEDED", "Controller patience exceeded")
 
     def _velocity(self) -> Velocity:
-        """The robot's velocity: the commanded one, before that the measured one."""
+        """Return the robot's velocity: the commanded one, or the measured one before the first command."""
         return self._measured if self._command is None else self._command
 
     def _pose(self, frame: str, most_seconds: float) -> Pose:
-        """The pose of a frame in that of the costmap.
+        """Return the pose of a frame in the frame of the costmap.
 
         Raises:
-            _NotNowError: it is not known, or has not been for too long.
+            _NotNowError: the pose is unknown, or too old.
         """
         target = self.costmap.global_frame
         if not frame or frame == target:
@@ -284,24 +284,24 @@ class ControllerNode(ManagedNode):
 
 
 class ControllerServer(ManagedServer):
-    """The running node, with its costmap."""
+    """The running controller_server node, with its costmap."""
 
     DEFAULT_NAME = "controller_server"
     NODE = ControllerNode
     _node: ControllerNode
 
     def prepare(self, graph: Graph, options: NodeOptions) -> None:
-        """Make the costmap."""
+        """Create the costmap."""
         self._node.costmap = make_costmap(self._node, graph, options, "local_costmap")
 
     def close(self) -> None:
-        """End it."""
+        """Close the server and its costmap."""
         super().close()
         self._node.costmap.destroy_node()
 
 
 def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
-    """The plugin that a goal names; the only one if it names none."""
+    """Return the plugin that a goal names, or the only plugin if it names none."""
     if name in plugins:
         return plugins[name]
     if not name and len(plugins) == 1:
@@ -310,7 +310,7 @@ def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
 
 
 def _placed(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Poses of a frame, of shape (poses, 3), transformed by the pose of that frame."""
+    """Transform poses, of shape (poses, 3), by the pose of their frame."""
     x, y, yaw = frame
     c, s = cos(yaw), sin(yaw)
     placed: NDArray[np.float64] = np.stack(
@@ -320,7 +320,7 @@ def _placed(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _seen_from(frame: Pose, pose: Pose) -> Pose:
-    """A pose in a frame, both given in the same one."""
+    """Return a pose relative to a frame; both are given in a common frame."""
     c, s = cos(frame[2]), sin(frame[2])
     dx, dy = pose[0] - frame[0], pose[1] - frame[1]
     return c * dx + s * dy, c * dy - s * dx, pose[2] - frame[2]

@@ -1,8 +1,8 @@
 """Costmaps of nav2's servers: nodes such as ``/local_costmap/local_costmap`` in the process of a server.
 
-Source: nav2_costmap_2d ``Costmap2DROS``, Humble and Jazzy. Deliberate differences: it is activated even where the place
-of the robot is not known yet, and begins to work when it is; layers that we do not have, and filters of costs, are left
-out with a line.
+Source: nav2_costmap_2d ``Costmap2DROS``, Humble and Jazzy. Deliberate differences: a costmap can be activated before
+the robot's pose is known, and starts updating once it is known. Unsupported layers and costmap filters are skipped
+with a log line.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _OF_TF = (DEFAULT_TF_TOPIC, DEFAULT_STATIC_TF_TOPIC)
 
 @dataclass(frozen=True, kw_only=True)
 class CostmapParameters:
-    """The parameters that do not belong to a layer, under nav2's names: metres, seconds and hertz."""
+    """The parameters that do not belong to a layer, with nav2's names, in metres, seconds and hertz."""
 
     always_send_full_costmap: bool = False
     map_vis_z: float = 0.0
@@ -75,15 +75,15 @@ class CostmapParameters:
 
 
 class CostmapNode(ManagedNode):
-    """A costmap as a managed node.
+    """The managed node of a costmap.
 
     Attributes:
-        transforms: where frames are, from before it is configured.
+        transforms: the transforms between frames; available before the node is configured.
     """
 
     def __init__(self, *arguments: Any, **named: Any) -> None:
         super().__init__(*arguments, **named)
-        self._beats = 0.0  # the server that it belongs to has the bond
+        self._beats = 0.0  # The bond is formed by the server to which the costmap belongs.
 
     def declare(self) -> None:
         """Declare the parameters that do not belong to a layer."""
@@ -92,7 +92,7 @@ class CostmapNode(ManagedNode):
         self._publisher: CostmapPublisher | None = None
         self._published_ns: int | None = None
         self.add_post_set_parameters_callback(self._follow)
-        self._table = ParameterTable(self, CostmapParameters)  # its callback, as the later one, is called first
+        self._table = ParameterTable(self, CostmapParameters)  # Added last, its callback runs first.
         self._filters: list[str] = texts_of(self, "filters", [])
         self.transforms = BufferCore(logger=self.get_logger().get_child("tf2"))
         TransformListener(self.transforms, self)
@@ -101,7 +101,7 @@ class CostmapNode(ManagedNode):
 
     @property
     def global_frame(self) -> str:
-        """Its own frame."""
+        """The frame of the costmap."""
         return self._given.global_frame
 
     @property
@@ -114,7 +114,7 @@ class CostmapNode(ManagedNode):
         """The costmap with its layers.
 
         Raises:
-            RuntimeError: it is not configured.
+            RuntimeError: the node is not configured.
         """
         if self._layered is None:
             raise RuntimeError(f"{self.get_name()} is not configured")
@@ -122,7 +122,10 @@ class CostmapNode(ManagedNode):
 
     @property
     def costmap(self) -> Costmap:
-        """The costs as of the last update; another object after the costmap has moved. See `layered`."""
+        """The costs after the last update.
+
+        It is another object after the costmap has moved. See `layered`.
+        """
         return self.layered.costmap
 
     @property
@@ -137,11 +140,14 @@ class CostmapNode(ManagedNode):
 
     @property
     def is_current(self) -> bool:
-        """Whether it was updated, has its map, and sensors publish as often as expected."""
+        """Whether the costmap was updated, has its map, and its sensors publish as often as expected."""
         return self._layered is not None and self._layered.is_current(self.now_ns())
 
     def robot_pose(self) -> Pose | None:
-        """x, y (metres) and yaw (radians) of the robot in the frame of the costmap; None if they are unknown."""
+        """Return x, y (metres) and yaw (radians) of the robot in the frame of the costmap.
+
+        Returns None if they are unknown.
+        """
         return self.pose_of((0.0, 0.0, 0.0), self.robot_base_frame)
 
     def pose_of(self, pose: Pose, frame: str, time_ns: int = 0) -> Pose | None:
@@ -149,7 +155,7 @@ class CostmapNode(ManagedNode):
 
         Args:
             pose: x, y (metres) and yaw (radians).
-            frame: the frame of the pose; empty for that of the costmap.
+            frame: the frame of the pose; empty for the frame of the costmap.
             time_ns: the time of the transform; 0 for the latest.
         """
         if not frame or frame == self.global_frame:
@@ -166,10 +172,10 @@ class CostmapNode(ManagedNode):
     # --- its life -----------------------------------------------------------------------------------------------------
 
     def configure(self) -> None:
-        """Make the layers, the topics and the services.
+        """Create the layers, the topics and the services.
 
         Raises:
-            LinkwrightError: NODE431, NODE433, a parameter is not given or cannot have its value; NAV101, SciPy is not
+            LinkwrightError: NODE431, NODE433, a parameter is missing or has an invalid value; NAV101, SciPy is not
                 installed.
         """
         load_scipy("ndimage")
@@ -200,12 +206,12 @@ class CostmapNode(ManagedNode):
         self._offer_services()
 
     def activate(self) -> None:
-        """Start to update it."""
+        """Start updating the costmap."""
         self.layered.touch()
         self._begin_updates()
 
     def deactivate(self) -> None:
-        """Stop to update it."""
+        """Stop updating the costmap."""
         self.end_cycles()
 
     def cleanup(self) -> None:
@@ -216,7 +222,7 @@ class CostmapNode(ManagedNode):
         self._shared = self._layered = self._publisher = None
 
     def update(self) -> bool:
-        """Update it; False if the robot's pose is unknown."""
+        """Update the costmap; return False if the robot's pose is unknown."""
         assert self._shared is not None, "it is configured"
         pose = self.robot_pose()
         if pose is None:
@@ -309,7 +315,7 @@ class CostmapNode(ManagedNode):
         self.layered.footprint = corners
 
     def _follow(self, changed: list[Parameter]) -> None:
-        """Apply changed parameters while it is active."""
+        """Apply changed parameters to the active node."""
         layered = self._layered
         if layered is None or self._shared is None:
             return
@@ -375,12 +381,12 @@ class CostmapNode(ManagedNode):
 
 
 def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) -> CostmapNode:
-    """Make the costmap of a server, in a namespace of its name within the server's.
+    """Create the costmap of a server, in a sub-namespace of the server's namespace with the costmap's name.
 
     Args:
-        server: whose it is; its ``use_sim_time`` counts for the costmap, too.
-        graph: where it is to live.
-        options: how the server is started; parameters for the costmap are those of its process.
+        server: the server; its ``use_sim_time`` also applies to the costmap.
+        graph: the graph to which the costmap's node is added.
+        options: the options of the server; the costmap's parameters are taken from the same process.
         name: ``local_costmap`` or ``global_costmap``.
 
     Raises:
@@ -405,9 +411,11 @@ def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) ->
 
 
 def _for_tf(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
-    """Remapping rules for tf: the costmap uses the server's topics, not those of its own namespace.
+    """Return remapping rules with which the costmap uses the server's tf topics.
 
-    Source: a costmap of nav2 listens by a node of its process that is not in the costmap's namespace.
+    Without them it would use the tf topics of its own namespace.
+
+    Source: in nav2, a costmap listens with a node of its process that is not in the costmap's namespace.
     """
     source, target = rule
     if source not in _OF_TF or target.startswith("/"):
@@ -416,7 +424,7 @@ def _for_tf(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
 
 
 def _upright(grid: Grid) -> Grid:
-    """The size and origin of the smallest axis-aligned grid around another one."""
+    """Return the size and origin of the smallest axis-aligned grid around another grid."""
     if not grid.yaw:
         return grid
     rows, columns = grid.rows, grid.columns

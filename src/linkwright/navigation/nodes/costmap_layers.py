@@ -1,4 +1,4 @@
-"""Making the layers of costmaps from nav2's parameters.
+"""Creation of costmap layers from nav2's parameters.
 
 Source: nav2_costmap_2d, Humble and Jazzy.
 """
@@ -45,7 +45,7 @@ class Surroundings:
         transforms: the transforms between frames.
         frame: the frame of the costmap.
         on_map: called by the static layer with a map and its frame.
-        topics: the topics of the layers, to be destroyed in the end.
+        topics: the topics of the layers, which are destroyed with the costmap.
         sensors: the topics whose messages are processed when the costmap is updated.
         layers: the layers by name, from the bottom to the top.
     """
@@ -59,15 +59,17 @@ class Surroundings:
     layers: dict[str, Layer] = field(default_factory=dict)
 
     def value(self, name: str, default: Any) -> Any:
-        """The value of a parameter, which is declared if it is not yet."""
+        """Return the value of a parameter, declaring it first if necessary."""
         return value_of(self.node, name, default)
 
 
 def make_layers(shared: Surroundings, names: list[str]) -> None:
-    """Make the layers of the parameter ``plugins``; unknown ones are left out with a warning.
+    """Create the layers listed in the parameter ``plugins``.
+
+    Unknown layers are skipped with a warning.
 
     Raises:
-        LinkwrightError: NODE431, a layer has no type; NODE433, a parameter cannot have its value.
+        LinkwrightError: NODE431, a layer has no type; NODE433, a parameter has an invalid value.
     """
     makers: dict[str, Callable[[Surroundings, str], Layer]] = {
         "StaticLayer": _static,
@@ -104,7 +106,7 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
 
 
 def follow(shared: Surroundings, changed: list[Parameter]) -> bool:
-    """Apply changed parameters of layers; whether there were any."""
+    """Apply changed parameters of layers, and return whether there were any."""
     found = False
     for changed_parameter in changed:
         name, _, parameter = changed_parameter.name.partition(".")
@@ -236,5 +238,5 @@ def _denoise(shared: Surroundings, name: str) -> Layer:
 
 
 def _beside(node: Node, topic: str) -> str:
-    """A relative topic, resolved beside the namespace of the costmap, not in it."""
+    """Resolve a relative topic in the parent of the costmap's namespace."""
     return topic if topic.startswith(("/", "~")) else join(split(node.get_namespace())[0], topic)

@@ -1,4 +1,4 @@
-"""Publishing costmaps: as occupancy grids for displays, and raw for other nodes.
+"""Publication of costmaps: as occupancy grids for displays, and raw for other nodes.
 
 Source: nav2_costmap_2d ``Costmap2DPublisher``.
 """
@@ -34,7 +34,7 @@ PERCENTAGES = _percentages()
 
 
 def raw_message(costmap: Costmap, frame: str, stamp: Any) -> Any:
-    """The nav2_msgs/Costmap of a costmap."""
+    """Convert a costmap to a nav2_msgs/Costmap."""
     message, grid = get_message("nav2_msgs/msg/Costmap")(), costmap.grid
     message.header.frame_id, message.header.stamp = frame, stamp
     metadata = message.metadata
@@ -53,7 +53,7 @@ class CostmapPublisher:
         node: the node of the costmap.
         costmap: the costmap to publish.
         frame: the frame of the costmap.
-        always_full: whether to send all of it however little changed.
+        always_full: whether to publish the whole costmap after every change.
     """
 
     def __init__(self, node: Node, costmap: LayeredCostmap, frame: str, *, always_full: bool) -> None:
@@ -83,7 +83,7 @@ class CostmapPublisher:
         self._pending = self._pending.joined(window)
 
     def publish(self) -> None:
-        """Publish the changes; all of it to new subscribers, and when it moved."""
+        """Publish the changes; the whole costmap to new subscribers and after it moved."""
         grid = self._costmap.costmap.grid
         place = (grid.x, grid.y, grid.rows, grid.columns)
         listeners = self._full.get_subscription_count() + self._raw.get_subscription_count()
@@ -109,7 +109,7 @@ class CostmapPublisher:
             self._publish_raw(window, stamp)
 
     def _publish_raw(self, window: Window, stamp: Any) -> None:
-        """Publish all of it, for those without updates, and the changes."""
+        """Publish the whole raw costmap for subscribers without updates, and the changes."""
         if self._raw.get_subscription_count():
             self._raw.publish(raw_message(self._costmap.costmap, self._frame, stamp))
         if self._raw_updates is not None and self._raw_updates.get_subscription_count() and not window.is_empty:

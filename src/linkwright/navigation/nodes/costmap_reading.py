@@ -1,4 +1,4 @@
-"""Reading costmaps of other nodes from nav2_msgs/Costmap."""
+"""Conversion of other nodes' nav2_msgs/Costmap messages to costmaps."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""Subscriptions of a costmap's layers: laser scans, clouds, ranges and maps.
+"""Subscriptions of a costmap's layers: laser scans, point clouds, ranges and maps.
 
-Source: nav2_costmap_2d ``ObservationBuffer``, ``StaticLayer``. Scans wait until their place is known, and are taken in
-when the costmap is updated: of a sensor whose points count only until there are others, the last one that has a place.
+Source: nav2_costmap_2d ``ObservationBuffer``, ``StaticLayer``. Messages wait until their transform is known, and are
+processed when the costmap is updated. If a sensor's points do not persist, only its last message with a known
+transform is used.
 """
 
 from __future__ import annotations
@@ -47,11 +48,11 @@ class SensorTopic(ABC):
     """A topic of a sensor, whose messages wait until their transforms are known.
 
     Args:
-        node: listens.
-        topic: its name.
-        kind: of its messages, in sensor_msgs.
-        transforms: where sensors are.
-        frame: of the costmap.
+        node: the node that subscribes.
+        topic: the name of the topic.
+        kind: the type of its messages, in sensor_msgs.
+        transforms: the transforms of the sensors.
+        frame: the frame of the costmap.
     """
 
     def __init__(self, node: Node, topic: str, kind: str, transforms: BufferCore, frame: str) -> None:
@@ -65,7 +66,7 @@ class SensorTopic(ABC):
         self._subscription.destroy()
 
     def process(self) -> None:
-        """Give the layer the messages whose transforms are known."""
+        """Pass the messages whose transforms are known to the layer."""
         waiting = list(self._waiting)
         placed = [(message, pose) for message in waiting if (pose := self._pose(message)) is not None]
         if not placed:
@@ -79,11 +80,11 @@ class SensorTopic(ABC):
     @property
     @abstractmethod
     def all_count(self) -> bool:
-        """Whether all messages are used, or only the newest."""
+        """Whether all messages are used; otherwise only the latest one is."""
 
     @abstractmethod
     def _observe(self, message: Any, pose: Transform) -> None:
-        """Give the layer a message with the sensor's pose in the frame of the costmap."""
+        """Pass a message to the layer with the sensor's pose in the frame of the costmap."""
 
     def _receive(self, message: Any) -> None:
         self._waiting.append(message)
@@ -97,16 +98,16 @@ class SensorTopic(ABC):
 
 
 class PointsTopic(SensorTopic):
-    """A topic of scans or clouds, for an obstacle layer.
+    """A topic of scans or point clouds, for an obstacle layer.
 
     Args:
-        node: listens.
+        node: the node that subscribes.
         topic: the name of the topic.
         kind: ``LaserScan`` or ``PointCloud2``.
         buffer: receives the observations.
         transforms: the transforms of the sensors.
         frame: the frame of the costmap.
-        sensor_frame: the frame of the sensor; empty for that of its messages.
+        sensor_frame: the frame of the sensor; empty to use the frame of its messages.
         inf_is_valid: whether a ray without a return clears its full length.
     """
 
@@ -164,13 +165,13 @@ class RangeTopic(SensorTopic):
 
     @property
     def all_count(self) -> bool:
-        """True: every message updates the probabilities."""
+        """Always true: every message updates the probabilities."""
         return True
 
     def _observe(self, message: Any, pose: Transform) -> None:
         least, most, distance = message.min_range, message.max_range, message.range
         free = self._layer.settings.clear_on_max_reading
-        if least == most:  # of a sensor that only detects presence
+        if least == most:  # A sensor with equal limits only detects presence.
             if not np.isinf(distance) or (distance > 0.0 and not free):
                 return
             free, distance = distance > 0.0, least
@@ -189,10 +190,10 @@ class MapTopic:
     """The topic of a map, for a static layer.
 
     Args:
-        node: listens.
-        topic: its name.
+        node: the node that subscribes.
+        topic: the name of the topic.
         layer: receives the map.
-        transient_local: whether to receive a map that was sent earlier.
+        transient_local: whether to receive a map that was published earlier.
         updates: whether to subscribe to changed parts of the map, on the same topic with the suffix ``_updates``.
         on_map: called with each full map and its frame.
     """

@@ -1,7 +1,7 @@
-"""The plugins of nav2's controller_server: our classes under nav2's names, with nav2's parameters.
+"""Plugins of nav2's controller_server: Linkwright's classes with nav2's names and parameters.
 
-Deliberate differences: DWB and MPPI are one follower of our own, which has the parameters of both that are limits and
-times; which of the others were given is said in a line.
+Deliberate differences: one sampling follower replaces DWB and MPPI. It uses the limits and times among the parameters
+of both, and logs which other parameters were set.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ USUAL_PROGRESS_CHECKERS = {"progress_checker": "nav2_controller/SimpleProgressCh
 
 
 def make_follower(node: Node, plugin: str) -> Follower:
-    """Make the follower of a plugin.
+    """Create the follower of a plugin.
 
     Raises:
-        LinkwrightError: NODE431, its type is not given; a parameter has another type.
+        LinkwrightError: NODE431, its type is not set; a parameter has another type.
     """
     kind = type_of(node, plugin, USUAL_FOLLOWERS)
     logger = node.get_logger()
@@ -79,7 +79,7 @@ def _made(node: Node, plugin: str, kind: str) -> Follower:
 
 
 def _dwb(node: Node, plugin: str) -> SamplingParameters:
-    """DWB's limits and simulated time, with its defaults."""
+    """Return the settings for DWB: its limits and simulated time, with its defaults."""
 
     def value(name: str, default: float) -> float:
         return float(value_of(node, f"{plugin}.{name}", default))
@@ -96,7 +96,7 @@ def _dwb(node: Node, plugin: str) -> SamplingParameters:
 
 
 def _mppi(node: Node, plugin: str) -> SamplingParameters:
-    """MPPI's limits and simulated time, with its defaults."""
+    """Return the settings for MPPI: its limits and simulated time, with its defaults."""
 
     def value(name: str, default: float) -> float:
         return float(value_of(node, f"{plugin}.{name}", default))
@@ -114,7 +114,7 @@ def _mppi(node: Node, plugin: str) -> SamplingParameters:
 
 
 def make_goal_checker(node: Node, plugin: str) -> GoalChecker:
-    """Make the goal checker of a plugin; see `make_follower`."""
+    """Create the goal checker of a plugin; see `make_follower`."""
     kind = type_of(node, plugin, USUAL_GOAL_CHECKERS)
     checkers: dict[str, Callable[[], GoalChecker]] = {
         "nav2_controller/SimpleGoalChecker": lambda: SimpleGoalChecker(declared(node, SimpleGoalParameters, plugin)),
@@ -125,7 +125,7 @@ def make_goal_checker(node: Node, plugin: str) -> GoalChecker:
 
 
 def make_progress_checker(node: Node, plugin: str) -> ProgressChecker:
-    """Make the progress checker of a plugin; see `make_follower`."""
+    """Create the progress checker of a plugin; see `make_follower`."""
     kind = type_of(node, plugin, USUAL_PROGRESS_CHECKERS)
     checkers: dict[str, Callable[[], ProgressChecker]] = {
         "nav2_controller/SimpleProgressChecker": lambda: ProgressChecker(declared(node, ProgressParameters, plugin)),

@@ -1,4 +1,4 @@
-"""Action servers with one goal at a time: a new goal replaces the one before, as in nav2's servers."""
+"""Action servers with one goal at a time: a new goal replaces the previous one, as in nav2's servers."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from linkwright.navigation.nodes.managed import ManagedNode
 
 
 class GoalError(Exception):
-    """A goal cannot be reached; the text gives the reason.
+    """Raised when a goal cannot be reached; the text gives the reason.
 
     Attributes:
-        code: name of nav2's error code.
+        code: the name of nav2's error code.
     """
 
     def __init__(self, code: str, reason: str) -> None:
@@ -26,14 +26,14 @@ class GoalError(Exception):
 class GoalServer:
     """The action server of a managed node, which refuses goals while the node is not active.
 
+    The code that works on the goal must check `is_canceled` regularly, and then call `canceled`.
+
     Args:
         node: the owner of the server.
         kind: the type of the action.
         name: the name of the action.
         begin: called with each accepted goal, after the previous one was aborted.
         may_begin: returns whether to accept a goal; by default every goal is accepted.
-
-    The code that works on the goal checks now and then whether it `is_canceled`, and then calls `canceled`.
 
     Attributes:
         current: the active goal.
@@ -71,11 +71,11 @@ class GoalServer:
 
     @property
     def is_canceled(self) -> bool:
-        """Whether the active goal is to be canceled."""
+        """Whether cancellation of the active goal was requested."""
         return self.current is not None and self.current.is_cancel_requested
 
     def feedback(self, **fields: Any) -> None:
-        """Publish feedback."""
+        """Publish feedback with these fields."""
         if self.current is not None:
             message = self._type.Feedback()
             for name, value in fields.items():
@@ -83,12 +83,12 @@ class GoalServer:
             self.current.publish_feedback(message)
 
     def succeed(self, **fields: Any) -> None:
-        """End with the status succeeded; fields of the result."""
+        """End the goal with the status succeeded and these fields of the result."""
         if (goal := self._leave()) is not None:
             goal.succeed(self._result("", "", fields))
 
     def abort(self, code: str, reason: str, **fields: Any) -> None:
-        """End with the status aborted.
+        """End the goal with the status aborted.
 
         Args:
             code: the name of the error code, for results that have one (Jazzy).
@@ -99,7 +99,7 @@ class GoalServer:
             goal.abort(self._result(code, reason, fields))
 
     def canceled(self, **fields: Any) -> None:
-        """End with the status canceled."""
+        """End the goal with the status canceled."""
         if (goal := self._leave()) is not None:
             if goal.is_cancel_requested:
                 goal.canceled(self._result("", "", fields))
@@ -107,7 +107,7 @@ class GoalServer:
                 goal.abort(self._result("", "", fields))
 
     def destroy(self) -> None:
-        """Remove it from the graph; an active goal is aborted."""
+        """Remove the server from the graph; an active goal is aborted."""
         self.abort("UNKNOWN", "the server ends")
         self._server.destroy()
 
@@ -139,4 +139,4 @@ class GoalServer:
 
 
 def _never(_goal: ServerGoalHandle) -> None:
-    """Never called: goals are worked on by timers."""
+    """Do nothing: goals are executed by timers, not by this callback."""

@@ -1,8 +1,8 @@
-"""lifecycle_manager of nav2: configures and activates managed nodes in order, and takes all down when one dies.
+"""nav2's lifecycle_manager: configures and activates managed nodes in order, and stops all when one dies.
 
 Services, parameters, order and log lines are those of nav2. Deliberate differences: the manager waits for an answer as
 long as the node exists, with a log line each ``service_timeout``, so that a slow machine does not cause a failure; and
-when a node dies the others are brought down without waiting for it.
+when a node dies, the others are brought down without waiting for it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _ONE_SECOND = 1.0
 
 
 class _Step(Enum):
-    """A transition: its number, the log line before it, and the state that it leads to."""
+    """A transition: its number, the preceding log line, and the resulting state."""
 
     CONFIGURE = (1, "Configuring", INACTIVE)
     CLEANUP = (2, "Cleaning up", UNCONFIGURED)
@@ -62,7 +62,7 @@ class _ManagedNodeClient:
     """A client of one managed node.
 
     Args:
-        node: the node that asks.
+        node: the node that calls the services.
         name: the name of the managed node, relative to the namespace of `node`.
     """
 
@@ -78,29 +78,29 @@ class _ManagedNodeClient:
         self._asking = node.create_client(self._get, f"{name}/get_state")
 
     def is_there(self) -> bool:
-        """Whether its services exist."""
+        """Return whether the services of the managed node exist."""
         return bool(self._changing.service_is_ready() and self._asking.service_is_ready())
 
     async def wait(self, look_again: float) -> None:
-        """Wait until its services exist, with a log line every few seconds."""
+        """Wait until the services of the managed node exist, with a log line every few seconds."""
         for client in (self._changing, self._asking):
             while not await is_served(self._node, client, look_again):
                 self._node.get_logger().info(f"Waiting for service {client.service_name}...")
 
     async def change(self, step: _Step, word_each: float) -> bool:
-        """Run a transition; whether it succeeded. A node that leaves meanwhile fails."""
+        """Run a transition, and return whether it succeeded; it fails if the node leaves meanwhile."""
         request = self._change.Request()
         request.transition.id = step.number
         answer = await self._answer(self._changing, request, word_each)
         return bool(answer is not None and answer.success) and await self.state(word_each) == step.goal.state_id
 
     async def state(self, word_each: float) -> int | None:
-        """The number of its state; None if it is missing."""
+        """Return the ID of the node's state; None if the node is missing."""
         answer = await self._answer(self._asking, self._get.Request(), word_each)
         return None if answer is None else int(answer.current_state.id)
 
     async def answers(self, seconds: float) -> bool:
-        """Whether it answers within a number of seconds that it is unconfigured."""
+        """Return whether the node reports within some seconds that it is unconfigured."""
         if not self.is_there():
             return False
         future = self._asking.call_async(self._get.Request())
@@ -111,7 +111,7 @@ class _ManagedNodeClient:
         return False
 
     def end_bond(self) -> None:
-        """Break the bond."""
+        """End the bond with the managed node."""
         if self.bond is not None:
             self.bond.end()
             self.bond = None
@@ -129,7 +129,7 @@ class _ManagedNodeClient:
 
 
 class LifecycleManager(SingleNode):
-    """The running node.
+    """The running lifecycle_manager node.
 
     Raises:
         LinkwrightError: NODE433, ``node_names`` is not a list of names.
@@ -149,7 +149,7 @@ class LifecycleManager(SingleNode):
         self._tasks: set[asyncio.Task[Any]] = set()
         self._logger.info("Creating and initializing lifecycle service clients")
         self._managed = [_ManagedNodeClient(self._node, name) for name in self._names]
-        group = ReentrantCallbackGroup()  # a command takes long, and whether it is active can be asked meanwhile
+        group = ReentrantCallbackGroup()  # A command takes long, and ``is_active`` must be answered meanwhile.
         name = self._node.get_name()
         for kind, service, answer in (
             ("nav2_msgs/srv/ManageLifecycleNodes", "manage_nodes", self._on_manage),
@@ -161,7 +161,7 @@ class LifecycleManager(SingleNode):
             self._begin(self._alone(self._startup))
 
     def close(self) -> None:
-        """Close it; the managed nodes stay as they are."""
+        """Close the manager; the managed nodes keep their states."""
         for task in self._tasks:
             task.cancel()
         for managed in self._managed:
@@ -206,7 +206,7 @@ class LifecycleManager(SingleNode):
         return response
 
     async def _alone(self, command: Callable[[], Coroutine[Any, Any, bool]]) -> bool:
-        """Run commands one after the other."""
+        """Run a command after all earlier commands have finished."""
         async with self._busy:
             return await command()
 
@@ -267,7 +267,7 @@ class LifecycleManager(SingleNode):
     async def _all(
         self, step: _Step, *, whatever_happens: bool = False, without: _ManagedNodeClient | None = None
     ) -> bool:
-        """Run a transition of all nodes, downwards in reverse order."""
+        """Run a transition of all nodes, in reverse order for shutting down."""
         upwards = step in (_Step.CONFIGURE, _Step.ACTIVATE)
         for managed in self._managed if upwards else reversed(self._managed):
             if managed is not without and not await self._one(managed, step, wait=upwards) and not whatever_happens:
@@ -279,7 +279,7 @@ class LifecycleManager(SingleNode):
         if wait:
             await managed.wait(self._word_each)
         if step is not _Step.ACTIVATE:
-            managed.end_bond()  # before the node leaves it, which is not a failure
+            managed.end_bond()  # End the bond before the node leaves it; otherwise that would count as a failure.
         if not await managed.change(step, self._word_each):
             self._logger.error(f"Failed to change state for node: {managed.name}")
             return False
@@ -314,9 +314,9 @@ class LifecycleManager(SingleNode):
         self._begin(self._alone(lambda: self._bring_down(managed)))
 
     async def _bring_down(self, dead: _ManagedNodeClient) -> bool:
-        """Take the other nodes down after one died, and all up again when it comes back."""
+        """Take the other nodes down after one died, and bring all up when it returns."""
         if dead.bond is None:
-            return True  # it left with another one, or on command
+            return True  # It left with another node, or on command.
         if self._state not in (_State.ACTIVE, _State.UNKNOWN):
             return True
         self._logger.info(f"Have not received a heartbeat from {dead.name}.")
@@ -348,7 +348,7 @@ class LifecycleManager(SingleNode):
             self._logger.info("Failed to re-establish connection from a server crash after maximum timeout.")
 
     def _stays_down(self) -> bool:
-        """Return whether no command has come since the nodes were taken down."""
+        """Return whether no command was received since the nodes were taken down."""
         return self._state is _State.UNCONFIGURED
 
     def _begin(self, work: Coroutine[Any, Any, Any]) -> None:

@@ -1,4 +1,4 @@
-"""The base classes of nav2's servers: managed nodes with nav2's log lines and a bond to their manager."""
+"""Base classes of nav2's servers: managed nodes with nav2's log lines and a bond to their manager."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ class ManagedNode(LifecycleNodeMixin, Node):
         self.declare()
 
     def declare(self) -> None:
-        """Declare the parameters; others may be declared in `configure`."""
+        """Declare the parameters; `configure` may declare others."""
 
     def configure(self) -> None:
-        """Read the parameters, and make the topics."""
+        """Read the parameters, and create the topics."""
 
     def activate(self) -> None:
         """Start to work."""
@@ -56,45 +56,45 @@ class ManagedNode(LifecycleNodeMixin, Node):
         """Stop working."""
 
     def cleanup(self) -> None:
-        """Drop the parts that `configure` created without `register`, as far as it got."""
+        """Drop the parts that `configure` created without `register`, even if it failed halfway."""
 
     def register(self, part: P) -> P:
-        """Register a part of the node that is destroyed when it is cleaned up, and return it."""
+        """Register a part that is destroyed when the node is cleaned up, and return it."""
         self._parts.append(part)
         return part
 
     @property
     def is_active(self) -> bool:
-        """Whether it is active."""
+        """Whether the node is active."""
         return self.lifecycle_state == ACTIVE
 
     def now_ns(self) -> int:
-        """The time of the node's clock, nanoseconds."""
+        """Return the time of the node's clock, in nanoseconds."""
         return self.get_clock().now().nanoseconds
 
     @property
     def is_cycling(self) -> bool:
-        """Whether `begin_cycles` was called, and not `end_cycles`."""
+        """Whether cycles are running, started by `begin_cycles`."""
         return self._timer is not None
 
     def begin_cycles(self, period: float, cycle: Callable[[], object]) -> None:
-        """Call a function each `period` seconds of the node's clock, in place of one that was called so."""
+        """Call a function every `period` seconds of the node's clock, replacing any earlier one."""
         self.end_cycles()
         self._timer = self.create_timer(period, cycle)
 
     def end_cycles(self) -> None:
-        """End the calls of `begin_cycles`; without any nothing happens."""
+        """Stop the calls started by `begin_cycles`; does nothing if there are none."""
         if self._timer is not None:
             self._timer.destroy()
             self._timer = None
 
     def start_itself(self) -> None:
-        """Configure and activate it if ``autostart_node`` is set."""
+        """Configure and activate the node if ``autostart_node`` is set."""
         if self._starts_itself and self.trigger_configure() == _SUCCESS:
             self.trigger_activate()
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """See `configure`; unknown parameters are logged once."""
+        """Run `configure`; unknown parameters are logged once."""
         self.get_logger().info("Configuring")
         try:
             self.configure()
@@ -108,7 +108,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         return super().on_configure(state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """See `activate`; the bond is formed."""
+        """Run `activate` and form the bond."""
         self.get_logger().info("Activating")
         verdict = super().on_activate(state)
         try:
@@ -123,20 +123,20 @@ class ManagedNode(LifecycleNodeMixin, Node):
         return verdict
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """See `deactivate`; the bond is broken."""
+        """Run `deactivate` and break the bond."""
         self.get_logger().info("Deactivating")
         self.deactivate()
         self._end_bond()
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """See `cleanup`."""
+        """Run `cleanup`."""
         self.get_logger().info("Cleaning up")
         self._let_go()
         return super().on_cleanup(state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Deactivate it, if it is active, and clean up."""
+        """Deactivate the node if it is active, and clean up."""
         self.get_logger().info("Shutting down")
         if state == ACTIVE:
             self.deactivate()
@@ -170,12 +170,12 @@ class ManagedNode(LifecycleNodeMixin, Node):
             self._bond = None
 
     def log_error(self, error: LinkwrightError) -> None:
-        """Log a finding, with its place and hint."""
+        """Log a finding with its location and hint."""
         self.get_logger().error("\n".join(render(diagnostic) for diagnostic in error.diagnostics))
 
 
 class ManagedServer(SingleNode):
-    """The running node of one of nav2's servers.
+    """A running node of one of nav2's servers.
 
     Attributes:
         NODE: the class of the node.

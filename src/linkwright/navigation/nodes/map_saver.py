@@ -1,4 +1,7 @@
-"""map_saver of nav2: saves the map of a topic, once (map_saver_cli) or by a service (map_saver_server)."""
+"""nav2's map_saver, which saves the map of a topic.
+
+map_saver_cli saves it once, map_saver_server on request by a service.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +41,7 @@ _INVALID = 255
 
 
 class _Saving:
-    """The base of both programs: waits for the map of a topic and writes it."""
+    """The base of both programs: waits for the map of a topic and saves it."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -49,7 +52,7 @@ class _Saving:
         self._latched: bool = declare("map_subscribe_transient_local", True).value
 
     def mode(self, text: str) -> MapMode:
-        """The mode of a name; ``trinary`` for an unknown one."""
+        """Return the mode with a name; ``trinary`` for an unknown name."""
         try:
             return MapMode(text or MapMode.TRINARY.value)
         except ValueError:
@@ -59,7 +62,10 @@ class _Saving:
             return MapMode.TRINARY
 
     async def save(self, topic: str, name: str, kind: str, mode: MapMode, free: float, occupied: float) -> bool:
-        """Save the map of a topic, and return whether that succeeded. A threshold of 0 means that of the parameters."""
+        """Save the map of a topic, and return whether that succeeded.
+
+        A threshold of 0 selects the parameter's value.
+        """
         logger = self._node.get_logger()
         logger.info(f"Saving map from '{topic}' topic to '{name}' file")
         if not topic:
@@ -87,7 +93,7 @@ class _Saving:
         return True
 
     def _write(self, message: Any, saved: SavedAs, io: Logger) -> str | None:
-        """Write a map; the reason if that failed."""
+        """Save a map; return the reason if that failed, else None."""
         try:
             grid = grid_of(message)
             io.info(f"Received a {grid.columns} X {grid.rows} map @ {grid.resolution:g} m/pix")
@@ -100,7 +106,7 @@ class _Saving:
         return None
 
     async def _map_of(self, topic: str) -> Any:
-        """Return the next message; None, with a log line, if none arrives in time."""
+        """Return the next message; log a line and return None if none arrives in time."""
         node = self._node
         come: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
 
@@ -109,7 +115,7 @@ class _Saving:
                 come.set_result(message)
 
         qos = LATCHED_QOS if self._latched else QoSProfile(depth=10)
-        group = ReentrantCallbackGroup()  # the service that waits for the map holds the group of the node
+        group = ReentrantCallbackGroup()  # The service callback that waits for the map occupies the node's own group.
         kind = get_message("nav_msgs/msg/OccupancyGrid")
         subscription = node.create_subscription(kind, topic, receive, qos, callback_group=group)
         try:
@@ -130,7 +136,10 @@ class _Saving:
 
 
 class MapSaver(SingleNode):
-    """map_saver_cli: it ends with status 0 if the map was saved, else 1; with 255 for an unknown word."""
+    """The running map_saver_cli node.
+
+    It exits with status 0 if the map was saved, 1 if not, and 255 for an unknown argument.
+    """
 
     DEFAULT_NAME = "map_saver"
 
@@ -155,7 +164,7 @@ class MapSaver(SingleNode):
         self._task = asyncio.get_running_loop().create_task(self._run(saving, arguments))
 
     def close(self) -> None:
-        """End it."""
+        """Close the node."""
         if self._task is not None:
             self._task.cancel()
         super().close()
@@ -174,7 +183,7 @@ def _parsed(words: list[str]) -> dict[str, str]:
     """Parse the options of a command line.
 
     Raises:
-        ValueError: one is unknown, has no value, or not a number where one must be.
+        ValueError: an option is unknown, has no value, or has a value that is not a number where one is required.
     """
     arguments = {}
     rest = iter(words)
@@ -194,14 +203,14 @@ def _parsed(words: list[str]) -> dict[str, str]:
 
 
 class MapSaverNode(ManagedNode):
-    """map_saver_server as a managed node."""
+    """The managed node of map_saver_server."""
 
     def declare(self) -> None:
-        """Declare the parameters of nav2."""
+        """Declare nav2's parameters."""
         self._saving = _Saving(self)
 
     def configure(self) -> None:
-        """Offer the service."""
+        """Create the service."""
         name = f"{self.get_name()}/save_map"
         self.register(self.create_service(get_service("nav2_msgs/srv/SaveMap"), name, self._on_save))
 
@@ -219,12 +228,12 @@ class MapSaverNode(ManagedNode):
 
 
 def _decimal(value: float) -> float:
-    """Return the decimal number of a float32: 0.65 arrives as 0.649999976."""
+    """Return the shortest decimal number for a float32: 0.65 arrives as 0.649999976."""
     return round(value, 6)
 
 
 class MapSaverServer(ManagedServer):
-    """The running node map_saver_server."""
+    """The running map_saver_server node."""
 
     NODE = MapSaverNode
     DEFAULT_NAME = "map_saver"

@@ -1,7 +1,8 @@
-"""map_server of nav2: publishes a map of files, and returns it by a service.
+"""nav2's map_server: publishes a map loaded from files, and returns it by a service.
 
-As nav2's, with one difference: without ``yaml_filename`` it is configured all the same (as Jazzy does) and serves a map
-when one is loaded.
+One difference from nav2's Humble: without ``yaml_filename`` the node can still be configured (as in Jazzy), and serves
+a
+map once one is loaded.
 """
 
 from __future__ import annotations
@@ -17,17 +18,17 @@ from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 
 
 class MapServerNode(ManagedNode):
-    """map_server as a managed node."""
+    """The managed node of map_server."""
 
     def declare(self) -> None:
-        """Declare the parameters of nav2."""
+        """Declare nav2's parameters."""
         self.declare_parameter("yaml_filename", ParameterType.STRING)
         self.declare_parameter("topic_name", "map")
         self.declare_parameter("frame_id", "map")
         self._map: Any = None
 
     def configure(self) -> None:
-        """Read the map, and make topic and services.
+        """Read the map, and create the topic and the services.
 
         Raises:
             LinkwrightError: NAV201 to NAV204, the map cannot be read.
@@ -85,7 +86,7 @@ class MapServerNode(ManagedNode):
 
 
 def _result(error: LinkwrightError, response: Any) -> int:
-    """nav2's result code for an error."""
+    """Return nav2's result code for an error."""
     results: dict[str, int] = {
         "NAV201": response.RESULT_MAP_DOES_NOT_EXIST,
         "NAV202": response.RESULT_INVALID_MAP_METADATA,
@@ -94,7 +95,7 @@ def _result(error: LinkwrightError, response: Any) -> int:
 
 
 class MapServer(ManagedServer):
-    """The running node."""
+    """The running map_server node."""
 
     NODE = MapServerNode
     DEFAULT_NAME = "map_server"

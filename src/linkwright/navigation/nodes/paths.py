@@ -1,4 +1,4 @@
-"""Converting paths and poses to messages and back."""
+"""Conversion of paths and poses to and from messages."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.messages import get_message
 
 
 def path_message(poses: NDArray[np.float64], frame: str, stamp: Any) -> Any:
-    """Convert poses, x, y (metres) and yaw (radians), of shape (n, 3), to a nav_msgs/Path."""
+    """Convert poses, of shape (n, 3) with x, y (metres) and yaw (radians), to a nav_msgs/Path."""
     path, pose_stamped = get_message("nav_msgs/msg/Path")(), get_message("geometry_msgs/msg/PoseStamped")
     path.header.frame_id, path.header.stamp = frame, stamp
     for x, y, yaw in poses.tolist():
@@ -26,7 +26,7 @@ def path_message(poses: NDArray[np.float64], frame: str, stamp: Any) -> Any:
 
 
 def poses_of(stamped: Any) -> NDArray[np.float64]:
-    """Convert geometry_msgs/PoseStamped to x, y (metres) and yaw (radians), of shape (n, 3)."""
+    """Convert geometry_msgs/PoseStamped messages to x, y (metres) and yaw (radians), of shape (n, 3)."""
     return np.array([pose_of(pose) for pose in stamped], np.float64).reshape(-1, 3)
 
 

@@ -1,7 +1,8 @@
-"""planner_server of nav2: plans paths for ``compute_path_to_pose`` and ``compute_path_through_poses``.
+"""nav2's planner_server: plans paths for ``compute_path_to_pose`` and ``compute_path_through_poses``.
 
-Parameters, topics, texts and results are those of nav2, Humble and Jazzy. All types of planners are recognised, and one
-method does the work of all (`linkwright.navigation.planning.planner`); a line is logged if the type has another method.
+Parameters, topics, texts and results are those of nav2, Humble and Jazzy. All types of planners are accepted, but one
+method plans for all of them (`linkwright.navigation.planning.planner`); a line is logged if the type has another
+method.
 A deliberate difference: a goal in an obstacle is refused however large the tolerance is.
 """
 
@@ -47,16 +48,16 @@ Work = Generator[str | None, None, Any]
 
 
 class PlannerNode(ManagedNode):
-    """planner_server as a managed node.
+    """The managed node of planner_server.
 
     Attributes:
-        costmap: of the world; set before it is configured.
+        costmap: the global costmap; set before the node is configured.
     """
 
     costmap: CostmapNode
 
     def declare(self) -> None:
-        """Declare the parameters of nav2 that do not belong to a planner."""
+        """Declare nav2's parameters that do not belong to a planner."""
         self.declare_parameter("expected_planner_frequency", 1.0)
         self.declare_parameter("action_server_result_timeout", 10.0)
         self.declare_parameter("costmap_update_timeout", 1.0)
@@ -64,7 +65,7 @@ class PlannerNode(ManagedNode):
         self._work: dict[str, SlicedWork] = {}
 
     def configure(self) -> None:
-        """Make the planners, the costmap and the action servers.
+        """Create the planners, the costmap and the action servers.
 
         Raises:
             LinkwrightError: NODE431, a planner has no type.
@@ -126,7 +127,7 @@ class PlannerNode(ManagedNode):
     # --- goals --------------------------------------------------------------------------------------------------------
 
     def _offer(self, kind: str, name: str, work: Callable[[Any], Work]) -> None:
-        """Offer an action whose paths a generator computes."""
+        """Offer an action whose paths are computed by a generator."""
 
         def begin(goal: ServerGoalHandle) -> None:
             self._stop(name)
@@ -165,7 +166,7 @@ class PlannerNode(ManagedNode):
             )
 
     def _stop(self, *names: str) -> None:
-        """Stop the planning for an action, or for all."""
+        """Stop planning for the named actions, or for all if none is named."""
         for name in names or tuple(self._work):
             work = self._work.pop(name, None)
             if work is not None:
@@ -227,7 +228,7 @@ class PlannerNode(ManagedNode):
     # --- the service --------------------------------------------------------------------------------------------------
 
     def _is_path_valid(self, request: Any, response: Any) -> Any:
-        """Answer whether a path is free from the robot on."""
+        """Report whether a path is collision-free from the robot's position onward."""
         poses = poses_of(request.path.poses)
         here = self.costmap.robot_pose() if self.is_active else None
         response.is_valid = bool(len(poses))
@@ -246,17 +247,17 @@ class PlannerNode(ManagedNode):
 
 
 class PlannerServer(ManagedServer):
-    """The running node, with its costmap."""
+    """The running planner_server node, with its costmap."""
 
     DEFAULT_NAME = "planner_server"
     NODE = PlannerNode
     _node: PlannerNode
 
     def prepare(self, graph: Graph, options: NodeOptions) -> None:
-        """Make the costmap."""
+        """Create the costmap."""
         self._node.costmap = make_costmap(self._node, graph, options, "global_costmap")
 
     def close(self) -> None:
-        """End it."""
+        """Close the server and its costmap."""
         super().close()
         self._node.costmap.destroy_node()

@@ -1,4 +1,4 @@
-"""Types and parameters, ``NAME.parameter``, of the plugins of nav2's servers."""
+"""Types and parameters, ``NAME.parameter``, of plugins of nav2's servers."""
 
 from __future__ import annotations
 
@@ -10,29 +10,32 @@ from linkwright.graph import Node, ParameterDescriptor, ParameterType
 
 
 def value_of(node: Node, name: str, default: Any) -> Any:
-    """The value of a parameter, which is declared if it is not yet."""
+    """Return the value of a parameter, declaring it first if necessary."""
     if node.has_parameter(name):
         return node.get_parameter(name).value
     return node.declare_parameter(name, default).value
 
 
 def texts_of(node: Node, name: str, default: Sequence[str]) -> list[str]:
-    """As `value_of`, for a list of texts, which may be given empty."""
+    """Return the value of a parameter that is a list of texts, which may be empty.
+
+    The parameter is declared first if necessary; see `value_of`.
+    """
     if not node.has_parameter(name):
         node.declare_parameter(name, list(default), ParameterDescriptor(dynamic_typing=True))
     return [str(text) for text in node.get_parameter(name).value or ()]
 
 
 def type_of(node: Node, plugin: str, usual: Mapping[str, str]) -> str:
-    """The type of a plugin from ``PLUGIN.plugin``, with ``/`` for ``::``.
+    """Return the type of a plugin from ``PLUGIN.plugin``, with ``::`` replaced by ``/``.
 
     Args:
-        node: whose it is.
-        plugin: its name.
-        usual: types by the names that need none.
+        node: the node that has the parameter.
+        plugin: the name of the plugin.
+        usual: the default types of plugins, by plugin name.
 
     Raises:
-        LinkwrightError: NODE431, it is not given.
+        LinkwrightError: NODE431, the type is not set.
     """
     name = f"{plugin}.plugin"
     given = value_of(node, name, usual.get(plugin, ParameterType.STRING))
@@ -48,7 +51,7 @@ def type_of(node: Node, plugin: str, usual: Mapping[str, str]) -> str:
 
 
 def declare_unread(node: Node, plugin: str) -> list[str]:
-    """Declare the unknown parameters of a plugin; their names without the plugin's."""
+    """Declare the unknown parameters of a plugin, and return their names without the plugin's prefix."""
     names = [
         undeclared_override
         for undeclared_override in node.undeclared_overrides()

@@ -1,4 +1,4 @@
-"""Running long work on the event loop in slices, between which other callbacks run."""
+"""Execution of long computations on the event loop in slices, between which other callbacks run."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class SlicedWork:
     Args:
         node: the node whose clock times the waits.
         work: yields None to let other callbacks run, and `WAIT` to be resumed a little later.
-        is_wanted: returns whether to continue; called now and then.
-        done: called in the end with the result and None, or with None and the exception; with None twice if the work
+        is_wanted: returns whether to continue; called regularly.
+        done: called at the end with the result and None, or with None and the exception; with None twice if the work
             was stopped.
     """
 

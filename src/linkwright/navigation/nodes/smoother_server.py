@@ -1,6 +1,6 @@
-"""smoother_server of nav2: smooths paths for the action ``smooth_path``.
+"""nav2's smoother_server: smooths paths for the action ``smooth_path``.
 
-Parameters, topics and results are those of nav2, Humble and Jazzy. All types of smoothers are recognised, and all work
+Parameters, topics and results are those of nav2, Humble and Jazzy. All types of smoothers are accepted, and all work
 as nav2's simple smoother does; a line is logged if the type has another method.
 """
 
@@ -30,10 +30,10 @@ _USUAL: Final = {"simple_smoother": _SIMPLE}
 
 
 class SmootherNode(ManagedNode):
-    """smoother_server as a managed node."""
+    """The managed node of smoother_server."""
 
     def declare(self) -> None:
-        """Declare the parameters of nav2 that do not belong to a smoother."""
+        """Declare nav2's parameters that do not belong to a smoother."""
         self.declare_parameter("costmap_topic", "global_costmap/costmap_raw")
         self.declare_parameter("footprint_topic", "global_costmap/published_footprint")
         self.declare_parameter("robot_base_frame", "base_link")
@@ -41,7 +41,7 @@ class SmootherNode(ManagedNode):
         self.declare_parameter("action_server_result_timeout", 10.0)
 
     def configure(self) -> None:
-        """Make the smoothers, the topics and the action server.
+        """Create the smoothers, the topics and the action server.
 
         Raises:
             LinkwrightError: NODE431, a smoother has no type; NAV101, SciPy is not installed.
@@ -107,7 +107,7 @@ class SmootherNode(ManagedNode):
 
 
 class SmootherServer(ManagedServer):
-    """The running node."""
+    """The running smoother_server node."""
 
     NODE = SmootherNode
     DEFAULT_NAME = "smoother_server"

@@ -1,7 +1,7 @@
 """Managed nodes that execute goals in steps, most of which are goals of other servers.
 
-The work is a generator: it runs once each cycle, and ``yield`` waits for the next. It returns when the goal is reached,
-raises `StepError` when it cannot be, and is closed when the goal is canceled.
+The work is a generator that is resumed once each cycle: ``yield`` waits for the next cycle. It returns when the goal is
+reached, raises `StepError` when the goal cannot be reached, and is closed when the goal is canceled.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ _SERVER_SECONDS = 5.0
 
 
 class StepError(GoalError):
-    """A step failed.
+    """Raised when a step failed.
 
     Attributes:
-        is_final: whether it would fail again however often it is tried.
+        is_final: whether trying again would not help.
     """
 
     def __init__(self, code: str, reason: str, *, is_final: bool = False) -> None:
@@ -41,7 +41,7 @@ class StepNode(ManagedNode):
     _server: GoalServer | None = None
 
     def work_on(self, server: GoalServer, work: Step) -> None:
-        """Start with the goal of a server, and end the work on another one."""
+        """Start working on the goal of a server, and end the work on any other goal."""
         self._stop()
         if self._server is not None and self._server is not server:
             self._server.abort("UNKNOWN", "another goal took its place")
@@ -49,25 +49,27 @@ class StepNode(ManagedNode):
         self.begin_cycles(_PERIOD, self._cycle)
 
     def publish_feedback(self, server: GoalServer) -> None:
-        """Publish the feedback of the goal; called each cycle."""
+        """Publish the feedback for the goal; called each cycle."""
 
     def result(self) -> dict[str, Any]:
-        """The fields of the result."""
+        """Return the fields of the result."""
         return {}
 
     def deactivate(self) -> None:
-        """End the work, and refuse goals."""
+        """Stop working, and refuse goals."""
         self._stop()
         if self._server is not None:
             self._server.abort("UNKNOWN", "the server was deactivated", **self.result())
 
     def cleanup(self) -> None:
-        """End the work."""
+        """Stop working."""
         self._stop()
         self._server = None
 
     def asked(self, client: ActionClient, goal: Any, complaint: str) -> Step:
-        """Send a goal to another server and wait for its result; the goal is canceled when this is closed.
+        """Send a goal to another server and wait for its result.
+
+        The goal is canceled when this generator is closed.
 
         Raises:
             StepError: there is no such server, or it did not reach the goal.
@@ -88,7 +90,7 @@ class StepNode(ManagedNode):
         """Wait for a response.
 
         Raises:
-            StepError: it does not arrive.
+            StepError: the response does not arrive.
         """
         limit_ns = self.now_ns() + round(_SERVER_SECONDS * 1e9)
         while not is_done():
@@ -121,7 +123,7 @@ class StepNode(ManagedNode):
             self.publish_feedback(server)
 
     def _stop(self) -> None:
-        """End the work; goals at other servers are canceled."""
+        """Stop working; goals at other servers are canceled."""
         work, self._work = self._work, None
         if work is not None:
             work.close()
@@ -129,7 +131,7 @@ class StepNode(ManagedNode):
 
 
 class Sent:
-    """A goal at another server."""
+    """A goal sent to another server."""
 
     def __init__(self, client: ActionClient, goal: Any) -> None:
         self._handle: Any = None
@@ -153,26 +155,26 @@ class Sent:
 
     @property
     def is_over(self) -> bool:
-        """Whether it was rejected or has ended."""
+        """Whether the goal was rejected or has ended."""
         return self._answer is not None or (self._handle is not None and not self._handle.accepted)
 
     @property
     def has_succeeded(self) -> bool:
-        """Whether it succeeded."""
+        """Whether the goal succeeded."""
         return self._answer is not None and self._answer.status == GoalStatus.SUCCEEDED
 
     @property
     def has_failed(self) -> bool:
-        """Whether it has ended without success."""
+        """Whether the goal has ended without success."""
         return self.is_over and not self.has_succeeded
 
     def reason(self, usual: str) -> str:
-        """The reason of its failure from the server (Jazzy), else a usual one."""
+        """Return the reason of the failure from the server (Jazzy), or a default one."""
         message = getattr(self.result, "error_msg", "")
         return f"{usual}: {message}" if message else usual
 
     def cancel(self) -> None:
-        """Cancel it, unless it has ended."""
+        """Cancel the goal, unless it has ended."""
         if not self.is_over:
             self._dropped = True
             if self._handle is not None:

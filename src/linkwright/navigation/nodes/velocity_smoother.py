@@ -1,4 +1,4 @@
-"""velocity_smoother of nav2: forwards ``cmd_vel`` within limits to ``cmd_vel_smoothed``.
+"""nav2's velocity_smoother: forwards ``cmd_vel`` within limits to ``cmd_vel_smoothed``.
 
 A managed node; parameters, defaults and rules are those of nav2. Deliberate differences: unless
 ``enable_stamped_cmd_vel`` is set it accepts Twist and TwistStamped, and publishes the type that subscribers expect; and
@@ -38,10 +38,10 @@ _LIMITS = {
 
 
 class _ManagedSmoother(ManagedNode):
-    """velocity_smoother as a managed node."""
+    """The managed node of velocity_smoother."""
 
     def declare(self) -> None:
-        """Declare the parameters of nav2."""
+        """Declare nav2's parameters."""
         self._output: VelocityTopic | None = None
         self._command: list[float] | None = None
         self._commanded_ns = 0
@@ -62,7 +62,7 @@ class _ManagedSmoother(ManagedNode):
         self.add_post_set_parameters_callback(lambda _: self._follow())
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Configure it unless its parameters contradict each other."""
+        """Configure the node, unless its parameters contradict each other."""
         problem = self._problem({})
         if problem is not None:
             self.get_logger().error(str(problem))
@@ -70,7 +70,7 @@ class _ManagedSmoother(ManagedNode):
         return super().on_configure(state)
 
     def configure(self) -> None:
-        """Read the parameters and make the topics."""
+        """Read the parameters and create the topics."""
         self._read()
         stamped = self._stamped
         self._output = VelocityTopic(self, "cmd_vel_smoothed", stamped)
@@ -85,11 +85,11 @@ class _ManagedSmoother(ManagedNode):
             self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
 
     def activate(self) -> None:
-        """Start to publish."""
+        """Start publishing."""
         self.begin_cycles(1.0 / self._frequency, self._smooth)
 
     def deactivate(self) -> None:
-        """Stop, and publish nothing more."""
+        """Stop the robot and publish nothing more."""
         self.end_cycles()
         if self._output is not None and any(self._last):
             self._output.stop()
@@ -121,7 +121,7 @@ class _ManagedSmoother(ManagedNode):
         return SetParametersResult(successful=problem is None, reason="" if problem is None else str(problem))
 
     def _follow(self) -> None:
-        """Apply changed parameters while it is active; the topics stay as configured."""
+        """Apply changed parameters to the active node; the topics remain as configured."""
         if self._output is not None:
             before = self._frequency
             self._read()
@@ -129,7 +129,7 @@ class _ManagedSmoother(ManagedNode):
                 self.begin_cycles(1.0 / self._frequency, self._smooth)
 
     def _problem(self, changed: Mapping[str, Any]) -> Phrase | None:
-        """The problem of the parameters after a change."""
+        """Return what is wrong with the parameters after a change, or None."""
 
         def value(name: str) -> Any:
             return changed.get(name, self._value(name))
@@ -210,7 +210,10 @@ class _ManagedSmoother(ManagedNode):
 
 
 class VelocitySmoother(ManagedServer):
-    """The running node; ``autostart_node`` has it configure and activate itself, where no lifecycle manager does."""
+    """The running velocity_smoother node.
+
+    With ``autostart_node`` it configures and activates itself.
+    """
 
     NODE = _ManagedSmoother
     DEFAULT_NAME = "velocity_smoother"
@@ -221,7 +224,7 @@ def _values(twist: Any) -> list[float]:
 
 
 def _spread(column: Sequence[float]) -> list[float]:
-    """Limits of x, y and yaw as those of all six axes; the other three are 0."""
+    """Return limits of x, y and yaw as limits of all six axes; the other three are 0."""
     spread = [0.0] * len(_AXES)
     for axis, value in zip(_PLANAR, column, strict=True):
         spread[axis] = value

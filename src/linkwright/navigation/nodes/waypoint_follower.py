@@ -1,6 +1,6 @@
-"""waypoint_follower of nav2: navigates to poses one after the other and waits at each (``follow_waypoints``).
+"""nav2's waypoint_follower: navigates to poses one after the other and waits at each (``follow_waypoints``).
 
-Deliberate differences: of the tasks at waypoints there is the waiting; others are left out with a line.
+A deliberate difference: waiting is the only supported task at waypoints; others are skipped with a log line.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ _WAITING = "nav2_waypoint_follower/WaitAtWaypoint"
 
 
 class WaypointNode(StepNode):
-    """waypoint_follower as a managed node."""
+    """The managed node of waypoint_follower."""
 
     def declare(self) -> None:
-        """Declare the parameters of nav2."""
+        """Declare nav2's parameters."""
         self.declare_parameter("stop_on_failure", True)
         self.declare_parameter("loop_rate", 20)
         self.declare_parameter("global_frame_id", "map")
@@ -32,7 +32,7 @@ class WaypointNode(StepNode):
         self._index = 0
 
     def configure(self) -> None:
-        """Offer the action.
+        """Create the action server.
 
         Raises:
             LinkwrightError: a parameter has another type.
@@ -50,11 +50,11 @@ class WaypointNode(StepNode):
         self._waypoints = self.register(GoalServer(self, kind, "follow_waypoints", self._start))
 
     def publish_feedback(self, server: GoalServer) -> None:
-        """Publish the feedback of the goal."""
+        """Publish the feedback for the goal."""
         server.feedback(current_waypoint=self._index)
 
     def result(self) -> dict[str, Any]:
-        """The missed waypoints."""
+        """Return the missed waypoints."""
         return {"missed_waypoints": self._missed}
 
     def _start(self, goal: ServerGoalHandle) -> None:
@@ -87,14 +87,14 @@ class WaypointNode(StepNode):
             yield
 
     def _miss(self, pose: Any, reason: str) -> Any:
-        """A missed waypoint as results have it: Humble's by its index."""
+        """Return a missed waypoint in the form used in results: in Humble, its index."""
         if is_before_iron():
             return self._index
         return get_message("nav2_msgs/msg/MissedWaypoint")(index=self._index, goal=pose, error_msg=reason)
 
 
 class WaypointFollower(ManagedServer):
-    """The running node."""
+    """The running waypoint_follower node."""
 
     DEFAULT_NAME = "waypoint_follower"
     NODE = WaypointNode

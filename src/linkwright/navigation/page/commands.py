@@ -1,6 +1,6 @@
-"""The panel of nav2 (nav2_rviz_plugins, "Navigation 2"): states, progress of the goal, and commands.
+"""nav2's panel (nav2_rviz_plugins, "Navigation 2"): states, progress of the goal, and commands.
 
-Names of services and topics, and what the buttons do, are those of nav2's panel.
+The names of services and topics and the functions of the buttons are those of nav2's panel.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class NavigationFeature(PageFeature):
         self._watch: _Watch | None = None
 
     def receive(self, page: Page, message: WatchNavigation | CommandNavigation) -> None:
-        """Start or stop sending the state to a page, or carry out a command."""
+        """Start or stop sending the state to a page, or execute a command."""
         if isinstance(message, CommandNavigation):
             if self._watch is not None and page in self._pages:
                 self._watch.command(message.command)
@@ -95,7 +95,7 @@ class _Watch:
     """The state of nav2, from its topics and services.
 
     Attributes:
-        state: for pages.
+        state: the state as sent to pages.
     """
 
     def __init__(self, context: ViewerContext, publish: Callable[[NavigationState], None]) -> None:
@@ -121,7 +121,7 @@ class _Watch:
         self._ask()
 
     def command(self, command: NavigationCommand) -> None:
-        """Carry out the command of a button; one at a time."""
+        """Execute the command of a button; only one command runs at a time."""
         if self._work is None or self._work.done():
             self._change(busy=True, problem="")
             self._work = asyncio.get_running_loop().create_task(self._do(command))
@@ -132,7 +132,7 @@ class _Watch:
             self._next.cancel()
         if self._work is not None:
             self._work.cancel()
-        with suppress(ValueError):  # the node may have been destroyed before
+        with suppress(ValueError):  # The node may already have been destroyed.
             for client in (*self._active.values(), *self._manage.values(), self._cancel):
                 self._node.destroy_client(client)
             for subscription in self._subscriptions:
@@ -211,7 +211,7 @@ class _Watch:
         self._change(busy=False, problem="" if problem is None else str(problem))
 
     async def _call(self, client: Client[Any, Any], **fields: Any) -> Any:
-        """Return the response of a service, or None if its server has gone meanwhile."""
+        """Return the response of a service, or None if its server disappeared meanwhile."""
         future = client.call_async(client.srv_type.Request(**fields))
         while not await answered(self._node, future, _PERIOD):
             if not client.service_is_ready():
@@ -220,7 +220,7 @@ class _Watch:
         return future.result()
 
     async def _cancel_goals(self) -> Phrase | None:
-        """Cancel all goals, with a request that has neither an id nor a time."""
+        """Cancel all goals, by a request with an empty id and time."""
         if not self._cancel.service_is_ready():
             return phrase("there is no action '{name}'", name="navigate_to_pose")
         answer = await self._call(self._cancel)

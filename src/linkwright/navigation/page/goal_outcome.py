@@ -1,4 +1,4 @@
-"""Reports failed navigation goals to pages, with the reason: from the goals' states and their server's log."""
+"""Reports of failed navigation goals to pages, with the reason from the server's log."""
 
 from __future__ import annotations
 
@@ -24,7 +24,9 @@ _LOG_DELAY = 0.3
 
 
 class GoalOutcomeFeature(PageFeature):
-    """Notifies pages when a goal of ``navigate_to_pose`` is aborted; subscribes while there are pages.
+    """Notifies pages when a goal of ``navigate_to_pose`` is aborted.
+
+    Subscribes while pages are open.
 
     The reason is the last error that the node of the action has logged since the goal was accepted.
     """
@@ -49,12 +51,12 @@ class GoalOutcomeFeature(PageFeature):
         return [self._sent]
 
     def page_closed(self, page: Page) -> None:
-        """Stop listening after the last page."""
+        """Unsubscribe after the last page is closed."""
         if len(self.context.pages) == 0:
             self.close()
 
     def close(self) -> None:
-        """Stop listening."""
+        """Unsubscribe."""
         if self._due is not None:
             self._due.cancel()
             self._due = None
@@ -104,6 +106,6 @@ class GoalOutcomeFeature(PageFeature):
 
 
 def accepted_at(status: Any) -> tuple[int, int]:
-    """Return when a goal was accepted, as seconds and nanoseconds, of an action_msgs/msg/GoalStatus."""
+    """Return the time, as seconds and nanoseconds, at which the goal of a GoalStatus was accepted."""
     stamp = status.goal_info.stamp
     return stamp.sec, stamp.nanosec

@@ -1,4 +1,4 @@
-"""Paths by descent on a potential, from a place to where the potential is zero.
+"""Extraction of paths by descent on a potential, from a position to where the potential is zero.
 
 Source: nav2_navfn_planner, which steps half a cell along the interpolated gradient.
 """
@@ -32,20 +32,20 @@ class _Slope:
         self._gradients: dict[Cell, Place | None] = {}
 
     def at(self, row: int, column: int) -> float:
-        """The potential of a cell; infinite outside of the grid."""
+        """Return the potential of a cell; infinite outside the grid."""
         if 0 <= row < self._rows and 0 <= column < self._columns:
             return float(self._least[row, column])
         return inf
 
     def joined(self, cell: Cell, other: Cell) -> bool:
-        """Whether a straight step from a cell to an adjacent one, diagonals too, touches no unreachable cell."""
+        """Return whether a straight step to an adjacent cell, including diagonals, avoids unreachable cells."""
         (row, column), (to_row, to_column) = cell, other
         return self.at(to_row, to_column) < inf and (
             row == to_row or column == to_column or max(self.at(row, to_column), self.at(to_row, column)) < inf
         )
 
     def lowest_beside(self, cell: Cell) -> Cell:
-        """The neighbour of a cell with the steepest descent."""
+        """Return the neighbour of a cell with the steepest descent."""
         row, column = cell
         here = self.at(row, column)
         best, steepest = cell, 0.0
@@ -57,7 +57,10 @@ class _Slope:
         return best
 
     def direction(self, place: Place) -> Place | None:
-        """The direction of steepest descent, of length 1; None where the potential is flat."""
+        """Return the direction of steepest descent as a unit vector.
+
+        Returns None where the potential is flat.
+        """
         row, column = place[0] - 0.5, place[1] - 0.5
         top, left = floor(row), floor(column)
         lower, right = row - top, column - left
@@ -91,7 +94,7 @@ class _Slope:
 
 
 def _difference(before: float, here: float, after: float) -> float:
-    """The derivative of a potential; it never descends towards an unreachable side."""
+    """Return the derivative of a potential, which never descends towards an unreachable side."""
     if before < inf and after < inf:
         return (after - before) / 2.0
     if before < inf:
@@ -100,17 +103,15 @@ def _difference(before: float, here: float, after: float) -> float:
 
 
 def descend(least: Floats, source: Cell, begin: Place) -> Generator[None, None, NDArray[np.float64]]:
-    """Descend a potential.
-
-    It gives way now and then, for others to work in between.
+    """Descend a potential, yielding regularly so that other callbacks can run.
 
     Args:
         least: a potential (see `potential`).
-        source: where it is zero.
-        begin: where the way begins, in a cell from which one leads to the source.
+        source: the cell where the potential is zero.
+        begin: the start of the path, in a cell from which a path leads to the source.
 
     Returns:
-        Rows and columns, of shape (n, 2), from the beginning to the middle of the source; none in a cell without a way.
+        Rows and columns, of shape (n, 2), from the start to the middle of the source; empty for a cell without a path.
     """
     slope = _Slope(least)
     end = (source[0] + 0.5, source[1] + 0.5)
@@ -133,7 +134,10 @@ def descend(least: Floats, source: Cell, begin: Place) -> Generator[None, None, 
 
 
 def _step(slope: _Slope, place: Place, cell: Cell) -> Place | None:
-    """Half a cell downhill from a place in a cell; None where that leads nowhere."""
+    """Return the position half a cell downhill from a position in a cell.
+
+    Returns None if there is no way.
+    """
     direction = slope.direction(place)
     if direction is None:
         return None

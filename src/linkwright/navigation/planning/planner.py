@@ -1,4 +1,4 @@
-"""Planning the cheapest path over a costmap from a pose to another one.
+"""Planning of the cheapest path over a costmap between two poses.
 
 Source: nav2_navfn_planner (costs, tolerance, the texts of errors). Deliberate differences: the tolerance does not reach
 through obstacles, so a goal within a wall is refused; and a robot that is too close to an obstacle may leave by the
@@ -33,7 +33,7 @@ _NO_WAY: Final = 1e-9
 
 
 class Problem(Enum):
-    """Why there is no plan; the names are those of nav2's error codes."""
+    """The reason why there is no plan, with the names of nav2's error codes."""
 
     START_OUTSIDE_MAP = "START_OUTSIDE_MAP"
     GOAL_OUTSIDE_MAP = "GOAL_OUTSIDE_MAP"
@@ -43,10 +43,10 @@ class Problem(Enum):
 
 
 class PlanError(Exception):
-    """There is no plan.
+    """Raised when there is no plan.
 
     Attributes:
-        problem: why.
+        problem: the reason.
     """
 
     def __init__(self, problem: Problem, text: str) -> None:
@@ -56,13 +56,13 @@ class PlanError(Exception):
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """Settings of the planner; names and defaults are nav2's.
+    """Settings of the planner, with nav2's names and defaults.
 
     Attributes:
-        tolerance: the greatest distance of the path's end from an unreachable goal, in metres.
+        tolerance: the maximum distance from the end of the path to an unreachable goal, in metres.
         use_astar: whether to skip cells that cannot be on a cheaper path; the result is the same.
         allow_unknown: whether paths may cross unknown cells.
-        use_final_approach_orientation: whether the final heading is that of the path, not that of the goal.
+        use_final_approach_orientation: whether the final heading is that of the path instead of that of the goal.
     """
 
     tolerance: float = 0.5
@@ -72,21 +72,21 @@ class Settings:
 
 
 def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Generator[None, None, NDArray[np.float64]]:
-    """Plan a path.
+    """Plan a path, yielding regularly so that other callbacks can run.
 
-    It gives way now and then, for others to work in between; the costmap must not change meanwhile.
+    The costmap must not change meanwhile.
 
     Args:
         costmap: the costs of cells.
         start: x, y (metres) and yaw (radians) in the frame of the costmap.
-        goal: likewise.
-        settings: how.
+        goal: the goal in the same form.
+        settings: the settings of the planner.
 
     Returns:
         Poses from the start to the goal, or as near to it as tolerated, of shape (n, 3), about a cell apart.
 
     Raises:
-        PlanError: there is none.
+        PlanError: there is no path.
     """
     from_cell = _cell(costmap, start, Problem.START_OUTSIDE_MAP, "Start")
     to_cell = _cell(costmap, goal, Problem.GOAL_OUTSIDE_MAP, "Goal")
@@ -114,7 +114,7 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
 
 
 def run(steps: Generator[None, None, NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Run a generator to its end; the value that it returns."""
+    """Run a generator to its end, and return its result."""
     found: list[NDArray[np.float64]] = []
 
     def work() -> Generator[None, None, None]:
@@ -137,10 +137,10 @@ def _occupied(problem: Problem, what: str, pose: Pose) -> PlanError:
 
 
 def _let_escape(price: Floats, costmap: Costmap, cell: Cell, start: Pose) -> None:
-    """Make the cells around a start that is too near to an obstacle passable, as far as to one that is not.
+    """Make the cells around a start too close to an obstacle passable, up to the nearest cell that is free.
 
     Raises:
-        PlanError: there is none nearby.
+        PlanError: there is no free cell nearby.
     """
     costs = costmap.grid.cells
     reach = ceil(_ESCAPE_REACH / costmap.grid.resolution)
@@ -156,10 +156,10 @@ def _let_escape(price: Floats, costmap: Costmap, cell: Cell, start: Pose) -> Non
 
 
 def _nearest(least: Floats, costmap: Costmap, goal: Pose, cell: Cell, settings: Settings) -> Cell:
-    """The reachable cell nearest to a goal, within the tolerance and on the same side of obstacles.
+    """Return the reachable cell nearest to a goal, within the tolerance and on the same side of obstacles.
 
     Raises:
-        PlanError: there is none.
+        PlanError: there is no such cell.
     """
     costs = costmap.grid.cells
     reach = int(settings.tolerance / costmap.grid.resolution)
@@ -183,7 +183,7 @@ def _nearest(least: Floats, costmap: Costmap, goal: Pose, cell: Cell, settings: 
 
 
 def _thinned(way: NDArray[np.float64], price: Floats) -> NDArray[np.float64]:
-    """A path without every second point, where the straight line past it touches no unreachable cell."""
+    """Return a path without every second point, if the straight line past the point avoids unreachable cells."""
     cells = np.floor(way).astype(np.int64)
     between = np.arange(1, len(way) - 1, 2)
     before, after = cells[between - 1], cells[between + 1]
@@ -195,7 +195,7 @@ def _thinned(way: NDArray[np.float64], price: Floats) -> NDArray[np.float64]:
 def _poses(
     way: NDArray[np.float64], costmap: Costmap, start: Pose, last: Pose, settings: Settings
 ) -> NDArray[np.float64]:
-    """Poses along rows and columns, from the exact start to the exact end."""
+    """Return poses along rows and columns, from the exact start to the exact end."""
     grid = costmap.grid
     points = way[:, ::-1] * grid.resolution + (grid.x, grid.y)
     points[0], points[-1] = start[:2], last[:2]

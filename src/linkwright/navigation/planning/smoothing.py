@@ -1,4 +1,4 @@
-"""Smoothing of paths: points move towards the middle of their neighbours, but stay near their places.
+"""Smoothing of paths: points move towards the middle of their neighbours, but stay near their positions.
 
 Source: nav2_smoother ``SimpleSmoother``: its iteration converges to the solution of a tridiagonal linear system, which
 is solved directly. Points that would move into an obstacle stay where they are.
@@ -22,7 +22,7 @@ _LEAST_POINTS: Final = 3
 
 @dataclass(frozen=True, kw_only=True)
 class Smoothing:
-    """Settings of the smoother; names and defaults are nav2's.
+    """Settings of the smoother, with nav2's names and defaults.
 
     Attributes:
         w_data: the weight of a point's original position.
@@ -44,8 +44,8 @@ def smoothed(points: Points, smoothing: Smoothing, costmap: Costmap | None = Non
 
     Args:
         points: x and y in the frame of the costmap, in metres, of shape (n, 2).
-        smoothing: how much.
-        costmap: where no robot can be; None for anywhere.
+        smoothing: the settings of the smoother.
+        costmap: the costmap whose obstacles are avoided; None for no obstacles.
 
     Returns:
         The same number of points, with the same first and last one; and whether all could move to their smoothed
@@ -61,13 +61,16 @@ def smoothed(points: Points, smoothing: Smoothing, costmap: Costmap | None = Non
 
 
 def directions(points: Points, last: float) -> NDArray[np.float64]:
-    """The yaw of each point of a path, towards the next one; the last one is given. Radians, of shape (n,)."""
+    """Return the yaw of each point of a path towards the next point, in radians, of shape (n,).
+
+    The last yaw is given by `last`.
+    """
     ahead = np.diff(points, axis=0)
     return np.append(np.arctan2(ahead[:, 1], ahead[:, 0]), last)
 
 
 def _fixed(points: Points, smoothing: Smoothing) -> NDArray[np.bool_]:
-    """Which points stay: the ends, and where the path reverses."""
+    """Return which points are fixed: the ends, and points where the path reverses."""
     fixed = np.zeros(len(points), np.bool_)
     fixed[[0, -1]] = True
     if smoothing.enforce_path_inversion and len(points) >= _LEAST_POINTS:
@@ -93,7 +96,7 @@ def _once(
 
 
 def _blocked(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
-    """Which points are in collision, or the midpoint to the next one is."""
+    """Return which points collide, or have a colliding midpoint to the next point."""
     middles = (points + np.roll(points, -1, axis=0)) / 2.0
     middles[-1] = points[-1]
 
@@ -109,7 +112,7 @@ def _blocked(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
 
 
 def _solved(points: Points, stays: NDArray[np.bool_], smoothing: Smoothing) -> Points:
-    """The equilibrium of w_data (y - x) = w_smooth (previous + next - 2 y) for the points that may move."""
+    """Return the equilibrium of w_data (y - x) = w_smooth (previous + next - 2 y) for the points that may move."""
     beside = np.where(stays, 0.0, -smoothing.w_smooth)
     bands = np.zeros((3, len(points)))
     bands[0, 1:] = beside[:-1]

@@ -1,4 +1,4 @@
-"""Detecting that the poses of two scans contradict each other: rays of one cannot pass through hits of the other."""
+"""Detection of contradicting poses of two scans: rays of one cannot pass through hits of the other."""
 
 from __future__ import annotations
 
@@ -17,13 +17,15 @@ _FEWEST = 20
 
 
 def contradiction(first: PlanarScan, first_pose: Floats, second: PlanarScan, second_pose: Floats) -> float:
-    """The part of a scan's points that the other one's rays pass through, whichever is more, from 0 to 1.
+    """Return the share of a scan's points through which the other scan's rays pass.
+
+    The share is computed for both scans, and the larger one is returned, from 0 to 1.
 
     Args:
         first: a scan.
-        first_pose: of the robot then, of shape (3,).
-        second: another one.
-        second_pose: of the robot then, in the same frame.
+        first_pose: the robot's pose at the first scan, of shape (3,).
+        second: another scan.
+        second_pose: the robot's pose at the second scan, in the same frame.
     """
     return max(
         _looked_through(first, second, between(first_pose, second_pose)),
@@ -32,7 +34,10 @@ def contradiction(first: PlanarScan, first_pose: Floats, second: PlanarScan, sec
 
 
 def _looked_through(viewer: PlanarScan, other: PlanarScan, pose: Floats) -> float:
-    """The part of the points of `other`, at `pose` in the frame of the viewer, that the viewer's rays pass through."""
+    """Return the share of another scan's points that the viewer's rays pass through.
+
+    `pose` is the pose of the other scan in the viewer's frame.
+    """
     seen = viewer.points - viewer.origin
     points = placed(pose, other.points) - viewer.origin
     if len(seen) < _FEWEST or len(points) < _FEWEST:
@@ -44,7 +49,7 @@ def _looked_through(viewer: PlanarScan, other: PlanarScan, pose: Floats) -> floa
     ranges = np.concatenate((ranges[-1:], ranges, ranges[:1]))
     wanted = np.arctan2(points[:, 1], points[:, 0])
     after = np.clip(np.searchsorted(bearings, wanted), 1, len(bearings) - 1)
-    # Both neighbours must be longer: beside an edge one of them is.
+    # Require both neighbouring rays to be longer: next to an edge only one of them is.
     close = (bearings[after] - wanted < _APART) & (wanted - bearings[after - 1] < _APART)
     further = np.minimum(ranges[after], ranges[after - 1]) > np.hypot(points[:, 0], points[:, 1]) + _BEHIND
     return float((close & further).sum() / max(int(close.sum()), _FEWEST))

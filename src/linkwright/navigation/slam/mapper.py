@@ -1,7 +1,7 @@
-"""A map and the robot's pose in it, from laser scans and odometry, as slam_toolbox (Karto) makes them.
+"""The map and the robot's pose in it, from laser scans and odometry, as in slam_toolbox (Karto).
 
-As in Karto, which slam_toolbox uses, some of the scans become nodes of a graph of poses: each is matched against the
-last ones, linked with those of earlier passes near by, and tried against those further away, to close a loop.
+As in Karto, some scans become nodes of a pose graph: each is matched against the last ones, linked to scans of earlier
+passes nearby, and tried against scans further away to close a loop.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ _NOTHING = 1e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Outcome:
-    """The result of a scan.
+    """The result of processing a scan.
 
     Attributes:
-        pose: of the robot in the map, of shape (3,).
-        covariance: of it, of shape (3, 3), in the frame of the robot.
+        pose: the pose of the robot in the map, of shape (3,).
+        covariance: the covariance of the pose, of shape (3, 3), in the frame of the robot.
         matched: whether scan matching determined the pose; otherwise odometry did.
-        response: of the match, 0 to 1.
-        links: how many earlier passes it was linked with.
-        loops: how many loops were closed.
+        response: the response of the match, 0 to 1.
+        links: the number of earlier passes to which the scan was linked.
+        loops: the number of closed loops.
     """
 
     pose: Floats
@@ -59,14 +59,14 @@ class Outcome:
 
 
 class Mapper:
-    """Builds a graph of scans and the map from it.
+    """Builds a graph of scans, and the map from the graph.
 
     Args:
-        settings: how it works.
+        settings: the settings of the mapper.
         occupancy: the map that is drawn.
 
     Attributes:
-        settings: how it works.
+        settings: the settings of the mapper.
         occupancy: the map that is drawn.
         graph: the poses of the scans, and the measurements between them.
         scans: the scans of the graph.
@@ -85,20 +85,20 @@ class Mapper:
 
     @property
     def latest_ns(self) -> int:
-        """The time of the last processed scan, nanoseconds; 0 before the first one."""
+        """The time of the last processed scan in nanoseconds; 0 before the first scan."""
         return 0 if self._last is None else self._last[1]
 
     def replace(self, graph: PoseGraph, scans: list[PlanarScan], odometry: list[Floats]) -> None:
-        """Set another graph; nothing of it is drawn yet."""
+        """Replace the graph; none of the new graph is drawn yet."""
         for number in range(len(self.scans)):
             self.occupancy.erase(number)
         self.graph, self.scans, self.odometry = graph, scans, odometry
         self.begin_session(None)
 
     def begin_session(self, pose: Floats | None) -> None:
-        """Start a session in the graph: the next scan is searched around a pose of shape (3,), or the first one's.
+        """Start a session in the graph: search for the next scan around a pose, of shape (3,).
 
-        Scans before do not count as the last ones any more.
+        None means the pose of the first scan. Scans of earlier sessions no longer count as the last scans.
         """
         self._session = len(self.scans)
         self._last = None
@@ -109,12 +109,12 @@ class Mapper:
             self._in_map = self.graph.poses[0].copy()
 
     def wants(self, odometry: Floats, stamp_ns: int, since: tuple[Floats, int] | None = None) -> bool:
-        """Return whether to process a scan at an odometry pose: whether the robot moved far enough since the last one.
+        """Return whether to process a scan: whether the robot moved far enough since the last one.
 
         Args:
-            odometry: the pose, of shape (3,).
-            stamp_ns: when.
-            since: pose and time of a scan that waits to be processed; it counts as the last one.
+            odometry: the odometry pose at the scan, of shape (3,).
+            stamp_ns: the time of the scan.
+            since: the odometry pose and time of a scan that waits to be processed, which replaces the last one.
         """
         last = since or self._last
         if last is None:
@@ -129,7 +129,7 @@ class Mapper:
         )
 
     def expected(self, odometry: Floats) -> Floats:
-        """The robot's pose in the map by odometry since the last processed scan, of shape (3,)."""
+        """Return the robot's pose in the map, of shape (3,), from odometry since the last processed scan."""
         if self._in_map is None:
             return odometry
         return self._in_map if self._last is None else compose(self._in_map, between(self._last[0], odometry))
@@ -138,8 +138,8 @@ class Mapper:
         """Add a scan to the graph, in steps.
 
         Args:
-            scan: it.
-            odometry: the pose of the robot that odometry gives, of shape (3,).
+            scan: the scan.
+            odometry: the odometry pose of the robot, of shape (3,).
         """
         searched = self._last is None and self._in_map is not None
         guess, moved = self.expected(odometry), None
@@ -168,7 +168,10 @@ class Mapper:
         return _outcome(self._in_map, information, found, links, loops)
 
     def localize(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
-        """Localize a scan, in steps, without changing the graph. Arguments are those of `process`."""
+        """Localize a scan, in steps, without changing the graph.
+
+        The arguments are those of `process`.
+        """
         searched = self._last is None
         guess = self.expected(odometry)
         moved = np.zeros(3) if self._last is None else between(self._last[0], odometry)
@@ -182,7 +185,7 @@ class Mapper:
         return _outcome(self._in_map, information, found)
 
     def redraw(self) -> Steps[None]:
-        """Draw the scans that are missing from the map, or whose poses changed; a step for each."""
+        """Draw the scans that are missing from the map or whose poses changed; each scan is a step."""
         tolerance = _REDRAWN * self.occupancy.resolution
         for number, scan in enumerate(self.scans):
             pose, drawn = self.graph.poses[number], self.occupancy.drawn_at(number)
@@ -199,7 +202,7 @@ class Mapper:
         return self.graph.add_node(pose)
 
     def _join(self, scan: PlanarScan, guess: Floats, odometry: Floats) -> Steps[Outcome]:
-        """Match the first scan of another session against those of earlier ones."""
+        """Match the first scan of a new session against scans of earlier sessions."""
         nodes = self._around(guess)
         found = yield from self._match(nodes, scan, guess, self.settings.loop)
         pose = guess if found is None else found.pose
@@ -214,13 +217,13 @@ class Mapper:
         return _outcome(pose, information, found)
 
     def _buffer(self, pose: Floats) -> list[int]:
-        """The last scans of this session, as far as they are near."""
+        """Return the last scans of this session that are near a pose."""
         begin = max(self._session, len(self.scans) - self.settings.scan_buffer_size)
         near = self._distances(pose) <= self.settings.scan_buffer_maximum_scan_distance
         return [number for number in range(begin, len(self.scans)) if near[number]]
 
     def _around(self, pose: Floats) -> list[int]:
-        """The nearest scans of all."""
+        """Return the nearest scans of all sessions."""
         order = np.argsort(self._distances(pose), kind="stable")
         return [int(index) for index in order[: 2 * self.settings.scan_buffer_size]]
 
@@ -233,7 +236,10 @@ class Mapper:
         return nodes[int(np.argmin(self._distances(pose)[nodes]))]
 
     def _match(self, nodes: list[int], scan: PlanarScan, guess: Floats, search: Search) -> Steps[Match | None]:
-        """Match against the scans of some nodes; None where that constrains nothing."""
+        """Match a scan against the scans of some nodes.
+
+        Returns None if they do not constrain the pose.
+        """
         reference = Reference([self.scans[node] for node in nodes], self.graph.poses[nodes])
         yield
         found = yield from match(reference, scan, guess, search, expand=self.settings.use_response_expansion)
@@ -243,10 +249,10 @@ class Mapper:
         return found if found.inliers > _FEWEST_ON_WALLS and away <= search.dimension else None
 
     def _link(self, number: int) -> Steps[tuple[int, int]]:
-        """Link a new node with those of earlier passes, and close loops.
+        """Link a new node to nodes of earlier passes, and close loops.
 
         Returns:
-            How many links there are, and how many loops.
+            The number of links, and the number of loops.
         """
         settings, links, loops = self.settings, 0, 0
         linked: set[int] = set()
@@ -255,7 +261,7 @@ class Mapper:
             found = yield from self._connect(number, chain, settings.matching, least)
             if found is not None:
                 links += 1
-                if _worst_variance(found) < _WELL_KNOWN:  # along a corridor a loop may be open all the same
+                if _worst_variance(found) < _WELL_KNOWN:  # Along a corridor, a loop may still be open despite the link.
                     linked.update(chain)
         if not settings.do_loop_closing:
             return links, 0
@@ -270,7 +276,7 @@ class Mapper:
         return links, loops
 
     def _chains(self, number: int, distance: float) -> list[list[int]]:
-        """Chains: consecutive nodes that are near a node and not among its last ones; the nearest chain comes first."""
+        """Return the chains of consecutive nodes near a node and not among its last ones, nearest first."""
         away = self._distances(self.graph.poses[number])
         last = number - self.settings.scan_buffer_size
         chains: list[list[int]] = []
@@ -296,7 +302,10 @@ class Mapper:
     def _connect(
         self, number: int, chain: list[int], search: Search, least: float, *, around: Floats | None = None
     ) -> Steps[Match | None]:
-        """Match a node against a chain, and add an edge if the match is beyond doubt; None if it is not."""
+        """Match a node against a chain, and add an edge if the match is certain.
+
+        Returns None if it is not.
+        """
         scan = self.scans[number]
         guess = self.graph.poses[number] if around is None else around
         nodes = sorted(chain, key=lambda index: float(self._distances(guess)[index]))[: self.settings.scan_buffer_size]
@@ -313,7 +322,7 @@ class Mapper:
 
 
 def _worst_variance(found: Match) -> float:
-    """The greater variance of the position, metres squared."""
+    """Return the larger variance of the position, in square metres."""
     return float(np.linalg.inv(found.information + _NOTHING * np.eye(3)).diagonal()[:2].max())
 
 
@@ -324,7 +333,7 @@ def _outcome(pose: Floats, information: Floats, found: Match | None, links: int 
 
 
 def _odometric_information(moved: Floats) -> Floats:
-    """The information matrix of odometry over a motion of shape (3,): standard deviations of about a tenth of it."""
+    """Return the information matrix of odometry for a motion of shape (3,), with about 10 % standard deviation."""
     turned = abs(float(wrapped(moved)[2]))
     along = 0.03 + 0.1 * float(np.hypot(moved[0], moved[1])) + 0.03 * turned
     around = 0.02 + 0.1 * turned + 0.05 * float(np.hypot(moved[0], moved[1]))

@@ -1,4 +1,4 @@
-"""Scan matching: a search over poses, then least squares."""
+"""Scan matching: a search over poses, followed by least squares."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ class Match:
 
     Attributes:
         pose: the pose of the robot, of shape (3,), in the frame of the reference.
-        response: 0 to 1, see `linkwright.navigation.slam.search`, without penalties where there were none.
-        information: the inverse of the pose's covariance, of shape (3, 3), for x, y and yaw in the frame of the robot.
-            Along a corridor it is near 0.
+        response: the response, 0 to 1 (see `linkwright.navigation.slam.search`), without penalties if there were none.
+        information: the inverse of the pose's covariance, of shape (3, 3), for x, y and yaw in the frame of the robot;
+            near 0 in directions without information, as along a corridor.
         inliers: the share of the points on a wall, 0 to 1.
-        error: the root mean square of their distances from their walls, metres.
+        error: the root mean square of the points' distances from their walls, in metres.
     """
 
     pose: Floats
@@ -66,7 +66,7 @@ def match(
         expand: whether to try larger angles if nothing fits.
 
     Returns:
-        None if there are too few points to match.
+        The match; None if there are too few points.
     """
     if len(scan.points) < LEAST_POINTS or len(reference) < LEAST_POINTS:
         return None
@@ -84,9 +84,12 @@ def match(
 
 
 def _refined(reference: Reference, scan: PlanarScan, guess: Floats, start: Floats, response: float) -> Match:
-    """Point-to-line ICP (Censi, "An ICP variant using a point-to-line metric", 2008) with Cauchy's weights."""
+    """Refine a pose by point-to-line ICP with Cauchy weights.
+
+    Source: Censi, "An ICP variant using a point-to-line metric", 2008.
+    """
     reach = max(float(np.sqrt((scan.points**2).sum(axis=1).mean())), 0.1)
-    scale = np.array((1.0, 1.0, 1.0 / reach))  # rotation as the distance that it moves points
+    scale = np.array((1.0, 1.0, 1.0 / reach))  # Scale the rotation to the distance by which it moves points.
     pose, farthest = start.copy(), _FARTHEST
     system = _equations(reference, scan, pose, farthest, scale)
     free = _constrained(system[0], len(scan.points))
@@ -113,7 +116,7 @@ def _refined(reference: Reference, scan: PlanarScan, guess: Floats, start: Float
 
 
 def _constrained(hessian: Floats, points: int) -> Floats:
-    """The projection onto the directions that the points constrain, of shape (3, 3)."""
+    """Return the projection onto the directions that the points constrain, of shape (3, 3)."""
     values, vectors = np.linalg.eigh(hessian)
     kept = vectors[:, values > _SINGULAR * points]
     result: Floats = kept @ kept.T
@@ -123,11 +126,17 @@ def _constrained(hessian: Floats, points: int) -> Floats:
 def _equations(
     reference: Reference, scan: PlanarScan, pose: Floats, farthest: float, scale: Floats
 ) -> tuple[Floats, Floats, float, float]:
-    """Normal equations at a pose: matrix (3, 3), right side (3,), part of the points used, their error in metres."""
+    """Return the normal equations at a pose.
+
+    Returns:
+        The matrix, of shape (3, 3); the right-hand side, of shape (3,); the share of the points that were used; and
+        their
+        error in metres.
+    """
     points = placed(pose, scan.points)
     distances, _, places, normals, flatness = reference.nearest(points)
     view = placed(pose, scan.origin[None])[0]
-    ahead = np.einsum("ni,ni->n", normals, view - places) > 0  # the other side of a thin wall does not count
+    ahead = np.einsum("ni,ni->n", normals, view - places) > 0  # Ignore the other side of a thin wall.
     chosen = (distances < farthest) & ahead & (flatness > 0.3)
     if not chosen.any():
         return np.zeros((3, 3)), np.zeros(3), 0.0, farthest

@@ -1,4 +1,4 @@
-"""The occupancy grid from scans: counts of the rays that pass each cell, and of those that end in it.
+"""The occupancy grid computed from scans: counts of the rays that pass through each cell or end in it.
 
 Source: Karto's occupancy grid, with its parameters ``min_pass_through`` and ``occupancy_threshold``.
 """
@@ -22,7 +22,7 @@ Cells = NDArray[np.int64]
 
 @dataclass(slots=True, eq=False)
 class _Trace:
-    """The counts of one scan: cells (row, column), each once, with their passes and hits."""
+    """The counts of one scan: cells (row, column) without duplicates, with their passes and hits."""
 
     pose: Floats
     cells: Cells
@@ -31,15 +31,15 @@ class _Trace:
 
 
 class OccupancyMap:
-    """The counts of many scans. A scan whose pose is corrected is removed and added again; the others stay.
+    """The ray counts of many scans; a scan whose pose is corrected is removed and added again.
 
     Args:
-        resolution: side of a cell, metres.
+        resolution: the side of a cell, in metres.
         min_pass_through: a cell is known if more rays than this reached it.
-        occupancy_threshold: a cell is occupied if a larger share of them than this ended in it.
+        occupancy_threshold: a cell is occupied if more than this share of those rays ended in it.
 
     Attributes:
-        resolution: side of a cell, metres.
+        resolution: the side of a cell, in metres.
     """
 
     def __init__(self, resolution: float, min_pass_through: int = 2, occupancy_threshold: float = 0.1) -> None:
@@ -52,7 +52,7 @@ class OccupancyMap:
         self._traces: dict[int, _Trace] = {}
 
     def draw(self, number: int, scan: PlanarScan, pose: Floats) -> None:
-        """Add a scan at a pose of the robot of shape (3,); one of the same number is removed."""
+        """Add a scan at a pose of the robot of shape (3,), replacing the scan with the same number."""
         self.erase(number)
         trace = self._traced(scan, pose)
         if not len(trace.cells):
@@ -62,18 +62,21 @@ class OccupancyMap:
         self._count(trace, 1)
 
     def erase(self, number: int) -> None:
-        """Remove a scan, if it is in."""
+        """Remove a scan if it was added."""
         trace = self._traces.pop(number, None)
         if trace is not None:
             self._count(trace, -1)
 
     def drawn_at(self, number: int) -> Floats | None:
-        """The pose at which a scan was added; None where it is not in."""
+        """Return the pose at which a scan was added; None if it is not in the map."""
         trace = self._traces.get(number)
         return None if trace is None else trace.pose
 
     def grid(self) -> Grid | None:
-        """The map, as small as possible, of int8: FREE, OCCUPIED, UNKNOWN; None while nothing is known."""
+        """Return the smallest grid with all known cells, as int8 FREE, OCCUPIED or UNKNOWN.
+
+        Returns None if none is known.
+        """
         seen = self._passes > 0
         rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
         if not len(rows):
@@ -108,7 +111,7 @@ class OccupancyMap:
         self._corner = low
 
     def _traced(self, scan: PlanarScan, pose: Floats) -> _Trace:
-        """Trace all rays at once."""
+        """Count the cells along all rays of a scan."""
         ends = placed(pose, np.concatenate((scan.points, scan.passed)))
         origin = placed(pose, scan.origin[None])[0] / self.resolution
         away = ends / self.resolution - origin
@@ -118,7 +121,7 @@ class OccupancyMap:
         part = (np.arange(len(ray)) - first[ray]) / counts[ray]
         walked = np.floor(origin + away[ray] * part[:, None]).astype(np.int64)[:, ::-1]
         last = np.floor(ends / self.resolution).astype(np.int64)[:, ::-1]
-        # A ray passes each cell once, and the last cell is counted with the end.
+        # A ray passes each cell once, and its last cell is counted as its end.
         same = np.zeros(len(walked), dtype=bool)
         same[1:] = (walked[1:] == walked[:-1]).all(axis=1) & (ray[1:] == ray[:-1])
         walked = walked[~same & (walked != last[ray]).any(axis=1)]

@@ -21,15 +21,15 @@ _KERNEL = 9.0
 class PoseGraph:
     """Poses, and measured relative poses between them.
 
-    The first pose stays where it is. Solved by Gauss and Newton on sparse matrices (Grisetti et al., "A Tutorial on
-    Graph-Based SLAM", 2010). Edges of loops may be wrong: once all edges have been followed, they have Cauchy's kernel.
+    The first pose is fixed. The graph is solved by Gauss-Newton on sparse matrices (Grisetti et al., "A Tutorial on
+    Graph-Based SLAM", 2010). Edges of loops may be wrong, so they get a Cauchy kernel in a second pass.
 
     Attributes:
-        poses: of the nodes, of shape (n, 3).
-        first: the start node of each edge.
-        second: to which one.
-        measured: the pose of the second node in the first, (3,) each.
-        information: the inverse of its covariance in the frame of the second node, (3, 3) each.
+        poses: the poses of the nodes, of shape (n, 3).
+        first: the first node of each edge.
+        second: the second node of each edge.
+        measured: the pose of the second node in the frame of the first, (3,) each.
+        information: the inverse of the covariance of `measured` in the frame of the second node, (3, 3) each.
         doubtful: whether the edge may be wrong.
     """
 
@@ -44,7 +44,7 @@ class PoseGraph:
         """Add a node at a pose of shape (3,).
 
         Returns:
-            Its number.
+            The index of the node.
         """
         self.poses = np.concatenate((self.poses, pose[None]))
         return len(self.poses) - 1
@@ -52,7 +52,7 @@ class PoseGraph:
     def add_edge(
         self, first: int, second: int, measured: Floats, information: Floats, *, doubtful: bool = False
     ) -> None:
-        """Add a measured relative pose of two nodes; see the attributes."""
+        """Add a measured relative pose between two nodes; see the attributes."""
         self.first.append(first)
         self.second.append(second)
         self.measured.append(measured)
@@ -63,7 +63,7 @@ class PoseGraph:
         """Optimise the poses by all edges, in steps.
 
         Returns:
-            The furthest that a node moved, metres.
+            The largest distance that a node moved, in metres.
         """
         before = self.poses.copy()
         if self.first and len(self.poses) > 1:
@@ -102,7 +102,7 @@ class PoseGraph:
         return float(np.abs(step).max())
 
     def _linearized(self) -> tuple[Floats, Floats, Floats]:
-        """The residual of each edge, (m, 3), and its Jacobians by the first and by the second pose, (m, 3, 3)."""
+        """Return the residual of each edge, (m, 3), and its Jacobians by the first and second pose, (m, 3, 3) each."""
         start, end = self.poses[self.first], self.poses[self.second]
         measured = np.array(self.measured)
         yaw = start[:, 2] + measured[:, 2]

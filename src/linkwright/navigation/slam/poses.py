@@ -11,13 +11,13 @@ Floats = NDArray[np.float64]
 
 
 def wrapped(angles: Floats) -> Floats:
-    """Angles between -pi and pi."""
+    """Return angles wrapped to -pi to pi."""
     result: Floats = (angles + pi) % (2 * pi) - pi
     return result
 
 
 def compose(b_in_a: Floats, c_in_b: Floats) -> Floats:
-    """The pose of c in a, of shape (..., 3)."""
+    """Return the pose of c in a from the poses of b in a and c in b, of shape (..., 3)."""
     cos, sin = np.cos(b_in_a[..., 2]), np.sin(b_in_a[..., 2])
     x, y = c_in_b[..., 0], c_in_b[..., 1]
     yaw = wrapped(b_in_a[..., 2] + c_in_b[..., 2])
@@ -26,7 +26,7 @@ def compose(b_in_a: Floats, c_in_b: Floats) -> Floats:
 
 
 def inverse(b_in_a: Floats) -> Floats:
-    """The pose of a in b, of shape (..., 3)."""
+    """Return the pose of a in b from the pose of b in a, of shape (..., 3)."""
     cos, sin = np.cos(b_in_a[..., 2]), np.sin(b_in_a[..., 2])
     x, y = b_in_a[..., 0], b_in_a[..., 1]
     result: Floats = np.stack((-cos * x - sin * y, sin * x - cos * y, -b_in_a[..., 2]), axis=-1)
@@ -34,12 +34,12 @@ def inverse(b_in_a: Floats) -> Floats:
 
 
 def between(b_in_a: Floats, c_in_a: Floats) -> Floats:
-    """The pose of c in b, of shape (..., 3)."""
+    """Return the pose of c in b from the poses of b and c in a, of shape (..., 3)."""
     return compose(inverse(b_in_a), c_in_a)
 
 
 def placed(pose: Floats, points: Floats) -> Floats:
-    """Points of shape (n, 2), transformed by a pose of shape (3,)."""
+    """Transform points of shape (n, 2) by a pose of shape (3,)."""
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     result: Floats = points @ np.array(((cos, sin), (-sin, cos))) + pose[:2]
     return result

@@ -1,4 +1,4 @@
-"""Earlier scans, prepared for matching others against them."""
+"""Earlier scans, prepared for matching other scans against them."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _LEAST = 0.01
 
 
 class Reference:
-    """Points of scans, their likelihood field, and the directions of their walls.
+    """The points of scans, their likelihood field, and the directions of their walls.
 
-    Points that are nearer than 5 cm to each other become their mean, which is more accurate than one reading.
+    Points within 5 cm of each other are replaced by their mean, which is more accurate than one reading.
 
     Args:
         scans: the scans.
@@ -55,7 +55,7 @@ class Reference:
         return len(self.points)
 
     def find_lines(self) -> None:
-        """Prepare `nearest`: the directions of walls, from each point's neighbours."""
+        """Compute the directions of walls from each point's neighbours, as needed by `nearest`."""
         self._tree = load_scipy("spatial").cKDTree(self.points)
         count = min(_NEIGHBOURS, len(self.points))
         distances, indices = self._tree.query(self.points, k=count)
@@ -69,35 +69,36 @@ class Reference:
         normals[away] *= -1
         root = np.sqrt((xx - yy) ** 2 + 4 * xy**2)
         total = np.maximum(xx + yy, 1e-12)
-        flatness = root / total  # 1 for a line, 0 for points all around
+        flatness = root / total  # 1 for a line, 0 for points scattered in all directions
         flatness[distances.reshape(-1, count)[:, -1] > _SPREAD] = 0.0
         self._normals: Floats = normals
         self._flatness: Floats = flatness if count >= 3 else np.zeros(len(self.points))
 
     def nearest(self, points: Floats) -> tuple[Floats, NDArray[np.int64], Floats, Floats, Floats]:
-        """The nearest reference point for each of some points of shape (n, 2).
+        """Return the nearest reference point to each point of an array of shape (n, 2).
 
         Returns:
-            Distances (n,), indices (n,), places (n, 2), normals (n, 2) towards where they were seen from, and how
-            straight the wall is there (n,), 0 to 1.
+            Distances (n,), indices (n,), positions (n, 2), normals (n, 2) towards the viewpoint, and the straightness
+            of the
+            wall (n,), 0 to 1.
         """
         distances, indices = self._tree.query(points)
         return distances, indices, self.points[indices], self._normals[indices], self._flatness[indices]
 
 
 class Likelihood:
-    """A grid of likelihoods, and the maxima over 2x2, 4x4, ... cells from each on.
+    """A grid of likelihoods, with the maxima over blocks of 2x2, 4x4, ... cells.
 
     Args:
-        points: where something is, of shape (n, 2), metres.
-        resolution: side of a cell, metres.
-        smear_deviation: how far from there one may still see it, metres.
+        points: the observed points, of shape (n, 2), in metres.
+        resolution: the side of a cell, in metres.
+        smear_deviation: the standard deviation of the observed positions, in metres.
     """
 
     def __init__(self, points: Floats, resolution: float, smear_deviation: float) -> None:
         self.resolution = resolution
         deviation = max(smear_deviation, resolution / 2)
-        margin = 3.1 * deviation + resolution  # so that the outermost cells are 0
+        margin = 3.1 * deviation + resolution  # wide enough that the outermost cells are 0
         self.corner: Floats = points.min(axis=0) - margin
         size = np.ceil((points.max(axis=0) + margin - self.corner) / resolution).astype(int) + 1
         empty = np.ones((size[1], size[0]), dtype=bool)
@@ -109,10 +110,11 @@ class Likelihood:
         self._levels: list[NDArray[np.float32]] = [finest]
 
     def level(self, number: int) -> tuple[NDArray[np.float32], int]:
-        """The grid whose cell (row + n, column + n) is the maximum of 2^number x 2^number cells from (row, column).
+        """Return the grid of maxima over blocks of 2^number x 2^number cells.
 
         Returns:
-            The grid, and n.
+            The grid and an offset n: cell (row + n, column + n) is the maximum of the block that begins at (row,
+                column).
         """
         while len(self._levels) <= number:
             finer, step = self._levels[-1], 1 << (len(self._levels) - 1)

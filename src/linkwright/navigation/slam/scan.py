@@ -12,13 +12,15 @@ from linkwright.navigation.slam.poses import Floats
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlanarScan:
-    """A laser scan in the frame of the robot's base; the robot's motion during a scan is ignored.
+    """A laser scan in the frame of the robot's base.
+
+    The robot's motion during a scan is ignored.
 
     Attributes:
-        points: the ends of rays with a hit, of shape (n, 2), metres.
-        passed: the ends of rays that were cut off at the maximum range, of shape (m, 2): all before them is free.
+        points: the ends of rays with a hit, of shape (n, 2), in metres.
+        passed: the ends of rays that were cut off at the maximum range, of shape (m, 2); the space before them is free.
         origin: the origin of the rays, of shape (2,).
-        stamp_ns: the stamp, nanoseconds.
+        stamp_ns: the stamp, in nanoseconds.
     """
 
     points: Floats
@@ -37,17 +39,18 @@ def planar_scan(
 ) -> PlanarScan:
     """Convert the ranges of a laser to points.
 
-    As in Karto a range that is not measured (NaN, infinite, 0, outside of the laser's own limits) is ignored, and a
-    range beyond the mapper's maximum marks the ray up to it as free.
+    As in Karto, a range that is not measured (NaN, infinite, 0, outside the laser's own limits) is ignored, and a range
+    beyond the mapper's maximum marks the ray up to it as free.
 
     Args:
-        ranges: metres, of shape (n,).
-        angles: of the rays in the frame of the laser, about its z axis, of shape (n,), radians.
-        limits: the least and the most that the laser measures, metres.
-        cut_off: the mapper's least and greatest range, metres.
-        laser: rotation matrix, of shape (3, 3), and position, of shape (3,), of the laser in the frame of the base; it
+        ranges: the ranges in metres, of shape (n,).
+        angles: the angles of the rays in the frame of the laser, about its z axis, of shape (n,), in radians.
+        limits: the minimum and maximum range that the laser measures, in metres.
+        cut_off: the mapper's minimum and maximum range, in metres.
+        laser: the rotation matrix, of shape (3, 3), and position, of shape (3,), of the laser in the frame of the base;
+            it
             may be mounted upside down.
-        stamp_ns: when it was measured, nanoseconds.
+        stamp_ns: the time of the measurement, in nanoseconds.
     """
     with np.errstate(invalid="ignore"):
         counts = np.isfinite(ranges) & (ranges > max(limits[0], cut_off[0], 0.0)) & (ranges < limits[1])

@@ -1,9 +1,9 @@
-"""The pose in a window at which a scan fits a reference best, by branch and bound.
+"""Search for the pose in a window at which a scan fits a reference best, by branch and bound.
 
 The search is that of Olson ("Real-Time Correlative Scan Matching", ICRA 2009) with the branch and bound of Hess et al.
-("Real-Time Loop Closure in 2D LIDAR SLAM", ICRA 2016): blocks of positions are judged by the most that any in them can
-have, so that all of the window is searched, and most of it by few looks. A response, as in Karto, is the mean over the
-points of the likelihood of something at their place.
+("Real-Time Loop Closure in 2D LIDAR SLAM", ICRA 2016): a block of positions is rated by an upper bound of the responses
+in it, so the whole window is searched with few evaluations. A response, as in Karto, is the mean likelihood at the
+points.
 """
 
 from __future__ import annotations
@@ -27,17 +27,19 @@ _BLOCKS = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Search:
-    """A window of poses, and the penalties in it; names and meanings are those of Karto's parameters.
+    """A search window of poses, and its penalties.
+
+    Names and meanings are those of Karto's parameters.
 
     Attributes:
-        dimension: the side of the window, metres.
-        resolution: the resolution of positions, metres.
-        smear_deviation: the standard deviation of a reading's position, metres.
-        angle_offset: half the window of angles, radians.
-        angle_resolution: the resolution of angles, radians; refined for points so far away that it would skip cells.
-        distance_variance_penalty: metres squared; a smaller value keeps the pose nearer to the expected one.
-        angle_variance_penalty: radians squared.
-        minimum_distance_penalty: the least factor of a response for its distance; 1 for no penalty.
+        dimension: the side of the window, in metres.
+        resolution: the resolution of positions, in metres.
+        smear_deviation: the standard deviation of a reading's position, in metres.
+        angle_offset: half the window of angles, in radians.
+        angle_resolution: the resolution of angles, in radians; refined if it would skip cells at the farthest points.
+        distance_variance_penalty: in square metres; a smaller value keeps the pose nearer to the expected one.
+        angle_variance_penalty: in square radians; the same for the angle.
+        minimum_distance_penalty: the minimum factor of a response for its distance; 1 for no penalty.
         minimum_angle_penalty: the same for the angle.
     """
 
@@ -53,13 +55,13 @@ class Search:
 
     @property
     def cell(self) -> float:
-        """The resolution of the search, metres: half of the smear is fine enough for the refinement that follows."""
+        """The resolution of the search in metres; half the smear suffices before the refinement."""
         return max(self.resolution, self.smear_deviation / 2)
 
 
 @dataclass(slots=True, eq=False)
 class _Blocks:
-    """Blocks of positions: the angle, the first row and column, and the greatest response in each."""
+    """Blocks of positions: the angle, the first row and column, and the maximum response in each."""
 
     angle: NDArray[np.int64]
     row: NDArray[np.int64]
@@ -90,7 +92,7 @@ class _Window:
         self._columns = np.floor(x / likelihood.resolution).astype(np.int32)
 
     def top(self) -> tuple[int, _Blocks]:
-        """The level of the largest blocks, and these, without bounds."""
+        """Return the level of the largest blocks, and those blocks without bounds."""
         side = 2 * self.half + 1
         level = max(0, (side // _BLOCKS).bit_length() - 1)
         offsets = np.arange(-self.half, self.half + 1, 1 << level)
@@ -126,7 +128,10 @@ class _Window:
         return result
 
     def children(self, blocks: _Blocks, level: int) -> _Blocks:
-        """The quarters of blocks, as far as they are in the window; `level` is that of the quarters."""
+        """Return the quarters of blocks that are in the window.
+
+        `level` is the level of these quarters.
+        """
         side = 1 << level
         angle, row, column = (np.repeat(array, 4) for array in (blocks.angle, blocks.row, blocks.column))
         row += np.tile((0, 0, side, side), len(blocks.angle))
@@ -136,11 +141,11 @@ class _Window:
 
 
 def best_pose(likelihood: Likelihood, points: Floats, guess: Floats, search: Search) -> Steps[tuple[Floats, float]]:
-    """Search the best pose, in steps.
+    """Search for the best pose, in steps.
 
     Args:
         likelihood: the likelihood field of the earlier scans.
-        points: the points of the scan, at least one, in the frame of the robot, of shape (n, 2), metres.
+        points: the points of the scan, at least one, in the frame of the robot, of shape (n, 2), in metres.
         guess: the centre of the window, of shape (3,).
         search: the window.
 
@@ -179,7 +184,7 @@ def _judged(window: _Window, blocks: _Blocks, level: int) -> Steps[None]:
 
 
 def _descend(window: _Window, blocks: _Blocks, level: int) -> _Blocks:
-    """A first good pose: from the best block always the best quarter."""
+    """Return a good initial pose by descending greedily from the best block to its best quarter."""
     index = int(np.argmax(blocks.bound))
     block = blocks.part(np.s_[index : index + 1])
     while level:

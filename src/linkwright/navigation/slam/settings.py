@@ -1,4 +1,4 @@
-"""Settings of the mapper; names, units and defaults are those of slam_toolbox's parameters."""
+"""Settings of the mapper, with the names, units and defaults of slam_toolbox's parameters."""
 
 from __future__ import annotations
 
@@ -10,26 +10,27 @@ from linkwright.navigation.slam.search import Search
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapperSettings:
-    """Settings of a mapper. Lengths are in metres, angles in radians, times in seconds.
+    """Settings of a mapper; lengths are in metres, angles in radians, times in seconds.
 
     Attributes:
-        use_scan_matching: whether scans are matched to those before; else odometry is believed.
-        minimum_time_interval: between two scans that are taken.
-        minimum_travel_distance: how far the robot has to go for a scan to be taken.
-        minimum_travel_heading: or by how much to turn.
-        scan_buffer_size: against how many of the last scans a new one is matched.
-        scan_buffer_maximum_scan_distance: how far from the new one the oldest of them may be.
-        link_match_minimum_response_fine: with a response below this a match does not count.
-        link_scan_maximum_distance: scans of earlier passes that are nearer than this are linked with the new one.
-        do_loop_closing: whether loops are looked for.
-        loop_search_maximum_distance: how far away the robot may seem to be from where it has been before.
-        loop_match_minimum_chain_size: how many scans in a row there must be for a loop to be tried.
-        loop_match_maximum_variance_coarse: of a position, metres squared, beyond which a loop is not believed.
-        loop_match_minimum_response_coarse: the least response of the search for a loop, 0 to 1.
-        loop_match_minimum_response_fine: and the match that follows.
-        matching: the window in which a new scan is searched.
-        loop: the window in which a loop is searched.
-        use_response_expansion: whether larger turns are tried where nothing fits.
+        use_scan_matching: whether scans are matched to earlier scans; otherwise odometry alone is used.
+        minimum_time_interval: the minimum time between two processed scans.
+        minimum_travel_distance: how far the robot must move before a scan is processed.
+        minimum_travel_heading: or how far the robot must rotate.
+        scan_buffer_size: the number of recent scans that a new scan is matched against.
+        scan_buffer_maximum_scan_distance: the maximum distance of those scans from the new one.
+        link_match_minimum_response_fine: the minimum response of a match that links scans.
+        link_scan_maximum_distance: scans of earlier passes within this distance are linked with the new one.
+        do_loop_closing: whether to search for loops.
+        loop_search_maximum_distance: the maximum distance to earlier scans in the search for loops.
+        loop_match_minimum_chain_size: the minimum number of consecutive scans for a loop.
+        loop_match_maximum_variance_coarse: the maximum variance of the position at which a loop is accepted, in square
+            metres.
+        loop_match_minimum_response_coarse: the minimum response of the search for a loop, 0 to 1.
+        loop_match_minimum_response_fine: the minimum response of the match that follows.
+        matching: the window in which a new scan is searched for.
+        loop: the window in which a loop is searched for.
+        use_response_expansion: whether to try larger angles if nothing fits.
     """
 
     use_scan_matching: bool = True

@@ -1,7 +1,7 @@
-"""Generators of work in steps, so that a node can run other callbacks between two of them.
+"""Generators that do work in steps, between which a node can run other callbacks.
 
-A function that takes long is a generator: it yields after some milliseconds, and returns its result. A caller that may
-block calls `finish`; others call ``next`` when they have time, or ``yield from`` it in work of their own.
+A function that takes long is a generator: it yields every few milliseconds, and returns its result. A caller that may
+block calls `finish`; other callers call ``next`` when they have time, or ``yield from`` it in their own generators.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ def finish(work: Steps[T]) -> T:
     """Run all steps.
 
     Returns:
-        Its result.
+        The result of the work.
     """
     try:
         while True:

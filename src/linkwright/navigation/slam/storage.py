@@ -1,7 +1,7 @@
-"""Files of a graph of poses with its scans, as slam_toolbox's serialised maps.
+"""Files of a pose graph with its scans, in place of slam_toolbox's serialised maps.
 
-The file is a NumPy archive of plain arrays, of our own: slam_toolbox writes the memory of its C++ classes, as Boost
-serialises it, and cannot be read by others.
+The file is a NumPy archive of plain arrays in Linkwright's own format: slam_toolbox writes the memory of its C++
+classes, serialised by Boost, which other programs cannot read.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _LARGEST_FILE = 1 << 30
 
 
 def path_of(name: str) -> Path:
-    """The file of a graph, from a name whose ending may be missing."""
+    """Return the path of a graph's file, from a name that may lack the extension."""
     return Path(name if name.endswith(ENDING) else name + ENDING)
 
 
@@ -67,7 +67,7 @@ def load_graph(mapper: Mapper, path: Path) -> None:
     """Load a graph into a mapper, without drawing it yet.
 
     Raises:
-        LinkwrightError: NAV501, the file does not exist, or is not a graph of ours; the mapper is unchanged.
+        LinkwrightError: NAV501, the file does not exist, or is not a graph of Linkwright; the mapper is unchanged.
     """
     try:
         data = read_file(path, _LARGEST_FILE)

@@ -1,1 +1,1 @@
-"""Our substitutes for packages of navigation that launch files include, as a prefix with their share folders."""
+"""Substitutes for the navigation packages that launch files include: a prefix with their share directories."""

@@ -1,6 +1,6 @@
 """The common parts of nav2_bringup's launch files: servers, separate or composed, and their lifecycle manager.
 
-It imports what launch files import, and runs where they do.
+The module uses the modules that launch files import, and runs where they do.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ class Server:
     """A managed node of Nav2.
 
     Attributes:
-        package: the package.
-        executable: its program, which is also its default name.
-        plugin: its class when it is composed.
+        package: the package of the node.
+        executable: the executable, which is also the default name of the node.
+        plugin: the class of the node when it is composed.
         name: the node's name, if it differs from the executable's.
         remappings: pairs of names.
     """
@@ -57,7 +57,7 @@ class Server:
 
     @property
     def is_here(self) -> bool:
-        """Return whether it comes with Linkwright."""
+        """Whether Linkwright provides the server."""
         from linkwright.nodes import EXECUTABLES
 
         return (self.package, self.executable) in EXECUTABLES
@@ -72,7 +72,10 @@ def is_true(context: LaunchContext, name: str) -> bool:
 
 
 def configured_parameters(context: LaunchContext) -> ParameterFile:
-    """Return the file of ``params_file`` with the launch's ``use_sim_time``, for nodes in its ``namespace``."""
+    """Return the launch's parameter file, for nodes in its ``namespace``.
+
+    It is ``params_file`` with the launch's ``use_sim_time``.
+    """
     configurations = context.launch_configurations
     rewrites = {"use_sim_time": str(is_true(context, "use_sim_time"))}
     rewritten = RewrittenYaml(
@@ -89,14 +92,15 @@ def managed(
 ) -> list[Any]:
     """Return the actions that start servers and their lifecycle manager.
 
-    Servers that Linkwright lacks are started too, so that the launch reports them as skipped; the manager does not wait
+    Servers that Linkwright lacks are started, too, so that the launch reports them as skipped; the manager does not
+    wait
     for them.
 
     Args:
         context: a context with the launch configurations of `ARGUMENTS` and ``params_file``.
         manager: the name of the lifecycle manager.
         servers: the managed servers.
-        parameters: name of a node -> parameters in addition to the file's.
+        parameters: parameters in addition to the file's, by node name.
     """
     sim_time = {"use_sim_time": is_true(context, "use_sim_time")}
     file = configured_parameters(context)

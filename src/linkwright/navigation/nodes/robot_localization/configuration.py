@@ -30,7 +30,10 @@ _GIVES = {
 
 @dataclass(frozen=True, slots=True)
 class Frames:
-    """The names of the frames; `world` is `map` or `odom`, and `output` is the body in messages."""
+    """The names of the frames.
+
+    `world` equals `map` or `odom`, and `output` is the body frame in messages.
+    """
 
     map: str
     odom: str
@@ -44,17 +47,17 @@ class SensorSettings:
     """The settings of one sensor.
 
     Attributes:
-        name: such as ``odom0``.
+        name: the name, such as ``odom0``.
         kind: one of `KINDS`.
         topic: the topic of its messages.
-        used: which of the 15 values of the state it gives.
-        differential: whether its pose counts as a velocity.
-        relative: whether its poses count from the first one.
-        queue_size: depth of the subscription.
-        pose_threshold: standard deviations after which a pose is left out; so are the other two.
-        twist_threshold: of twists.
-        acceleration_threshold: of accelerations.
-        remove_gravity: whether accelerations have gravity in them.
+        used: which of the 15 values of the state the sensor provides.
+        differential: whether its poses are used as velocities.
+        relative: whether its poses are relative to the first one.
+        queue_size: the depth of the subscription.
+        pose_threshold: the deviation in standard deviations above which a pose is rejected.
+        twist_threshold: the same for twists.
+        acceleration_threshold: the same for accelerations.
+        remove_gravity: whether accelerations contain gravity.
     """
 
     name: str
@@ -72,7 +75,10 @@ class SensorSettings:
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """The parameters as one object; times are in nanoseconds where the name ends in ``_ns``, else in seconds."""
+    """The parameters as one object.
+
+    Times are in nanoseconds if the name ends in ``_ns``, else in seconds.
+    """
 
     frequency: float
     two_d: bool
@@ -94,8 +100,8 @@ def configuration_of(node: Node) -> Configuration:
     """Declare the parameters of a node and read them.
 
     Raises:
-        LinkwrightError: NODE433 for a value that means nothing, NODE441 for a list of the wrong length, NODE442 for
-            frames that are not different.
+        LinkwrightError: NODE433, a value is invalid; NODE441, a list has the wrong length; NODE442, the frames are not
+            different.
     """
     declare = node.declare_parameter
     frequency = positive(node, "frequency", declare("frequency", 30.0).value)
@@ -104,7 +110,7 @@ def configuration_of(node: Node) -> Configuration:
     history: float = declare("history_length", 0.0).value
     for name, default in (("debug", False), ("debug_out_file", "robot_localization_debug.txt")):
         declare(name, default)
-    declare("transform_timeout", 0.0)  # lookups here never wait
+    declare("transform_timeout", 0.0)  # Lookups never wait here.
     sensors = tuple(_sensors(node))
     return Configuration(
         frequency=frequency,
@@ -205,7 +211,7 @@ def _sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings:
         acceleration_threshold=declare("linear_acceleration_rejection_threshold", inf) if acceleration else inf,
         remove_gravity=bool(declare("remove_gravitational_acceleration", False)) if acceleration else False,
     )
-    declare("nodelay", False)  # of ROS 1; files still have it
+    declare("nodelay", False)  # A parameter of ROS 1 that parameter files still contain
     if not any(sensor.used):
         node.get_logger().warning(
             f"{topic} is listed as an input topic ({name}), but nothing that it gives is true in {name}_config"
@@ -219,7 +225,10 @@ _THRESHOLDS = ("pose_rejection_threshold", "twist_rejection_threshold")
 
 
 def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
-    """The settings of commanded velocities. All are declared, so that unused ones are known."""
+    """Return the settings for commanded velocities.
+
+    All are declared, so that unused ones are recognized.
+    """
     use: bool = node.declare_parameter("use_control", False).value
     timeout: float = node.declare_parameter("control_timeout", _CONTROL_TIMEOUT).value
     node.declare_parameter("stamped_control", False)
@@ -245,7 +254,7 @@ def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
 
 
 def _covariance(node: Node, name: str, default: Matrix) -> Matrix:
-    """A covariance of the state, from 225 numbers or the 15 of the diagonal."""
+    """Return a covariance of the state from 225 numbers or the 15 numbers of the diagonal."""
     numbers = _numbers(node, name, (SIZE * SIZE, SIZE))
     if numbers is None:
         return default
@@ -274,7 +283,7 @@ def check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
     """Check the number of a parameter's values.
 
     Raises:
-        LinkwrightError: NODE441, it has not.
+        LinkwrightError: NODE441, the number is wrong.
     """
     if length not in lengths:
         known = " / ".join(str(length) for length in lengths)

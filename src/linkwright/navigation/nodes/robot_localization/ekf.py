@@ -2,9 +2,9 @@
 
 They follow robot_localization 3.5 (ROS 2 Humble) and later, with these deliberate differences:
 
-- When simulated time jumps back, as on the reset of a world, the filter restarts whatever ``reset_on_time_jump`` is set
-  to: the original would wait until time has caught up.
-- A sensor that gives no acceleration (or no position) does not measure it as 0 where its ``_config`` is true.
+- When simulated time jumps back, such as on the reset of a world, the filter restarts whatever ``reset_on_time_jump``
+  is set to; the original would wait until time has caught up.
+- A sensor that provides no acceleration (or no position) does not measure it as 0 where its ``_config`` is true.
 - Lookups of transforms never wait, so ``transform_timeout`` has no effect; nor has ``debug``.
 - ``process_noise_covariance`` and ``initial_estimate_covariance`` may be the 15 numbers of the diagonal.
 - Sensors and their rules: see `linkwright.navigation.estimation.readings`.
@@ -35,11 +35,12 @@ _POSE_VARIANCE = 1e-6
 
 
 class EkfNode(SingleNode):
-    """The running node.
+    """The running ekf_node.
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201), has the wrong number of values
-            (NODE441), or names frames that do not differ (NODE442).
+        LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201) or the wrong number of values (NODE441),
+            or
+            the frames are not different (NODE442).
     """
 
     DEFAULT_NAME: ClassVar[str] = "ekf_filter_node"
@@ -80,13 +81,13 @@ class EkfNode(SingleNode):
         node.create_service(get_service("robot_localization/srv/ToggleFilterProcessing"), "toggle", self._on_toggle)
         node.create_service(get_service("std_srvs/srv/Empty"), "enable", self._on_enable)
         backwards = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
-        # Clocks are set in the thread in which /clock arrives; the filter lives in that of the node.
+        # Clocks are set in the thread that receives /clock; the filter runs in the node's thread.
         jumped = node.create_guard_condition(self._time_jumped)
         self._jumps = self._clock.create_jump_callback(backwards, post_callback=lambda _: jumped.trigger())
         node.create_timer(1.0 / self._configuration.frequency, self._update)
 
     def close(self) -> None:
-        """End it."""
+        """Close the node."""
         self._jumps.unregister()
         super().close()
 
@@ -268,7 +269,7 @@ class EkfNode(SingleNode):
 
 
 class UkfNode(EkfNode):
-    """The running node; it raises what `EkfNode` does."""
+    """The running ukf_node; it raises the same errors as `EkfNode`."""
 
     DEFAULT_NAME: ClassVar[str] = "ukf_filter_node"
 

@@ -1,9 +1,9 @@
-"""navsat_transform_node of robot_localization: fixes of a satellite receiver to odometry, and odometry to fixes.
+"""navsat_transform_node of robot_localization: converts satellite fixes to odometry, and odometry to fixes.
 
-It follows robot_localization 3.5 (ROS 2 Humble). The origin of the map on the earth, and how it is turned, come from
-the first fix with the first odometry and the heading of an IMU (0 in the east), or from a datum. Deliberate
-differences: the place of the receiver on the robot is taken away with the orientation of the odometry and not by a
-lookup; ``delay`` does not block.
+It follows robot_localization 3.5 (ROS 2 Humble). The map's origin and rotation on the earth are taken from the first
+fix, with the first odometry and the heading of an IMU (0 in the east), or from a datum. Deliberate differences: the
+offset of the receiver on the robot is removed with the orientation of the odometry instead of a lookup; ``delay`` does
+not block.
 """
 
 from __future__ import annotations
@@ -43,11 +43,11 @@ _ZONE_LETTERS = "CDEFGHJKLMNPQRSTUVWXX"
 
 
 class NavsatTransformNode(SingleNode):
-    """The running node.
+    """The running navsat_transform_node.
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201), or a datum has another number of values
-            than three (NODE441).
+        LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201), or a datum does not have three values
+            (NODE441).
     """
 
     DEFAULT_NAME = "navsat_transform_node"
@@ -146,7 +146,7 @@ class NavsatTransformNode(SingleNode):
             self._first_fix = place
 
     def _receive_imu(self, message: Any) -> None:
-        if self._map is not None or self._odometry is None:  # the odometry carries the frame of the body
+        if self._map is not None or self._odometry is None:  # Wait for the odometry, which contains the body frame.
             return
         mounting = self._poses.pose(
             self._base_frame, message.header.frame_id or self._base_frame, message.header.stamp.nanoseconds
@@ -198,7 +198,7 @@ class NavsatTransformNode(SingleNode):
         self._tf_publisher.publish(TFMessage(batch=batch))
 
     def _receiver(self) -> Vector3:
-        """The pose of the receiver on the robot."""
+        """Return the position of the receiver on the robot."""
         frame = self._fix.header.frame_id if self._fix is not None else ""
         if not frame:
             return 0.0, 0.0, 0.0
@@ -206,7 +206,7 @@ class NavsatTransformNode(SingleNode):
         return (0.0, 0.0, 0.0) if pose is None else pose[:3]
 
     def _grid(self, place: Vector3) -> Vector3:
-        """A position on earth (degrees, degrees, metres) in the grid, metres."""
+        """Convert a position on earth (degrees, degrees, metres) to a point of the grid, in metres."""
         if self._plane is not None:
             return self._plane.point_of(*place)
         assert self._zone is not None, "it comes with the first place"
@@ -214,7 +214,7 @@ class NavsatTransformNode(SingleNode):
         return easting, northing, place[2]
 
     def _place(self, point: Vector3) -> Vector3:
-        """A point of the grid as a position on earth."""
+        """Convert a point of the grid to a position on earth."""
         if self._plane is not None:
             return self._plane.place_of(point)
         assert self._zone is not None, "it comes with the first place"

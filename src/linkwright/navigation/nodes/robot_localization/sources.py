@@ -1,4 +1,4 @@
-"""Sensors of ekf_node: converting their messages to measurements in the filter's frames."""
+"""Sensors of ekf_node: conversion of their messages to measurements in the filter's frames."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ class Surroundings:
     """The data that sensors share.
 
     Args:
-        node: of the filter.
-        configuration: its parameters.
-        estimator: receives their measurements.
-        jumped_back: called when a message is older than the one before it.
+        node: the node of the filter.
+        configuration: the parameters of the node.
+        estimator: receives the measurements of the sensors.
+        jumped_back: called when a message is older than the previous one.
     """
 
     def __init__(
@@ -72,11 +72,11 @@ class Surroundings:
 
 
 class Source:
-    """One sensor: its subscription, and its state.
+    """A sensor with its subscription and its state.
 
     Args:
-        settings: see there.
-        surroundings: see there.
+        settings: the settings of the sensor.
+        surroundings: the data shared with other sensors.
     """
 
     def __init__(self, settings: SensorSettings, surroundings: Surroundings) -> None:
@@ -97,7 +97,7 @@ class Source:
             )
 
     def forget(self, *, time: bool) -> None:
-        """Take the next pose as the first one; and, with `time`, messages of any stamp."""
+        """Treat the next pose as the first one; with `time`, also accept messages of any stamp."""
         self._pose.forget()
         if time:
             self._last_ns = -1
@@ -189,7 +189,7 @@ class Source:
         self._add(reading, "acceleration", stamp_ns, self._settings.acceleration_threshold)
 
     def _attitude(self, message: Any, mounting: Transform) -> Quaternion:
-        """The orientation of an IMU: measured, or else that of the filter."""
+        """Return the measured orientation of an IMU, or else the filter's orientation."""
         if _is_measured(message.orientation_covariance):
             return _orientation(message.orientation)
         roll, pitch, yaw = (float(angle) for angle in self._around.filter.state[ANGLES])

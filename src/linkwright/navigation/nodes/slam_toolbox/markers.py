@@ -1,4 +1,4 @@
-"""The graph of poses as markers: a sphere for each scan, a line for each edge."""
+"""Markers of a pose graph: a sphere for each scan, a line for each edge."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ _LINE = 0.02
 
 
 def graph_markers(graph: PoseGraph, frame: str, stamp: Any) -> Any:
-    """A visualization_msgs/MarkerArray of a graph; edges of consecutive scans are blue, others green."""
+    """Return a graph as a visualization_msgs/MarkerArray.
+
+    Edges of consecutive scans are blue, others green.
+    """
     array = get_message("visualization_msgs/msg/MarkerArray")()
     point = get_message("geometry_msgs/msg/Point")
     points = [point(x=x, y=y) for x, y in graph.poses[:, :2].tolist()]

@@ -1,16 +1,16 @@
 """The executables of slam_toolbox: async, sync, localization, and map_and_localization.
 
 They follow slam_toolbox 2.6 (Humble), whose nodes work as soon as they start, and 2.8 (Jazzy), whose nodes are managed;
-``ROS_DISTRO`` selects one. Jazzy's activate themselves if ``autostart_node`` is true, as in our launch files. The
+``ROS_DISTRO`` selects one. Jazzy's nodes activate themselves if ``autostart_node`` is true, as in our launch files. The
 mapper is Linkwright's own (`linkwright.navigation.slam`). Differences:
 
-- All solver plugins are one: Gauss-Newton on sparse matrices. Least squares refine each match, so
+- One solver replaces all solver plugins: Gauss-Newton on sparse matrices. Least squares refine each match, so
   ``fine_search_angle_offset`` has no effect; nor has ``use_scan_barycenter``.
-- A turn by ``minimum_travel_heading`` is enough to process a scan, as the parameter's name suggests.
-- Scans are not moved by hand (``enable_interactive_mode``), maps are not merged, and nothing is forgotten: there is no
+- A rotation by ``minimum_travel_heading`` is enough to process a scan, as the parameter's name suggests.
+- Moving scans by hand (``enable_interactive_mode``), merging maps and lifelong mapping are not supported: there is no
   ``lifelong_slam_toolbox_node``. The motion of the robot during a scan is ignored.
-- A graph is saved in a format of our own, in one file; files of slam_toolbox cannot be read.
-- When simulated time jumps back, as on the reset of a world, the map starts from scratch.
+- A graph is saved in Linkwright's own format, in one file; files of slam_toolbox cannot be read.
+- When simulated time jumps back, such as on the reset of a world, the map starts from scratch.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from linkwright.nodes.settings import log_unknown
 
 
 class _Managed(ManagedNode):
-    """The node of Jazzy, which is managed."""
+    """The managed node of Jazzy."""
 
     kind: type[AsyncSlamToolbox]
 
     def declare(self) -> None:
-        """Declare ``use_lifecycle_manager``: only with one a bond is formed."""
+        """Declare ``use_lifecycle_manager``; a bond is formed only if it is true."""
         if not self.declare_parameter("use_lifecycle_manager", False).value:
             self._beats = 0.0
 
@@ -62,11 +62,11 @@ class _Managed(ManagedNode):
 
 
 class AsyncSlamToolbox(SingleNode):
-    """The running node, which skips scans that it has no time for.
+    """The running async node, which skips scans that it has no time for.
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201), SciPy is not installed (NAV101), or the
-            map to begin with cannot be read (NAV501).
+        LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201), SciPy is not installed (NAV101), or the
+            initial map cannot be read (NAV501).
     """
 
     DEFAULT_NAME: ClassVar[str] = "slam_toolbox"
@@ -84,7 +84,7 @@ class AsyncSlamToolbox(SingleNode):
             return
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
-            for name in ("use_lifecycle_manager", "autostart_node"):  # of Jazzy's
+            for name in ("use_lifecycle_manager", "autostart_node"):  # Jazzy's parameters
                 self._node.declare_parameter(name, False)
             self._work = self.open(self._node)
             log_unknown(self._node)
@@ -92,12 +92,12 @@ class AsyncSlamToolbox(SingleNode):
 
     @classmethod
     def open(cls, node: Node) -> tuple[Toolbox, ToolboxServices]:
-        """Read the parameters of a node, and make its toolbox."""
+        """Read the parameters of a node, and create its toolbox and services."""
         toolbox = Toolbox(node, settings_of(node), keeps_all=cls.KEEPS_ALL, localizes=cls.LOCALIZES)
         return toolbox, ToolboxServices(toolbox, has_queue=cls.KEEPS_ALL, switches=cls.SWITCHES)
 
     def close(self) -> None:
-        """End it."""
+        """Close the node."""
         if self._work is not None:
             self._work[0].stop()
         elif isinstance(self._node, ManagedNode):
@@ -106,18 +106,18 @@ class AsyncSlamToolbox(SingleNode):
 
 
 class SyncSlamToolbox(AsyncSlamToolbox):
-    """The running node, which processes all scans, however long that takes."""
+    """The running sync node, which processes all scans, however long that takes."""
 
     KEEPS_ALL = True
 
 
 class LocalizationSlamToolbox(AsyncSlamToolbox):
-    """The running node, which localizes the robot in a saved map."""
+    """The running localization node, which localizes the robot in a saved map."""
 
     LOCALIZES = True
 
 
 class MapAndLocalizationSlamToolbox(AsyncSlamToolbox):
-    """The running node, which maps until a service switches it to localization."""
+    """The running map_and_localization node, which maps until a service switches it to localization."""
 
     SWITCHES = True

@@ -37,28 +37,28 @@ _WITHOUT_EFFECT: dict[str, bool | int | float | str] = {
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The parameters as one object: metres, radians, and nanoseconds where the name ends in ``_ns``.
+    """The parameters as one object, in metres, radians, and nanoseconds where the name ends in ``_ns``.
 
     Attributes:
         odom_frame: the frame of odometry.
         map_frame: the frame of the map, the parent of `odom_frame`.
         base_frame: the frame of the robot.
         scan_topic: the topic of scans.
-        map_name: the topic of the map; with the suffix ``_metadata`` that of its metadata.
+        map_name: the topic of the map; its metadata is published with the suffix ``_metadata``.
         resolution: the side of a cell.
-        ranges: the least and the greatest range of a reading.
+        ranges: the minimum and maximum range of a reading.
         throttle_scans: process every n-th scan.
         transform_timeout_ns: how long a scan waits for its transform, and how far published transforms are stamped
             ahead.
-        transform_period: the seconds between two transforms; 0 for none.
-        map_update_interval: the seconds between two maps.
+        transform_period: the seconds between published transforms; 0 to publish none.
+        map_update_interval: the seconds between published maps.
         tf_buffer_ns: how long transforms are kept.
-        position_covariance_scale: the factor of the published pose's covariance.
-        yaw_covariance_scale: the same for its angle.
+        position_covariance_scale: the factor applied to the covariance of the published position.
+        yaw_covariance_scale: the factor applied to the variance of the published yaw.
         min_pass_through: see `OccupancyMap`.
         occupancy_threshold: see `OccupancyMap`.
-        map_file_name: a pose graph to continue; "" for none.
-        start: the robot's pose in it, shape (3,); None for the pose of its first scan.
+        map_file_name: the pose graph to continue; "" for none.
+        start: the robot's initial pose in that graph, shape (3,); None for the pose of the graph's first scan.
         mapper: the settings of the mapper.
     """
 
@@ -84,7 +84,7 @@ class Settings:
 
 
 class _Declared:
-    """Declares parameters of a node, unless they are declared, and reads them."""
+    """Declares parameters of a node unless they are declared, and reads them."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -116,10 +116,10 @@ class _Declared:
 
 
 def settings_of(node: Node) -> Settings:
-    """Declare, unless they are declared, and read the parameters of a node.
+    """Declare the parameters of a node unless they are declared, and read them.
 
     Raises:
-        LinkwrightError: NODE433 for a value that means nothing, GRAPH201 for one of another type.
+        LinkwrightError: NODE433, a value is invalid; GRAPH201, a value has another type.
     """
     declared = _Declared(node)
     declared.without_effect()
@@ -169,7 +169,7 @@ def _log_replaced(node: Node) -> None:
 
 
 def _start(node: Node) -> Floats | None:
-    """The initial pose in a saved map; surprising values are logged, as slam_toolbox does."""
+    """Return the initial pose in a saved map; unusual values are logged, as in slam_toolbox."""
     for name, kind in (("map_start_pose", ParameterType.DOUBLE_ARRAY), ("map_start_at_dock", ParameterType.BOOL)):
         if not node.has_parameter(name):
             node.declare_parameter(name, kind)

@@ -20,7 +20,7 @@ class ToolboxServices:
     """The services of a node while it is configured.
 
     Args:
-        toolbox: does the work.
+        toolbox: executes the requests.
         has_queue: whether to offer ``clear_queue``.
         switches: whether to offer ``set_localization_mode``.
     """

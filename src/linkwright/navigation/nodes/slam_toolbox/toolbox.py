@@ -1,7 +1,9 @@
-"""The work of slam_toolbox's nodes: processes scans; publishes the map, the pose, and the transform of odometry.
+"""The work of slam_toolbox's nodes.
 
-Work that takes long is done in steps of some milliseconds, between which other callbacks run. A scan that comes
-meanwhile is dropped, unless the node is the synchronous one.
+It processes scans, and publishes the map, the pose and the transform of odometry.
+
+Long computations run in steps of some milliseconds, between which other callbacks run. A scan that arrives meanwhile is
+dropped, unless the node is the synchronous one.
 """
 
 from __future__ import annotations
@@ -50,22 +52,22 @@ class Toolbox:
         node: the node.
         settings: the parameters.
         keeps_all: whether scans are queued instead of dropped.
-        localizes: whether the map stays as it is, and the robot is only localized in it.
+        localizes: whether the robot is only localized, without changing the map.
 
     Attributes:
         node: the node.
         settings: the parameters.
-        mapper: the map and the robot in it.
+        mapper: the map and the robot's pose in it.
         localizes: see above.
         queue: the queued scans, with the poses of odometry.
 
     Raises:
-        LinkwrightError: NAV101, SciPy is not installed; NAV501, the map to begin with cannot be read.
+        LinkwrightError: NAV101, SciPy is not installed; NAV501, the initial map cannot be read.
     """
 
     def __init__(self, node: Node, settings: Settings, *, keeps_all: bool, localizes: bool) -> None:
         for part in ("ndimage", "sparse", "sparse.linalg", "spatial"):
-            load_scipy(part)  # now, and not with the first scan
+            load_scipy(part)  # Fail now if SciPy is missing, not at the first scan.
         self.node, self.settings, self.localizes = node, settings, localizes
         self.mapper = self._new_mapper()
         self.queue: deque[tuple[PlanarScan, Floats]] = deque()
@@ -95,7 +97,7 @@ class Toolbox:
         self._jumped = node.create_guard_condition(self._time_jumped)
 
     def start(self) -> None:
-        """Subscribe to scans, and publish."""
+        """Subscribe to scans, and start publishing."""
         node, settings = self.node, self.settings
         scans = get_message("sensor_msgs/msg/LaserScan")
         self._active = [
@@ -104,13 +106,13 @@ class Toolbox:
             node.create_timer(settings.map_update_interval, self.publish_map),
         ]
         backwards = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
-        # Clocks are set in the thread in which /clock arrives.
+        # Clocks are set in the thread that receives /clock.
         self._jumps = node.get_clock().create_jump_callback(backwards, post_callback=lambda _: self._jumped.trigger())
         if self.mapper.scans and self._work is None:
             self._begin(self._drawn())
 
     def stop(self) -> None:
-        """Stop; the map stays."""
+        """Stop mapping; the map is kept."""
         if self._active:
             self._jumps.unregister()
         for part in self._active:
@@ -120,7 +122,7 @@ class Toolbox:
         self.queue.clear()
 
     def close(self) -> None:
-        """Remove everything that was made."""
+        """Remove all publishers, subscriptions and timers."""
         self.stop()
         self._drop_work()
         self._listener.unregister()
@@ -148,10 +150,10 @@ class Toolbox:
         self._published = False
 
     def load(self, name: str, start: Floats | None) -> None:
-        """Load a saved graph, at a pose of shape (3,), or where its first scan was taken.
+        """Load a saved graph, and start at a pose of shape (3,), or at the pose of its first scan.
 
         Raises:
-            LinkwrightError: NAV501, it cannot be read.
+            LinkwrightError: NAV501, the graph cannot be read.
         """
         mapper = self._new_mapper()
         load_graph(mapper, path_of(name))
@@ -163,17 +165,17 @@ class Toolbox:
             self._begin(self._drawn())
 
     def place(self, pose: Floats) -> None:
-        """Search the robot around a pose of the map, of shape (3,)."""
+        """Search for the robot around a pose of the map, of shape (3,)."""
         self._drop_work()
         self.queue.clear()
         self.mapper.begin_session(pose)
 
     def grid(self) -> Grid | None:
-        """The current map; None if there is none."""
+        """Return the current map; None if there is none."""
         return self.mapper.occupancy.grid()
 
     def map_message(self) -> Any | None:
-        """The map as nav_msgs/OccupancyGrid; None if there is none."""
+        """Return the map as a nav_msgs/OccupancyGrid; None if there is none."""
         grid = self.grid()
         if grid is None:
             return None
@@ -194,7 +196,7 @@ class Toolbox:
             self._look()
 
     def _look(self) -> None:
-        """Take the waiting scan once its transform is known."""
+        """Accept the waiting scan once its transform is known."""
         if self._pending is None:
             return
         message, since_ns = self._pending
@@ -309,7 +311,7 @@ class Toolbox:
     # --- periodic publishing ------------------------------------------------------------------------------------------
 
     def publish_map(self) -> None:
-        """Publish the map, its metadata, and the graph, if there is a map."""
+        """Publish the map, its metadata and the graph, if a map exists."""
         message = self.map_message()
         if message is None:
             return
@@ -337,10 +339,10 @@ class Toolbox:
         self.reset()
 
     def pause(self, paused: bool) -> None:
-        """Pause taking scans, or resume."""
+        """Pause or resume processing scans."""
         self.node.set_parameters([Parameter("paused_new_measurements", value=paused)])
 
 
 def _planar(pose: Transform) -> Floats:
-    """The planar pose of a pose in space."""
+    """Convert a pose in space to a planar pose."""
     return np.array((pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]))

@@ -27,14 +27,14 @@ DECLARED = {
 
 
 def included(context, file, *names):
-    """Return one of the launch files beside this one, which is given values of ours."""
+    """Include a launch file of this package, and pass it the named launch configurations."""
     arguments = context.launch_configurations
     source = PythonLaunchDescriptionSource(str(HERE / "launch" / file))
     return IncludeLaunchDescription(source, launch_arguments=[(name, arguments[name]) for name in names])
 
 
 def start(context):
-    """Return the container, if any, and the included launch files."""
+    """Return the container, if one is used, and the included launch files."""
     level = context.launch_configurations["log_level"]
     container = Node(
         package="rclcpp_components",
@@ -64,7 +64,7 @@ def start(context):
 
 
 def generate_launch_description():
-    """Return the arguments, and the rest once they are known."""
+    """Return a launch description with the arguments and the actions of `start`."""
     arguments = [
         DeclareLaunchArgument(name, default_value=default, description=description)
         for name, (default, description) in DECLARED.items()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A map and where the robot is on it, with the arguments of nav2_bringup's file of this name."""
+"""A map and localization on it, with the arguments of nav2_bringup's file of this name."""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
@@ -14,7 +14,7 @@ SERVERS = (
 
 
 def start(context):
-    """Return the servers; a given map overrides that of the parameters."""
+    """Return the servers; a map given as an argument overrides the map of the parameters."""
     file = context.launch_configurations["map"]
     return managed(
         context, "lifecycle_manager_localization", SERVERS, {"map_server": {"yaml_filename": file}} if file else {}
@@ -22,7 +22,7 @@ def start(context):
 
 
 def generate_launch_description():
-    """Return the arguments, and the servers once they are known."""
+    """Return a launch description with the arguments and the actions of `start`."""
     parameters = get_package_share_path("nav2_bringup") / "params" / "nav2_params.yaml"
     declared = {
         **ARGUMENTS,

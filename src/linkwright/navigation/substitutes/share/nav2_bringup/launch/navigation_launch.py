@@ -13,7 +13,7 @@ MONITOR = Server("nav2_collision_monitor", "collision_monitor", "nav2_collision_
 
 
 def servers(*, is_monitored):
-    """Return the nodes; velocities pass the smoother, and the collision monitor if there is one."""
+    """Return the nodes; velocities pass through the smoother, and the collision monitor if there is one."""
     smoothed = () if is_monitored else (("cmd_vel_smoothed", "cmd_vel"),)
     return [
         Server("nav2_controller", "controller_server", "nav2_controller::ControllerServer", remappings=(COMMANDED,)),
@@ -33,14 +33,14 @@ def servers(*, is_monitored):
 
 
 def start(context):
-    """Return the servers; there is a collision monitor where the parameters have one."""
+    """Return the servers, including a collision monitor if the parameters contain one."""
     has_parameters = HasNodeParams(context.launch_configurations["params_file"], "collision_monitor")
     is_monitored = MONITOR.is_here and has_parameters.perform(context) == "True"
     return managed(context, "lifecycle_manager_navigation", servers(is_monitored=is_monitored))
 
 
 def generate_launch_description():
-    """Return the arguments, and the servers once they are known."""
+    """Return a launch description with the arguments and the actions of `start`."""
     parameters = get_package_share_path("nav2_bringup") / "params" / "nav2_params.yaml"
     declared = {
         **ARGUMENTS,

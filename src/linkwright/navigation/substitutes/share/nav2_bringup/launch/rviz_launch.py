@@ -18,7 +18,7 @@ NAMES = ("tf", "tf_static", "goal_pose", "clicked_point", "initialpose")
 
 
 def start(context):
-    """Return RViz, with whose end all ends."""
+    """Return the action that runs RViz; the launch shuts down when RViz exits."""
     arguments = context.launch_configurations
     config, namespace, remappings = arguments["rviz_config"], "", []
     if is_true(context, "use_namespace"):
@@ -40,7 +40,7 @@ def start(context):
 
 
 def generate_launch_description():
-    """Return the arguments, and RViz once they are known."""
+    """Return a launch description with the arguments and the actions of `start`."""
     view = get_package_share_path("nav2_bringup") / "rviz" / "nav2_default_view.rviz"
     declared = {**ARGUMENTS, "rviz_config": (str(view), "The view: path")}
     arguments = [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Making a map, with the arguments of nav2_bringup's file of this name."""
+"""Mapping, with the arguments of nav2_bringup's file of this name."""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction
@@ -20,7 +20,7 @@ ARGUMENTS = {
 
 
 def start(context):
-    """Return the map saver and the mapping node, with its parameters if the file has some."""
+    """Return the map saver and the mapping node, which gets its parameters from the file if it has some."""
     configurations = context.launch_configurations
     arguments = {"use_sim_time": configurations["use_sim_time"]}
     if HasNodeParams(configurations["params_file"], "slam_toolbox").perform(context) == "True":
@@ -32,7 +32,7 @@ def start(context):
 
 
 def generate_launch_description():
-    """Return the arguments, and the nodes once they are known."""
+    """Return a launch description with the arguments and the actions of `start`."""
     parameters = get_package_share_path("nav2_bringup") / "params" / "nav2_params.yaml"
     declared = {**ARGUMENTS, "params_file": (str(parameters), "Parameters: path")}
     arguments = [

@@ -7,7 +7,7 @@ from launch import LaunchDescription
 
 
 def generate_launch_description():
-    """Return both nodes."""
+    """Return a launch description with both nodes."""
     return LaunchDescription(
         [
             Node(

@@ -8,7 +8,7 @@ from launch import LaunchDescription
 
 
 def generate_launch_description():
-    """Return where the parameters are, and the node."""
+    """Return a launch description with the parameter file's argument and the node."""
     share = get_package_share_path("slam_toolbox")
     parameters = share / "config" / "mapper_params_lifelong.yaml"
     return LaunchDescription(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The node that the other launch files name, with the parameters of their argument `slam_params_file`."""
+"""The node named by the including launch file, with the parameters of the argument `slam_params_file`."""
 
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import AndSubstitution, LaunchConfiguration, NotSubstitution
@@ -15,7 +15,7 @@ ARGUMENTS = {
 
 
 def generate_launch_description():
-    """Return the arguments and the node."""
+    """Return a launch description with the arguments and the node."""
     managed = LaunchConfiguration("use_lifecycle_manager")
     return LaunchDescription(
         [
