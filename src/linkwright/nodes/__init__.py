@@ -1,6 +1,8 @@
-"""The nodes that come with Linkwright: those of ROS 2 that show and move a robot description, and its demos.
+"""Nodes that come with Linkwright.
 
-Each is in a module of its own, which is imported when it is started.
+They include the ROS 2 nodes that show and move a robot description, and the ROS 2 demos.
+
+Each node is in its own module, which is imported when the node is started.
 """
 
 from linkwright.nodes.options import (

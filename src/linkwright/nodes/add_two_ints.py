@@ -1,4 +1,7 @@
-"""add_two_ints_server and add_two_ints_client of demo_nodes_cpp and demo_nodes_py: the service tutorials begin with."""
+"""add_two_ints_server and add_two_ints_client of demo_nodes_cpp and demo_nodes_py.
+
+The service tutorials use them.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ _WAIT_SECONDS = 1.0
 
 
 class AddTwoIntsServer(SingleNode):
-    """The running server; logs each request."""
+    """The running server, which logs each request."""
 
     DEFAULT_NAME = "add_two_ints_server"
 
@@ -29,7 +32,7 @@ class AddTwoIntsServer(SingleNode):
 
 
 class AddTwoIntsClient(SingleNode):
-    """The running client: waits for the server, asks it to add 2 and 3, and ends."""
+    """The running client: waits for the server, asks it to add 2 and 3, and exits."""
 
     DEFAULT_NAME = "add_two_ints_client"
 

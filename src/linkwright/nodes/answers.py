@@ -1,4 +1,4 @@
-"""Waiting for services and for their answers, on the clock of the graph."""
+"""Waiting for services and their responses, on the clock of the graph."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ async def answered(node: Node, future: Any, seconds: float | None) -> bool:
     """Wait for a future, and return whether it was done in time.
 
     Args:
-        node: the node; its timers run in real time even if its time is simulated.
-        future: one of the graph's, or of asyncio.
-        seconds: how long to wait; None for ever.
+        node: the node; the timeout runs in real time even if the node's time is simulated.
+        future: a future of the graph, or of asyncio.
+        seconds: the timeout; None to wait forever.
     """
     over: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
 
@@ -24,7 +24,7 @@ async def answered(node: Node, future: Any, seconds: float | None) -> bool:
             over.set_result(came)
 
     clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-    group = ReentrantCallbackGroup()  # the waiting callback may hold the group of the node
+    group = ReentrantCallbackGroup()  # The waiting callback may occupy the node's own group.
     timer = None
     if seconds is not None:
         timer = node.create_timer(seconds, lambda: resolve(False), callback_group=group, clock=clock)
@@ -37,13 +37,13 @@ async def answered(node: Node, future: Any, seconds: float | None) -> bool:
 
 
 async def is_served(node: Node, client: Client[Any, Any], seconds: float | None, *, wanted: bool = True) -> bool:
-    """Wait until a service is available, or until it is gone. Return whether that happened in time.
+    """Wait until a service appears or disappears, and return whether that happened in time.
 
     Args:
-        node: the node that asks.
+        node: the node that waits.
         client: the client of the service.
-        seconds: the timeout; None to wait for ever.
-        wanted: whether to wait for the service to appear or to disappear.
+        seconds: the timeout; None to wait forever.
+        wanted: True to wait until the service appears, False until it disappears.
     """
     loop = asyncio.get_running_loop()
     come: asyncio.Future[None] = loop.create_future()
@@ -60,4 +60,4 @@ async def is_served(node: Node, client: Client[Any, Any], seconds: float | None,
         return client.service_is_ready() is wanted or await answered(node, come, seconds)
     finally:
         node.graph.unwatch(changed)
-        come.cancel()  # callbacks that are already scheduled then do nothing
+        come.cancel()  # Callbacks that are already scheduled then do nothing.

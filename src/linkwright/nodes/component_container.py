@@ -15,11 +15,11 @@ from linkwright.nodes.options import COMPONENTS, NodeOptions, RunningNode, Singl
 
 
 class ComponentContainer(SingleNode):
-    """The running node.
+    """The running component container.
 
     It answers ``~/_container/load_node``, ``unload_node`` and ``list_nodes`` as rclcpp_components does. It can load the
-    components that come with Linkwright (`COMPONENTS`); others are libraries of compiled code. Nodes that a component
-    creates besides its own, such as costmaps, get the parameters that files give to the container's process.
+    components that come with Linkwright (`COMPONENTS`); other components are compiled libraries. Further nodes that a
+    component creates, such as costmaps, get the parameters that files give to the container's process.
 
     Attributes:
         on_loaded: called with each loaded node and the request that loaded it.
@@ -49,20 +49,20 @@ class ComponentContainer(SingleNode):
 
     @property
     def loaded(self) -> dict[int, RunningNode]:
-        """The loaded nodes by their numbers."""
+        """The loaded nodes by ID."""
         return dict(self._loaded)
 
     def close(self) -> None:
-        """Unload all nodes and close it."""
+        """Unload all nodes and close the container."""
         for number in tuple(self._loaded):
             self._close(number)
         super().close()
 
     def load(self, package: str, plugin: str, options: NodeOptions) -> tuple[int, RunningNode]:
-        """Load a component; returns its number and the node.
+        """Load a component, and return its ID and node.
 
         Raises:
-            LinkwrightError: NODE601, no such component; or an error of the node itself.
+            LinkwrightError: NODE601, there is no such component; or an error of the node itself.
         """
         factory = COMPONENTS.get((package, plugin))
         if factory is None:
@@ -123,7 +123,7 @@ class ComponentContainer(SingleNode):
 
 
 def load_request() -> Any:
-    """An empty request to load a component."""
+    """Return an empty request to load a component."""
     return get_service("composition_interfaces/srv/LoadNode").Request()
 
 

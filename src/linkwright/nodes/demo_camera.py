@@ -1,4 +1,4 @@
-"""cam2image of image_tools, without a camera: publishes a moving test image on the topic ``image``."""
+"""cam2image of image_tools without a camera: publishes a moving test image on the topic ``image``."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _BAND_HEIGHT = 1 / 3
 
 
 class DemoCamera(SingleNode):
-    """The running node; its parameters are cam2image's.
+    """The running cam2image node, with cam2image's parameters.
 
     Raises:
-        LinkwrightError: NODE421, a parameter is not right.
+        LinkwrightError: NODE421, a parameter is invalid.
     """
 
     DEFAULT_NAME = "cam2image"
@@ -73,7 +73,10 @@ class DemoCamera(SingleNode):
 
 
 def _stripes(width: int, height: int) -> NDArray[np.uint8]:
-    """Bars of eight colours above a ramp from black to white: array, shape (height, width, 3), blue green red."""
+    """Return a test image: bars of eight colours above a ramp from black to white.
+
+    It is an array of shape (height, width, 3) in BGR.
+    """
     columns = np.arange(width)
     bars = 7 - columns * 8 // width
     image = np.empty((height, width, 3), dtype=np.uint8)

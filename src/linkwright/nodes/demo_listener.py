@@ -10,7 +10,7 @@ _DEPTH = 10
 
 
 class Listener(SingleNode):
-    """The running node."""
+    """The running listener node."""
 
     DEFAULT_NAME = "listener"
 

@@ -11,7 +11,7 @@ _DEPTH = 7
 
 
 class Talker(SingleNode):
-    """The running node."""
+    """The running talker node."""
 
     DEFAULT_NAME = "talker"
 

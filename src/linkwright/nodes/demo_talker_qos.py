@@ -1,4 +1,4 @@
-"""talker_qos and listener_qos of demo_nodes_py: with a choice of reliability and a number of messages."""
+"""talker_qos and listener_qos of demo_nodes_py, with options for the reliability and the number of messages."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ENDLESS = 1 << 31
 
 
 class _Counted(SingleNode, ABC):
-    """The base of both: their arguments, and an end after a number of messages."""
+    """The base of both nodes: parses their arguments, and ends after a number of messages."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()

@@ -1,4 +1,4 @@
-"""Publishing diagnostics of a node each second on ``/diagnostics``, as diagnostic_updater does."""
+"""Publication of a node's diagnostics on ``/diagnostics`` each second, as in diagnostic_updater."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Level(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Health:
-    """A status: a level, a sentence, and values by name."""
+    """A diagnostic status: a level, a message, and values by name."""
 
     level: Level
     message: str
@@ -34,7 +34,7 @@ class DiagnosticUpdater:
     """Publishes the diagnostics of a node once a second of its clock.
 
     Args:
-        node: the node, whose name precedes that of the task.
+        node: the node, whose name is the prefix of the task's name.
         task: the name of the diagnostic task.
         ask: returns the current health.
         hardware_id: the hardware; ``none`` if there is none, as in diagnostic_updater.

@@ -1,4 +1,4 @@
-"""Files that a hosted node takes again when they are saved: what the node and its host ask of each other."""
+"""Interfaces of a node and its host for files that the node reloads when they are saved."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ class ReadWorld(Protocol):
 
     @property
     def path(self) -> Path:
-        """The file."""
+        """The path of the world's file."""
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """All files that it was made of, without its meshes."""
+        """All files from which the world was read, except its meshes."""
 
     @property
     def mesh_files(self) -> tuple[Path, ...]:
-        """The files of its meshes."""
+        """The files of the world's meshes."""
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The findings about it."""
+        """The findings about the world."""
 
     @property
     def read_ns(self) -> int:
-        """Before when none of its files was read, in nanoseconds since the epoch."""
+        """A time, in nanoseconds since the epoch, before which none of the world's files was read."""
 
 
 class FileFollower(Protocol):
@@ -40,7 +40,7 @@ class FileFollower(Protocol):
 
     @property
     def launcher_node(self) -> Node:
-        """A node of the host, with which services are called."""
+        """A node of the host with which services are called."""
 
     def show(self, about: str, findings: Iterable[Diagnostic]) -> None:
         """Show the current findings about a subject in the viewers."""
@@ -51,12 +51,12 @@ class FileFollower(Protocol):
         read: Callable[[str], ReadWorld],
         load: Callable[[str], Awaitable[Sequence[Diagnostic]]],
     ) -> None:
-        """Read the file of a world when it is saved, and load it if it has no new errors.
+        """Watch the file of a world: read it when it is saved, and load it if it has no new errors.
 
         Args:
-            world: the world as it is now.
+            world: the current world.
             read: reads the file in another thread; raises LinkwrightError.
-            load: has the node load the file; returns findings to report in place of those of reading.
+            load: has the node load the file; returns findings that replace those of reading.
         """
 
     def follow_text(self, text: str, name: str, renew: Callable[[str], None]) -> None:
@@ -64,6 +64,6 @@ class FileFollower(Protocol):
 
         Args:
             text: the description.
-            name: what it describes; a file is followed once for each name.
-            renew: takes the new text; raises LinkwrightError if it is wrong.
+            name: the name of the described object; one file is watched for each name.
+            renew: receives the new text; raises LinkwrightError if it is invalid.
         """

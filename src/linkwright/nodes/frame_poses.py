@@ -1,4 +1,4 @@
-"""Looking up poses of frames, for nodes that transform messages."""
+"""Lookup of frame poses, for nodes that transform messages."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ class FramePoses:
     """The transforms that a node receives.
 
     Args:
-        node: listens to ``/tf`` and ``/tf_static``.
-        complaint: the start of its warning about a missing transform.
+        node: the node that subscribes to ``/tf`` and ``/tf_static``.
+        complaint: the start of the warning about a missing transform.
 
     Attributes:
         buffer: the transforms.
@@ -28,10 +28,11 @@ class FramePoses:
         TransformListener(self.buffer, node)
 
     def pose(self, target: str, source: str, time_ns: int) -> Transform | None:
-        """The pose of a frame in another one at a time, or the latest known.
+        """Return the pose of a frame in another one at a time, or the latest known.
 
-        It never waits: if a transform is a little late, the previous one is used. If there is none at all, it logs that
-        now and then, and returns None.
+        It never waits: if a transform is a little late, the previous one is used. If there is no transform at all, it
+        logs a
+        throttled warning and returns None.
         """
         if target == source:
             return IDENTITY

@@ -32,16 +32,16 @@ class JointSettings:
     """The parameters as one object.
 
     Attributes:
-        rate: messages a second.
-        publish_default_positions: whether joints without a message have their zero position.
-        publish_default_velocities: give them velocity 0.
-        publish_default_efforts: give them effort 0.
-        use_mimic_tags: joints with a ``<mimic>`` follow their master.
-        use_smallest_joint_limits: the soft limits of a ``<safety_controller>`` count too.
-        source_list: topics of joint states to take over.
-        delta: how far every joint moves each time, rad or m; 0 for not at all.
-        zeros: starting positions by joint, rad or m.
-        dependent_joints: joints that follow others, regardless of the description.
+        rate: the number of messages per second.
+        publish_default_positions: whether joints without a received position are published at their zero position.
+        publish_default_velocities: whether such joints are published with velocity 0.
+        publish_default_efforts: whether such joints are published with effort 0.
+        use_mimic_tags: whether joints with a ``<mimic>`` tag follow their master.
+        use_smallest_joint_limits: whether the soft limits of a ``<safety_controller>`` apply, too.
+        source_list: the topics from which joint states are read.
+        delta: how far every joint moves each time, in rad or m; 0 to not move.
+        zeros: the starting positions by joint, in rad or m.
+        dependent_joints: the joints that follow others, regardless of the description.
     """
 
     rate: float = 10.0
@@ -57,7 +57,9 @@ class JointSettings:
 
 
 def declare_settings(node: Node) -> None:
-    """Declare the parameters. Values from outside keep their types, as in the ROS node: ``rate: 2.5`` is fine.
+    """Declare the parameters.
+
+    Given values keep their types, as in the ROS node (``rate: 2.5`` is valid).
 
     Raises:
         LinkwrightError: the value of a parameter is invalid.
@@ -83,7 +85,7 @@ def settings_from(values: Mapping[str, Any]) -> JointSettings:
     """Convert parameter values by name to settings.
 
     Raises:
-        LinkwrightError: values that mean nothing (NODE201), all of them.
+        LinkwrightError: NODE201, values are invalid; it lists all of them.
     """
     reader = _Reader(values)
     settings = JointSettings(
@@ -136,7 +138,7 @@ class _Reader:
     def dependent_joints(self) -> dict[str, Dependence]:
         dependent: dict[str, dict[str, Any]] = {}
         for rest in self.below("dependent_joints"):
-            # Joint names may have dots themselves, so the last one counts.
+            # Joint names may contain dots, so split at the last one.
             joint, _, entry = rest.rpartition(".")
             if entry not in _DEPENDENT_FIELDS or not joint:
                 self.problems.append(
@@ -184,7 +186,7 @@ _UNLIMITED_SPAN = {"revolute": 2.0 * pi, "continuous": 2.0 * pi, "prismatic": 2.
 class JointRange:
     """A published joint with its range (rad or m); both limits are finite.
 
-    `zero` is where it starts: its entry in ``zeros``, else 0, or the middle where 0 is not within the limits.
+    `zero` is the start position: the joint's entry in ``zeros``, else 0, or the middle of the range if it excludes 0.
     """
 
     name: str
@@ -194,17 +196,17 @@ class JointRange:
     zero: float
 
     def clamp(self, position: float) -> float:
-        """The nearest position within the limits."""
+        """Return the nearest position within the limits."""
         return min(max(position, self.lower), self.upper)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointLayout:
-    """The joints of a robot as joint_state_publisher sees them.
+    """The joints of a robot as joint_state_publisher uses them.
 
     Attributes:
         ranges: every published joint by name, in file order, which is also the order in messages.
-        free: the joints that mimic no other, in the same order; arrays of positions have one number for each.
+        free: the joints that mimic no other joint, in the same order; position arrays have one entry for each.
         dependent: the other joints by name, each with the joint that it mimics directly.
         masters: array, shape (n,), the index in `free` of the joint at the end of each joint's mimic chain; -1 if that
             joint does not move.
@@ -223,15 +225,15 @@ class JointLayout:
 
 
 def empty_layout() -> JointLayout:
-    """The layout without a description."""
+    """Return the layout that is used without a description."""
     return JointLayout({}, (), {}, np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0), ())
 
 
 def layout_of(robot: Robot, settings: JointSettings) -> JointLayout:
-    """Work out the layout for a robot.
+    """Compute the layout for a robot.
 
     Raises:
-        LinkwrightError: joints follow each other in a circle (NODE202).
+        LinkwrightError: NODE202, joints mimic each other in a cycle.
     """
     problems: list[str] = []
     ranges: dict[str, JointRange] = {}
@@ -244,7 +246,7 @@ def layout_of(robot: Robot, settings: JointSettings) -> JointLayout:
             continue
         zero = settings.zeros.get(joint.name, _default_zero(*limits))
         ranges[joint.name] = JointRange(joint.name, joint.type, *limits, zero)
-        # The parameter comes before the <mimic>, and stays when the description changes. In the ROS node it is
+        # The parameter has priority over <mimic>, and is kept when the description changes. In the ROS node it is
         # overwritten.
         if joint.name in settings.dependent_joints:
             dependent[joint.name] = settings.dependent_joints[joint.name]
@@ -268,7 +270,7 @@ def layout_of(robot: Robot, settings: JointSettings) -> JointLayout:
 
 
 def _resolve(name: str, dependent: Mapping[str, Dependence]) -> tuple[str, float, float]:
-    """The free joint at the end of a chain of mimics, and the factor and offset along it."""
+    """Return the free joint at the end of a chain of mimics, and the factor and offset along it."""
     chain = [name]
     factor, offset = 1.0, 0.0
     while (link := dependent.get(name)) is not None:
@@ -308,7 +310,7 @@ def _limits(joint: Joint, settings: JointSettings, problems: list[str]) -> tuple
 
 
 def _missing_limit(joint: Joint) -> str | None:
-    """Return the name of a missing limit, which urdfdom reads as 0 and joint_state_publisher refuses."""
+    """Return the name of a missing limit, which urdfdom reads as 0 and joint_state_publisher rejects."""
     if joint.limit is None:
         return None
     for name, value in (("lower", joint.limit.lower), ("upper", joint.limit.upper)):
@@ -318,7 +320,10 @@ def _missing_limit(joint: Joint) -> str | None:
 
 
 def _is_given(joint: Joint, tag: str, attribute: str) -> bool:
-    """Whether the file has the attribute. A joint that was not read from a file has all of them."""
+    """Return whether the file sets the attribute.
+
+    The result is always true for a joint that was not read from a file.
+    """
     if joint.element is None:
         return True
     element = joint.element.first(tag)

@@ -1,12 +1,12 @@
-"""joint_state_publisher: joint states of a robot without measured ones.
+"""joint_state_publisher: publishes joint states of a robot whose joints are not measured.
 
 It follows the ROS 2 node of that name (2.4), with these deliberate differences:
 
-- The parameters ``dependent_joints.*`` come before ``<mimic>`` tags and stay when the description changes.
-- A new description keeps the positions of existing joints, and the first message is published at once.
+- The parameters ``dependent_joints.*`` have priority over ``<mimic>`` tags and are kept when the description changes.
+- A new description keeps the positions of existing joints, and the first message is published immediately.
 - A parameter that is changed while the node runs takes effect.
-- Descriptions are URDF; SDF and COLLADA, which the ROS node reads too, are named and left aside.
-- Infinite limits become a range that a slider can show, and a description that cannot be used leaves the last one.
+- Descriptions are URDF. SDF and COLLADA, which the ROS node also reads, are reported and ignored.
+- Infinite limits become a range that a slider can show, and an invalid description leaves the previous one in use.
 """
 
 from __future__ import annotations
@@ -47,20 +47,22 @@ Array = NDArray[np.float64]
 
 
 class _Quantity:
-    """A number for each free joint; NaN means none."""
+    """A value for each free joint; NaN if it has none."""
 
     def __init__(self, values: Array) -> None:
         self._with_zero = np.append(values, 0.0)
         self.values = self._with_zero[:-1]
 
     def spread(self, layout: JointLayout, *, scaled: bool, shifted: bool) -> Array | None:
-        """Return the numbers for a message, one for each published joint; None if there are none at all.
+        """Return the values for a message, one for each published joint.
 
-        A joint that follows one without a number has 0, as in the ROS node.
+        Returns None if no joint has a value.
+
+        A joint that mimics a joint without a value has 0, as in the ROS node.
         """
         if np.isnan(self.values).all():
             return None
-        spread: Array = self._with_zero[layout.masters]  # masters are -1 for what does not move
+        spread: Array = self._with_zero[layout.masters]  # masters is -1 for joints that do not move
         if scaled:
             spread *= layout.factor
         if shifted:
@@ -70,7 +72,9 @@ class _Quantity:
 
 
 class JointPositions:
-    """Positions (rad or m), velocities and efforts of the free joints; all others follow from them.
+    """Positions (rad or m), velocities and efforts of the free joints.
+
+    The other joints depend on them.
 
     Args:
         settings: which quantities joints have from the start.
@@ -84,10 +88,11 @@ class JointPositions:
         self.take_over(self.layout, settings)
 
     def take_over(self, layout: JointLayout, settings: JointSettings) -> None:
-        """Take over another layout.
+        """Change to another layout.
 
-        Joints that were free before and still are keep their state, moved into the new limits, if it ever was other
-        than where they start; the others begin at zero.
+        Joints that are free in both layouts and have left their start position keep their state, moved into the new
+        limits.
+        All others start at zero.
         """
         before, rows_before = self._free_states(), self._rows
         zeros_before = {joint.name: joint.zero for joint in self.layout.free}
@@ -109,7 +114,7 @@ class JointPositions:
                 self._store(joint, before[:, row], zeros_before[joint.name])
 
     def hear(self, message: JointState) -> None:
-        """Take over the values of a message for free joints; positions outside of limits too."""
+        """Apply the values of a message to the free joints, including positions outside the limits."""
         for number, name in enumerate(message.name):
             row = self._rows.get(name)
             if row is None:
@@ -123,7 +128,10 @@ class JointPositions:
                     quantity.values[row] = given[number]
 
     def sweep(self, delta: float) -> None:
-        """Move every free joint by delta (rad or m), reversing at limits; continuous ones wrap around."""
+        """Move every free joint by delta (rad or m), reversing at limits.
+
+        Continuous joints wrap around.
+        """
         position, direction = self._position.values, self._direction
         position += direction * delta
         beyond = (position - self._ahead) * direction > 0.0
@@ -138,12 +146,15 @@ class JointPositions:
         self._position.values[row] = min(max(position, self._lower[row]), self._upper[row])
 
     def published(self) -> Array:
-        """Positions of all published joints in the order of messages; 0 for those without one."""
+        """Return the positions of all published joints in the order of messages.
+
+        The value is 0 for joints without a position.
+        """
         positions = self._position.spread(self.layout, scaled=True, shifted=True)
         return np.zeros(len(self.layout.ranges)) if positions is None else positions
 
     def fill(self, message: JointState) -> None:
-        """Write names and quantities into a message; those that no joint has stay empty."""
+        """Write names and quantities into a message; quantities that no joint has remain empty."""
         message.name = list(self.layout.ranges)
         velocities = self._velocity.spread(self.layout, scaled=True, shifted=False)
         efforts = self._effort.spread(self.layout, scaled=False, shifted=False)
@@ -183,21 +194,22 @@ class Watcher(Protocol):
         """Handle a change of the robot or of the settings."""
 
     def notice_positions(self) -> None:
-        """Handle positions that a source or the sweep has set."""
+        """Handle positions that were set by a source or the sweep."""
 
 
 class JointStatePublisher(SingleNode):
-    """The running node.
+    """The running joint_state_publisher node.
 
     Args:
-        graph: where it lives.
-        options: how it is started; its one argument may be a URDF file, else it waits for the topic
+        graph: the graph to which the node is added.
+        options: the options of the node; its one argument may be a URDF file, otherwise it waits for the topic
             ``robot_description``.
 
     Raises:
-        LinkwrightError: it cannot start: parameters that mean nothing (NODE201), joints that follow each other in a
-            circle (NODE202), a file that cannot be read (NODE203, or what is wrong in it), too many arguments
-            (NODE204), a file that is SDF or COLLADA (NODE205).
+        LinkwrightError: the node cannot start: invalid parameters (NODE201), joints that mimic each other in a cycle
+            (NODE202), a file that cannot be read (NODE203, or the file's error), too many arguments (NODE204), a file
+            that
+            is SDF or COLLADA (NODE205).
     """
 
     DEFAULT_NAME = "joint_state_publisher"
@@ -235,7 +247,7 @@ class JointStatePublisher(SingleNode):
         self._watchers.append(watcher)
 
     def publish_soon(self) -> None:
-        """Publish in the next turn of the loop, once for any number of calls."""
+        """Publish in the next iteration of the event loop, once for any number of calls."""
         self._soon.trigger()
 
     def _robot_from_arguments(self, arguments: Sequence[str]) -> Robot | None:
@@ -347,8 +359,8 @@ class JointStatePublisher(SingleNode):
             watcher.notice_positions()
 
     def _publish_now(self) -> None:
-        # The next periodic message comes a whole period later: another one right behind would only make
-        # robot_state_publisher hold the next move of a slider back.
+        # Delay the next periodic message by a full period: sent right after this one, it would only make
+        # robot_state_publisher delay the next move of a slider.
         self._timer.reset()
         self._publish()
 
@@ -360,6 +372,6 @@ class JointStatePublisher(SingleNode):
 
 
 def _other_format(text: str) -> str | None:
-    """The other format of robots that a text has, by its root element; None for none."""
+    """Return the name of another robot format if the root element of a text indicates one, else None."""
     element = _FIRST_ELEMENT.search(text)
     return None if element is None else _OTHER_FORMATS.get(element[1])

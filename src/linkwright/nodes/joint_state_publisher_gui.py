@@ -1,4 +1,4 @@
-"""joint_state_publisher_gui: joint_state_publisher with sliders, which the viewer draws and moves."""
+"""joint_state_publisher_gui: joint_state_publisher with sliders, which are displayed and moved in the viewer."""
 
 from __future__ import annotations
 
@@ -20,17 +20,18 @@ PanelCallback = Callable[[PanelChange], object]
 
 @dataclass(frozen=True, slots=True)
 class JointSlider:
-    """A row of the panel.
+    """A slider of the panel.
 
     Attributes:
-        name: the joint.
+        name: the name of the joint.
         kind: revolute, continuous or prismatic.
-        lower: where the slider begins, rad or m; finite.
-        upper: where it ends.
-        zero: where "Center" puts the joint.
-        mimic: the joint that this one follows, directly; such a row cannot be moved. None for a free joint.
-        multiplier: of a joint that follows: position = multiplier * position of `mimic` + offset.
-        offset: rad or m.
+        lower: the lower end of the slider, in rad or m; finite.
+        upper: the upper end of the slider.
+        zero: the position set by "Center".
+        mimic: the joint that this one mimics directly, which means that the slider cannot be moved; None for a free
+            joint.
+        multiplier: the factor of a mimic joint: position = multiplier * position of `mimic` + offset.
+        offset: the offset of a mimic joint, in rad or m.
     """
 
     name: str
@@ -47,10 +48,10 @@ class JointPanel:
     """The sliders of all free joints.
 
     Args:
-        node: its executor runs the callbacks of subscribers.
-        joints: the state that is moved.
-        publish_soon: called when a position was changed here.
-        random: for `randomize`.
+        node: the node whose executor runs the callbacks of subscribers.
+        joints: the state that the sliders move.
+        publish_soon: called when the panel changed a position.
+        random: the random generator for `randomize`.
     """
 
     def __init__(
@@ -66,14 +67,14 @@ class JointPanel:
         self._positions_changed = node.create_guard_condition(lambda: self._notify("positions"))
 
     def sliders(self) -> list[JointSlider]:
-        """The rows, in the order of the description's file.
+        """Return the sliders, in the order of the description's file.
 
-        A joint with equal limits has no row, and neither has a joint that mimics it.
+        A joint with equal limits has no slider, and neither has a joint that mimics it.
         """
         return list(self._sliders)
 
     def positions(self) -> dict[str, float]:
-        """The positions of all rows, rad or m."""
+        """Return the positions of all sliders, in rad or m."""
         published = dict(zip(self._joints.layout.ranges, self._joints.published().tolist(), strict=True))
         return {slider.name: published[slider.name] for slider in self._sliders}
 
@@ -85,7 +86,8 @@ class JointPanel:
             value: rad or m.
 
         Returns:
-            Whether it was moved: False for a joint that has no row (any more), follows another, or a value that is
+            Whether the joint was moved: False for a joint that has no slider or mimics another one, and for a value
+                that is
             not a finite number.
         """
         slider = next((row for row in self._sliders if row.name == name and row.mimic is None), None)
@@ -103,14 +105,14 @@ class JointPanel:
         self._moved()
 
     def center(self) -> None:
-        """Set every joint to zero, which need not be the middle of its range."""
+        """Set every joint to its zero position, which need not be the middle of its range."""
         self._logger.info("Centering")
         for slider in self._free():
             self._joints.set(slider.name, slider.zero)
         self._moved()
 
     def subscribe(self, callback: PanelCallback) -> Callable[[], None]:
-        """Register a callback for changes: ``"sliders"`` when the rows change, ``"positions"`` when joints move.
+        """Register a callback for changes: ``"sliders"`` when the sliders change, ``"positions"`` when joints move.
 
         Changes in the same iteration of the event loop are reported once.
 
@@ -126,7 +128,7 @@ class JointPanel:
         return unsubscribe
 
     def rebuild(self) -> None:
-        """Rebuild the rows for the current layout of the joints."""
+        """Rebuild the sliders for the current layout of the joints."""
         layout = self._joints.layout
         movable = {joint.name for joint in layout.free if joint.lower != joint.upper}
         free = layout.free
@@ -160,7 +162,7 @@ class JointPanel:
         self.notice_positions()
 
     def notice_positions(self) -> None:
-        """Notify subscribers that others moved joints."""
+        """Notify subscribers that joints were moved from elsewhere."""
         self._positions_changed.trigger()
 
     def _free(self) -> list[JointSlider]:
@@ -179,9 +181,10 @@ class JointPanel:
 
 
 class JointStatePublisherGui(JointStatePublisher):
-    """The running node. As in ROS its default name is ``joint_state_publisher``.
+    """The running joint_state_publisher_gui node, whose default name is ``joint_state_publisher`` as in ROS.
 
-    A moved slider is published at once; moves in the same iteration of the event loop share one message. Messages on
+    A moved slider is published immediately; moves in the same iteration of the event loop share one message. Messages
+    on
     the topics of ``source_list`` move the sliders.
     """
 
@@ -193,5 +196,5 @@ class JointStatePublisherGui(JointStatePublisher):
 
     @property
     def panel(self) -> JointPanel:
-        """The sliders."""
+        """The panel with the sliders."""
         return self._panel

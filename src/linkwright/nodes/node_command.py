@@ -1,7 +1,7 @@
-"""Nodes that replace programs of other packages: what starts one in the place of a command line.
+"""Nodes that replace programs of other packages, as started from a command line.
 
-Entry points of the group ``linkwright.replaced_programs`` give them: each has the name of a program, as it is on
-``PATH``, and points to a `CommandParser`. A launch file that starts such a program starts the node instead where the
+Entry points of the group ``linkwright.replaced_programs`` provide them: each has the name of a program, as found in
+``PATH``, and points to a `CommandParser`. A launch file that starts such a program starts the node instead if the
 program is not installed.
 """
 
@@ -14,13 +14,13 @@ from typing import Any
 
 @dataclass(frozen=True)
 class NodeCommand:
-    """A node in the place of a command line.
+    """A node that replaces a program of a command line.
 
     Attributes:
         package: the node's package.
-        executable: its executable there.
-        parameters: its parameters.
-        ros_arguments: its further arguments, which begin with ``--ros-args``.
+        executable: the node's executable in that package.
+        parameters: the parameters of the node.
+        ros_arguments: further arguments, which begin with ``--ros-args``.
     """
 
     package: str

@@ -1,10 +1,8 @@
 """Nodes that can be started in this process: their options, their interfaces, and their registry.
 
-The nodes that can be started in this process, found by entry points.
-
-They are found through the entry points ``linkwright.nodes`` and ``linkwright.components``, whose names are
-``PACKAGE/EXECUTABLE``, or ``PACKAGE/PLUGIN`` for nodes that containers load. Each points to a `Factory`. Ours are
-declared in ``pyproject.toml``, those of others in their packages. A module is imported when its first node is started.
+Nodes are found by the entry points ``linkwright.nodes`` and ``linkwright.components``, whose names are
+``PACKAGE/EXECUTABLE``, or ``PACKAGE/PLUGIN`` for nodes that containers load. Each points to a `Factory`. Linkwright's
+are declared in its ``pyproject.toml``, other packages' in theirs. A module is imported when its first node is started.
 """
 
 from __future__ import annotations
@@ -54,11 +52,11 @@ class NodeOptions:
         remappings: the rules ``(from, to)``.
         arguments: the command line without the program's name, including ``--ros-args`` sections.
         library: the parsed robot descriptions that the process shares.
-        for_others: the parameters of further nodes that it creates, by their names, from the parameter files of its
+        for_others: the parameters of further nodes that the node creates, by node name, from the parameter files of its
             process.
-        environment: the environment variables with which it looks for files; by default those of the process.
+        environment: the environment variables with which the node looks for files; by default those of the process.
         output: receives the lines that a node prints as its result; by default standard output.
-        terminal: the file descriptor of a terminal that the node has to itself; None if it shares its process.
+        terminal: the file descriptor of a terminal used by this node only; None if the node shares its process.
     """
 
     name: str | None = None
@@ -74,14 +72,14 @@ class NodeOptions:
 
 
 class RunningNode(Protocol):
-    """A running node; some have more, which their host asks for: see the protocols below."""
+    """A running node; some nodes also implement one of the protocols below, which their host checks for."""
 
     @property
     def node(self) -> Node:
-        """Its node in the graph."""
+        """The node in the graph."""
 
     def close(self) -> None:
-        """Close it and remove it from the graph."""
+        """Close the node and remove it from the graph."""
 
 
 @runtime_checkable
@@ -108,22 +106,25 @@ class NodeWithDescription(RunningNode, Protocol):
 
     @property
     def description_parameter(self) -> str:
-        """The parameter with the description."""
+        """The name of the parameter that contains the description."""
 
 
 @runtime_checkable
 class NodeWithFiles(RunningNode, Protocol):
-    """A node that takes its files again when they are saved."""
+    """A node that reloads its files when they are saved."""
 
     def follow_files(self, host: FileFollower) -> None:
-        """Have the host watch its files; called once on the event loop, when the node has started."""
+        """Let the host watch the node's files.
+
+        Called once on the event loop after the node has started.
+        """
 
 
 class SingleNode:
-    """The base of most nodes of this room: one node of the graph, `_node`, which is destroyed by `close`.
+    """The base of most nodes of this package: one node of the graph, `_node`, which is destroyed by `close`.
 
     Attributes:
-        DEFAULT_NAME: the name of a node that is given none; not there where each has another.
+        DEFAULT_NAME: the name of a node without a given name; not set if each node gets a different name.
     """
 
     DEFAULT_NAME: ClassVar[str]
@@ -132,11 +133,11 @@ class SingleNode:
 
     @property
     def node(self) -> Node:
-        """Its node in the graph."""
+        """The node in the graph."""
         return self._node
 
     def close(self) -> None:
-        """End it."""
+        """Close the node."""
         self._node.destroy_node()
 
 
@@ -147,13 +148,13 @@ Factory = Callable[[Graph, NodeOptions], RunningNode]
 def create_node(
     graph: Graph, options: NodeOptions, default_name: str, *, any_parameters: bool = False
 ) -> tuple[Node, list[str]]:
-    """Create the node of the options, and return the arguments that are not ROS arguments.
+    """Create the node of the options, and return it with the arguments that are not ROS arguments.
 
     Args:
-        graph: where it is to live.
-        options: how it is started.
-        default_name: its name if it is given none.
-        any_parameters: whether it has all parameters that it is given, and takes others.
+        graph: the graph to which the node is added.
+        options: the options of the node.
+        default_name: the name of the node if none is given.
+        any_parameters: whether to declare all given parameters, and to accept undeclared ones.
 
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
@@ -164,7 +165,7 @@ def create_node(
 def create_node_of(
     node_class: Callable[..., N], graph: Graph, options: NodeOptions, default_name: str, *, any_parameters: bool = False
 ) -> tuple[N, list[str]]:
-    """As `create_node`, for a node that `node_class` makes of the arguments of `Node`.
+    """Create a node as `create_node` does, by calling `node_class` with the arguments of `Node`.
 
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
@@ -189,7 +190,7 @@ def create_node_of(
 
 @contextmanager
 def starting(node: Node) -> Iterator[None]:
-    """While a node starts: log an error as FATAL, destroy the node, and raise the error again."""
+    """Log an error during a node's start as FATAL, destroy the node, and raise the error again."""
     try:
         yield
     except LinkwrightError as error:
@@ -204,7 +205,10 @@ def _full_name(name: str, namespace: str, remappings: list[tuple[str, str]]) -> 
 
 
 def _set_levels(graph: Graph, node: Node, ros: RosArguments) -> None:
-    """Apply ``--log-level``: without a logger's name to this node, which may share its process with others."""
+    """Apply ``--log-level``.
+
+    Without a logger's name it applies only to this node, which may share its process.
+    """
     if ros.log_level is not None:
         node.get_logger().set_level(ros.log_level)
     for logger, level in ros.log_levels.items():
@@ -215,7 +219,7 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
     """Finds the function or class that starts a node, by package and executable.
 
     Args:
-        group: of the entry points.
+        group: the group of the entry points.
     """
 
     def __init__(self, group: str) -> None:
@@ -231,11 +235,11 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
         return found
 
     def __getitem__(self, key: tuple[str, str]) -> Factory:
-        """The function or class that starts a node.
+        """Return the function or class that starts a node.
 
         Raises:
             KeyError: there is no such node.
-            LinkwrightError: the package that brings it cannot be imported (NODE002).
+            LinkwrightError: NODE002, the package that provides the node cannot be imported.
         """
         entry = self.entry_points[key]
         try:

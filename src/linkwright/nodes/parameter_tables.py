@@ -13,8 +13,8 @@
 
 The types are ``str``, ``float``, ``int``, ``bool``, and ``tuple[...]`` of them; ``float | None`` and ``bool | None``
 are declared without a value. A parameter that only Humble or only Jazzy has is declared if ``ROS_DISTRO`` names that
-distribution, or if a value is given: so files for either one are read as they are. Source: generate_parameter_library,
-which the controllers of ros2_controllers use.
+distribution, or if a value is given, so files for either distribution can be used unchanged. Source:
+generate_parameter_library, which the controllers of ros2_controllers use.
 
 `declared` reads a table once, `ParameterTable` follows later changes.
 """
@@ -58,7 +58,7 @@ _OF_EVERY_NODE = ("use_sim_time", "params_file", "type", "qos_overrides", "start
 
 @dataclass(frozen=True)
 class NoParameters:
-    """For controllers without parameters."""
+    """The empty table, for controllers without parameters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ def parameter(
         description: its purpose, with its unit.
         read_only: whether the value cannot change after the declaration.
         check: the constraint on its values.
-        only: the distribution that has it, if only one does: `HUMBLE` or `JAZZY`, each with its neighbours.
+        only: the only distribution that has it: `HUMBLE` or `JAZZY`, each including its neighbours; empty if both do.
         later: its default from Iron on, if that differs.
     """
     return field(default=default, metadata={_ABOUT: _About(description, read_only, check, only, later)})
@@ -96,9 +96,9 @@ def for_each(names: str, table: type[Any], *, below: str = "") -> Any:
     """Declare a group of parameters for each name in another parameter, as ``gains.JOINT.p``.
 
     Args:
-        names: that parameter, which precedes this one in the same table; several, separated by blanks.
+        names: the parameter with the names, which precedes this one in the same table; several, separated by blanks.
         table: the dataclass with the parameters of one name.
-        below: the prefix of their names, if it differs from that of the field.
+        below: the prefix of the parameters' names, if it differs from the name of the field.
     """
     return field(default_factory=dict, metadata={_NAMES: tuple(names.split()), _TABLE: table, _BELOW: below})
 
@@ -117,7 +117,7 @@ def declared(node: Node, table: type[P], prefix: str = "", usual: P | None = Non
     Args:
         node: the node.
         table: the dataclass.
-        prefix: of the names: the name of a plugin, for ``PLUGIN.parameter``.
+        prefix: the prefix of the names: the name of a plugin, for ``PLUGIN.parameter``.
         usual: the defaults, if they are not those of the table.
 
     Raises:
@@ -138,7 +138,7 @@ class ParameterTable(Generic[P]):
         LinkwrightError: a value has another type (GRAPH201) or is not allowed (CTL101).
 
     Attributes:
-        values: the parameters now; another object after each change.
+        values: the current parameters; another object after each change.
     """
 
     def __init__(self, node: Node, table: type[P]) -> None:
@@ -150,11 +150,11 @@ class ParameterTable(Generic[P]):
         node.add_post_set_parameters_callback(lambda _: self.refresh())
 
     def refresh(self) -> None:
-        """Read the parameters again; names that were added bring their own."""
+        """Read the parameters again, and declare the parameters of names that were added."""
         self.values = self._read()
 
     def unknown(self) -> Iterator[tuple[str, Phrase | None]]:
-        """Names of parameters that were given and do not exist, each with the one that may be meant."""
+        """Yield the names of given parameters that do not exist, each with a suggestion of the intended name."""
         for name in self._node.undeclared_overrides():
             if not name.startswith(_OF_EVERY_NODE):
                 yield name, did_you_mean(name, self._reader.declared)
@@ -175,10 +175,10 @@ class ParameterTable(Generic[P]):
 
 
 class _Reader:
-    """Declares the parameters of tables at their first reading.
+    """Declares the parameters of tables when they are first read.
 
     Attributes:
-        declared: those that it declared or found declared, by name.
+        declared: the parameters that were declared by this reader or before, by name.
     """
 
     def __init__(self, node: Node) -> None:
@@ -236,7 +236,7 @@ def _distribution() -> str:
 
 
 def _listed(names: Any) -> Iterable[str]:
-    """The names in a parameter that has one or several."""
+    """Return the names in a parameter that contains one or several names."""
     return (names,) if isinstance(names, str) else names
 
 
@@ -249,12 +249,12 @@ def _kinds(table: Hashable) -> Mapping[str, Any]:
 
 
 def not_empty(name: str, value: Any) -> Phrase | None:
-    """A validator: a text, or a list, is not empty."""
+    """Check that a text or a list is not empty; return the complaint or None."""
     return None if len(value) else phrase("Parameter '{name}' cannot be empty", name=name)
 
 
 def above(limit: float) -> Check:
-    """A validator: more than a number."""
+    """Return a validator that requires a value above a limit."""
     return lambda name, value: (
         None
         if value > limit
@@ -265,7 +265,7 @@ def above(limit: float) -> Check:
 
 
 def at_least(limit: float) -> Check:
-    """A validator: a number or more."""
+    """Return a validator that requires a value of at least a limit."""
     return lambda name, value: (
         None
         if value >= limit
@@ -279,7 +279,7 @@ def at_least(limit: float) -> Check:
 
 
 def one_of(*words: str) -> Check:
-    """A validator: one of some words, or a list of such."""
+    """Return a validator that accepts one of some words, or a list of them."""
 
     def check(name: str, value: Any) -> Phrase | None:
         for item in (value,) if isinstance(value, str) else value:

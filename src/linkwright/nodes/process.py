@@ -1,4 +1,7 @@
-"""One of our nodes as a process of its own: ``python -m linkwright.node_program PACKAGE EXECUTABLE ARGUMENTS``."""
+"""The program that runs one of Linkwright's nodes as a separate process.
+
+Usage: ``python -m linkwright.node_program PACKAGE EXECUTABLE ARGUMENTS``.
+"""
 
 from __future__ import annotations
 
@@ -31,12 +34,12 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
     """Run a node until it ends, or until SIGINT, SIGTERM or SIGHUP, which end it cleanly with status 0.
 
     Args:
-        package: its package.
-        executable: its executable.
-        arguments: its command line, ROS arguments and others.
+        package: the package of the node.
+        executable: the executable of the node.
+        arguments: the command line, ROS arguments and others.
 
     Returns:
-        The exit status: 0, the node's own, or 1 when it could not start.
+        The exit status: 0, the node's own, or 1 if the node could not start.
     """
     from linkwright.graph.command_line.log_setup import set_up
     from linkwright.graph.command_line.ros_arguments import parse
@@ -70,8 +73,8 @@ async def _run(factory: Factory, arguments: list[str], logging: Logging, *, join
     ended = asyncio.Event()
     for number in _SIGNALS:
         if number == getattr(signal, "SIGHUP", None) and signal.getsignal(number) is signal.SIG_IGN:
-            continue  # nohup
-        # Not every platform's loops have this; there KeyboardInterrupt ends the process.
+            continue  # ignored, as set by nohup
+        # Event loops of some platforms do not support this; there KeyboardInterrupt ends the process.
         with contextlib.suppress(NotImplementedError):
             loop.add_signal_handler(number, ended.set)
     graph = Graph(on_log=logging.sink, levels=logging.levels)
@@ -90,7 +93,10 @@ async def _run(factory: Factory, arguments: list[str], logging: Logging, *, join
 
 
 def _terminal() -> int | None:
-    """The terminal on standard input."""
+    """Return the file descriptor of the terminal on standard input.
+
+    Returns None if it is not a terminal.
+    """
     try:
         descriptor = sys.stdin.fileno()
     except (AttributeError, OSError, ValueError):

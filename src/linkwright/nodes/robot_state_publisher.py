@@ -3,12 +3,12 @@
 It follows the ROS 2 node of that name (Humble 3.0.3 and later; see the notes on each rule), with these deliberate
 differences:
 
-- A message that the throttle holds back is published when its time comes, unless a newer one came before. The ROS node
+- A message that the throttle holds back is published when it is due, unless a newer one arrived before. The ROS node
   drops it, so the last move of a slider can be lost.
-- A message that repeats the last positions does not hold back a move that comes right after it (see `Throttle`).
-- A new description starts with a clear throttle, and a new ``frame_prefix`` publishes the fixed transforms again.
+- A message that repeats the last positions does not hold back a move that arrives right after it (see `Throttle`).
+- A new description resets the throttle, and a new ``frame_prefix`` publishes the fixed transforms again.
 - ``publish_frequency`` 0, for which the ROS node divides by zero, is refused.
-- ``/tf_static`` carries only the transforms of the description that holds now.
+- ``/tf_static`` contains only the transforms of the current description.
 """
 
 from __future__ import annotations
@@ -45,14 +45,15 @@ Array = NDArray[np.float64]
 class JointMotion:
     """Poses of child links in their parent links as functions of joint positions.
 
-    Turning by q about an axis composes the rotation r of the joint's origin with (axis sin q/2, cos q/2), which is
-    r cos q/2 + (r * axis) sin q/2; shifting along it adds q times the turned axis. So each pose is
+    A rotation by q about an axis composes the rotation r of the joint's origin with (axis sin q/2, cos q/2), which is
+    r cos q/2 + (r * axis) sin q/2; a translation along the axis adds q times the rotated axis. So each pose is
     ``fixed + cosine cos q/2 + sine sin q/2 + linear q`` with constant rows, and all joints take a few array operations
     whatever their types are.
 
     Args:
-        joints: revolute, continuous and prismatic ones move, all others stay at their origin. Axes need not be of
-            unit length (KDL normalises them); a joint with a zero axis does not move.
+        joints: the joints. Revolute, continuous and prismatic joints move, all others stay at their origin. Axes need
+            not
+            be of unit length (KDL normalises them); a joint with a zero axis does not move.
     """
 
     def __init__(self, joints: Sequence[Joint]) -> None:
@@ -61,7 +62,10 @@ class JointMotion:
             self._add(row, joint)
 
     def poses(self, positions: Array) -> Array:
-        """Array, shape (n, 7), of x y z (metres) and qx qy qz qw, for positions (n,) in radians or metres."""
+        """Return the poses for joint positions of shape (n,), in radians or metres.
+
+        The poses have shape (n, 7): x y z (metres) and qx qy qz qw.
+        """
         half = (0.5 * positions)[:, np.newaxis]
         turned: Array = self._cosine * np.cos(half)
         turned += self._sine * np.sin(half)
@@ -70,7 +74,7 @@ class JointMotion:
         return turned
 
     def select(self, rows: Sequence[int]) -> JointMotion:
-        """The same for some of the joints, in the order given."""
+        """Return the motion of some of the joints, in the order given."""
         selected = JointMotion(())
         selected._fixed, selected._cosine = self._fixed[rows], self._cosine[rows]
         selected._sine, selected._linear = self._sine[rows], self._linear[rows]
@@ -98,7 +102,7 @@ where such a link is must come from elsewhere."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recipe:
-    """The way from a message with a certain list of joint names to transforms.
+    """The conversion of messages with a certain list of joint names to transforms.
 
     Transform i is that of joint i of `motion` at position ``message[source[i]] * factor[i] + offset[i]``.
     """
@@ -111,7 +115,7 @@ class Recipe:
     motion: JointMotion
 
     def batch(self, positions: FloatSequence, stamp_ns: int) -> TransformBatch:
-        """The transforms for a message's positions."""
+        """Return the transforms for a message's positions."""
         values = np.asarray(positions, dtype=np.float64)[self.source] * self.factor + self.offset
         return TransformBatch(self.parents, self.children, stamp_ns, self.motion.poses(values))
 
@@ -121,7 +125,7 @@ class RobotTransforms:
 
     Args:
         robot: the description.
-        frame_prefix: put before every frame name, with nothing between.
+        frame_prefix: the prefix of every frame name, added without a separator.
     """
 
     def __init__(self, robot: Robot, frame_prefix: str) -> None:
@@ -135,15 +139,16 @@ class RobotTransforms:
         self._recipes: dict[tuple[str, ...], Recipe] = {}
 
     def fixed(self, stamp_ns: int) -> TransformBatch:
-        """The transforms of the joints that do not move."""
+        """Return the transforms of the joints that do not move."""
         poses = JointMotion(self._fixed).poses(np.zeros(len(self._fixed)))
         return TransformBatch(*self._frames(self._fixed), stamp_ns, poses)
 
     def recipe(self, names: Sequence[str]) -> Recipe:
-        """How to make the transforms for messages with these joint names.
+        """Return the conversion to transforms for messages with these joint names.
 
-        Names that are not of moving joints are passed over. A joint that mimics one in the message follows it, unless
-        the message has a position of its own for it; a joint that mimics such a joint in turn does not follow.
+        Names that do not belong to moving joints are ignored. A joint that mimics a joint in the message follows it,
+        unless
+        the message contains a position for the joint itself; a joint that mimics such a joint in turn does not follow.
         """
         key = tuple(names)
         recipe = self._recipes.get(key)
@@ -178,7 +183,7 @@ class RobotTransforms:
 
 
 class JointGroup:
-    """The joints of a message for a throttle; one object for each list of names."""
+    """The joints of a message for a throttle; there is one object for each list of names."""
 
     __slots__ = ("positions", "rows")
 
@@ -189,15 +194,16 @@ class JointGroup:
 
 
 class Throttle:
-    """Remembers when the transforms of each joint were published. Times are nanoseconds; 0 is never.
+    """Decides when transforms may be published, from the times at which each joint was published.
 
-    A message is published when its stamp is an interval or more after that of its joints was published that has waited
-    longest. Messages that repeat the positions of the one before, such as the steady beat of joint_state_publisher,
-    must keep that distance from all messages; those with new positions only from other new ones. So a beat does not
-    hold up the move that comes after it.
+    Times are in nanoseconds; 0 is never. A message is published when its stamp is at least an interval after the last
+    publication of the message's joint that has waited longest. Messages that repeat the previous positions, such as the
+    periodic messages of joint_state_publisher, must keep that interval from all messages; messages with new positions
+    only
+    from other messages with new positions. So a repeated message does not hold up a move that follows it.
 
     Args:
-        interval_ns: the least time between two messages about the same joints.
+        interval_ns: the minimum time between two messages about the same joints.
     """
 
     def __init__(self, interval_ns: int) -> None:
@@ -209,7 +215,7 @@ class Throttle:
         self._stamp_ns: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
 
     def group(self, names: Sequence[str]) -> JointGroup:
-        """The group of these joints, at least one."""
+        """Return the group of these joints, at least one."""
         key = tuple(names)
         group = self._groups.get(key)
         if group is None:
@@ -222,7 +228,7 @@ class Throttle:
         return group
 
     def is_move(self, group: JointGroup, positions: FloatSequence) -> bool:
-        """Whether these positions differ from those published last."""
+        """Return whether these positions differ from those published last."""
         return group.positions is None or not np.array_equal(group.positions, positions)
 
     def opens_ns(self, group: JointGroup, now_ns: int, *, move: bool) -> int:
@@ -231,7 +237,7 @@ class Throttle:
         return min(int(before[group.rows].min()), now_ns) + self.interval_ns
 
     def is_in_order(self, group: JointGroup, stamp_ns: int) -> bool:
-        """Whether all joints were published before, and none with a later stamp."""
+        """Return whether all joints were published before, and none with a later stamp."""
         stamps = self._stamp_ns[group.rows]
         return bool(stamps.all() and (stamps <= stamp_ns).all())
 
@@ -244,7 +250,7 @@ class Throttle:
         group.positions = np.array(positions, dtype=np.float64)
 
     def clear(self) -> None:
-        """Reset."""
+        """Forget all publications."""
         for times in (self._sent_ns, self._moved_ns, self._stamp_ns):
             times[:] = 0
 
@@ -263,7 +269,7 @@ _NANOSECONDS_PER_MILLISECOND = 1_000_000
 
 @dataclass(slots=True, eq=False)
 class _Held:
-    """A message that is held back until its time."""
+    """A message that is held back until it is due."""
 
     message: JointState
     release_ns: int
@@ -271,12 +277,12 @@ class _Held:
 
 
 class RobotStatePublisher(SingleNode):
-    """The running node.
+    """The running robot_state_publisher node.
 
     Raises:
-        LinkwrightError: it cannot start: no description (NODE101), one that cannot be read (NODE102, with what is
-            wrong in it), a frequency out of range (NODE103), a parameter of the wrong type (GRAPH201), or an override
-            of a quality of service that is none (GRAPH208).
+        LinkwrightError: the node cannot start: no description (NODE101), an invalid description (NODE102, with its
+            errors), a frequency out of range (NODE103), a parameter of the wrong type (GRAPH201), or an invalid QoS
+            override (GRAPH208).
     """
 
     DEFAULT_NAME = "robot_state_publisher"
@@ -294,7 +300,7 @@ class RobotStatePublisher(SingleNode):
             self._start(arguments)
 
     def close(self) -> None:
-        """End it."""
+        """Close the node."""
         self._held.clear()
         super().close()
 
@@ -455,8 +461,9 @@ class RobotStatePublisher(SingleNode):
         stamp_ns = message.header.stamp.nanoseconds
         if self._throttle.is_in_order(group, stamp_ns):
             self._publish_moving(message, stamp_ns)
-            # Counted as published now, not at its stamp, or a source that is a little too fast would pass the limit
-            # by having each message held for a moment only.
+            # Count it as published now, not at its stamp; otherwise a source that is slightly too fast would pass the
+            # limit,
+            # because each message would be held only for a moment.
             self._throttle.published(group, message.position, stamp_ns, held.release_ns)
 
     def _drop_held(self, group: JointGroup) -> None:

@@ -1,4 +1,4 @@
-"""Declaring parameters of nodes: required ones, those from words of a command line, unknown ones."""
+"""Declaration of node parameters: required ones, values from command-line arguments, and unknown ones."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> 
     """Declare a parameter without a default, and read it.
 
     Args:
-        node: declares it.
-        name: of the parameter.
-        kind: its type.
+        node: the node.
+        name: the name of the parameter.
+        kind: the type of the parameter.
         usage: how the node is started, for the hint.
 
     Raises:
-        LinkwrightError: NODE431 it is not given, or GRAPH201 it has another type.
+        LinkwrightError: NODE431, the parameter is not set; GRAPH201, it has another type.
     """
     node.declare_parameter(name, kind)
     value = node.get_parameter_or(name, Parameter(name)).value
@@ -38,16 +38,16 @@ def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> 
 def options_from_words(
     options: NodeOptions, words: Sequence[str], names: Mapping[str, Callable[[str], Any]], usage: str
 ) -> NodeOptions:
-    """Convert the words of a command line to parameters in the options.
+    """Convert command-line arguments to parameters in the options.
 
     Args:
         options: the options of the node.
         words: the arguments without ROS arguments.
-        names: the parameters that the words set, in order, each with its converter; there may be fewer words.
+        names: the parameters that the arguments set, in order, each with its converter; there may be fewer arguments.
         usage: how the node is started, for the hint.
 
     Raises:
-        LinkwrightError: NODE432, a word is not a value of its parameter, or there are more words than names.
+        LinkwrightError: NODE432, an argument is not a value of its parameter, or there are more arguments than names.
     """
     hint = phrase("usage: {usage}", usage=usage)
     if len(words) > len(names):
@@ -66,12 +66,12 @@ def _converted(word: str, name: str, convert: Callable[[str], Any], hint: Phrase
 
 
 def words_of(options: NodeOptions) -> list[str]:
-    """The arguments of a node that are not ROS arguments."""
+    """Return the arguments of a node that are not ROS arguments."""
     return parse(options.arguments).others
 
 
 def positive(node: Node, name: str, value: float) -> float:
-    """Check that a parameter is more than zero.
+    """Check that a parameter is greater than zero, and return it.
 
     Raises:
         LinkwrightError: NODE433, it is not.
@@ -82,7 +82,7 @@ def positive(node: Node, name: str, value: float) -> float:
 
 
 def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) -> LinkwrightError:
-    """The error for an invalid value of a parameter: NODE433."""
+    """Return the error NODE433 for an invalid value of a parameter."""
     message = phrase("parameter '{name}' of '{node}' cannot be '{value}'", name=name, node=node, value=value)
     hint = None
     if known:
@@ -91,10 +91,11 @@ def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) ->
 
 
 def log_unknown(node: Node) -> None:
-    """Log the given parameters that the node does not have; called when all are declared.
+    """Log the given parameters that the node does not have; called once all are declared.
 
-    Those that look misspelt are a warning. Parameters for all nodes of a launch (``/**``) reach nodes that do not know
-    them, so the rest is only information.
+    Names that look misspelt cause a warning. Parameters for all nodes of a launch (``/**``) reach nodes that do not
+    have
+    them, so other names are only logged as information.
     """
     known = node.parameter_names()
     strange = [name for name in node.undeclared_overrides() if not name.startswith(_EVERYWHERE)]

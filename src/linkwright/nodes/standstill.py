@@ -1,4 +1,4 @@
-"""Stopping a robot when the publisher of forwarded velocities is lost (`Commander`)."""
+"""Stopping a robot when the publisher of forwarded velocities is lost (see `Commander`)."""
 
 from __future__ import annotations
 

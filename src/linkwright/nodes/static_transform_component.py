@@ -1,4 +1,4 @@
-"""tf2_ros' component ``StaticTransformBroadcasterNode``: static_transform_publisher for a container."""
+"""tf2_ros' component ``StaticTransformBroadcasterNode``: static_transform_publisher for a component container."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _PLACE = {"translation": ("x", "y", "z"), "rotation": ("x", "y", "z", "w")}
 
 
 def start(graph: Graph, options: NodeOptions) -> RunningNode:
-    """Start a static transform publisher with parameters in place of the executable's arguments."""
+    """Start a static transform publisher that is configured by parameters instead of arguments."""
     given: dict[str, Any] = options.parameters
     words: list[str] = []
     for group, axes in _PLACE.items():

@@ -1,4 +1,4 @@
-"""static_transform_publisher of tf2_ros: publishes one static transform of the command line on ``/tf_static``."""
+"""static_transform_publisher of tf2_ros: publishes one static transform from the command line on ``/tf_static``."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ _OLD_WITH_QUATERNION = (*_TRANSLATION, *_QUATERNION, *_FRAMES)
 
 @dataclass(frozen=True, slots=True)
 class StaticTransform:
-    """The command line: pose (metres, unit quaternion x y z w) of the child frame in the parent frame.
+    """The parsed command line: pose (metres, unit quaternion x y z w) of the child frame in the parent frame.
 
-    `old_style` tells that the values were given by position, which tf2_ros calls deprecated.
+    `old_style` is true if the values were given by position, which tf2_ros calls deprecated.
     """
 
     translation: tuple[float, float, float]
@@ -51,12 +51,12 @@ class StaticTransform:
 
 
 def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
-    """Read the command line: options with names, or the older eight or nine values by position.
+    """Parse the command line: named options, or the older eight or nine positional values.
 
-    By position: ``x y z yaw pitch roll frame child`` or ``x y z qx qy qz qw frame child``.
+    The positional forms are ``x y z yaw pitch roll frame child`` and ``x y z qx qy qz qw frame child``.
 
     Raises:
-        LinkwrightError: it is wrong, in the words of tf2_ros.
+        LinkwrightError: the command line is invalid; the text is that of tf2_ros.
     """
     given, positional = _split(arguments)
     old_style = bool(positional)
@@ -79,10 +79,10 @@ def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
 
 
 class StaticTransformPublisher(SingleNode):
-    """The running node.
+    """The running static_transform_publisher node.
 
     Raises:
-        LinkwrightError: the command line is wrong (NODE301).
+        LinkwrightError: NODE301, the command line is invalid.
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
@@ -116,7 +116,7 @@ class StaticTransformPublisher(SingleNode):
 
 
 def _random_suffix() -> str:
-    """Random letters and digits for the node's name, unique among processes, as in tf2_ros."""
+    """Return random letters and digits for the node's name, unique among processes, as in tf2_ros."""
     return "".join(secrets.choice(string.ascii_letters + string.digits) for _ in range(16))
 
 

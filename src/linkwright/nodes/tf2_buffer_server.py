@@ -1,4 +1,4 @@
-"""buffer_server of tf2_ros: looks up transforms for other processes, which need not receive all of ``/tf``."""
+"""buffer_server of tf2_ros: looks up transforms for other processes, which then need not receive all of ``/tf``."""
 
 from __future__ import annotations
 
@@ -33,10 +33,11 @@ _NUMBERS: dict[type[TransformException], int] = {
 
 
 class Tf2BufferServer(SingleNode):
-    """The running node; it serves the action ``tf2_buffer_server`` (tf2_msgs/action/LookupTransform).
+    """The running buffer_server node, which serves the action ``tf2_buffer_server`` (LookupTransform of tf2_msgs).
 
-    A goal whose transform is not there yet is looked at again until its timeout. What went wrong is part of the result,
-    so every goal that is not canceled succeeds, as in tf2_ros.
+    A goal whose transform is not available yet is retried until its timeout. Errors are part of the result, so every
+    goal
+    that is not canceled succeeds, as in tf2_ros.
     """
 
     DEFAULT_NAME = "tf_buffer"

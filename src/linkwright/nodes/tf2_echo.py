@@ -28,7 +28,7 @@ _LATEST = Time()
 
 
 class Tf2Echo(SingleNode):
-    """The running node.
+    """The running tf2_echo node.
 
     Raises:
         LinkwrightError: NODE401, the rate is not a number.
@@ -85,7 +85,7 @@ def describe(transform: Any) -> str:
     rows[:3, :3], rows[:3, 3] = turn, position
     return "\n".join(
         [
-            # The nanoseconds have no leading zeros there either.
+            # As in tf2_echo, the nanoseconds have no leading zeros.
             f"At time {stamp.sec}.{stamp.nanosec}",
             f"- Translation: [{_listed(position)}]",
             f"- Rotation: in Quaternion (xyzw) [{_listed(quaternion)}]",
@@ -98,10 +98,10 @@ def describe(transform: Any) -> str:
 
 
 def _roll_pitch_yaw(turn: NDArray[np.float64]) -> tuple[float, float, float]:
-    """The angles of a rotation matrix as tf2 computes them, with its signs of zero."""
+    """Return the angles of a rotation matrix as computed by tf2, with its signs of zero."""
     (xx, xy, xz), (yx, _, _), (zx, zy, zz) = turn.tolist()
     if abs(zx) >= 1.0:
-        # Roll and yaw turn about the same axis: all of it counts as roll.
+        # Roll and yaw rotate about the same axis, so the whole angle is assigned to roll.
         delta = atan2(xy, xz) if zx < 0.0 else atan2(-xy, -xz)
         return delta, pi / 2.0 if zx < 0.0 else -pi / 2.0, 0.0
     pitch = -asin(zx)

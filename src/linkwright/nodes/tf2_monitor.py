@@ -24,7 +24,7 @@ _SHORTEST_SPAN_S = 1e-8
 
 
 class Tf2Monitor(SingleNode):
-    """The running node: reports about every ten seconds, on all frames or on the chain between two."""
+    """The running tf2_monitor node, which reports every ten seconds on all frames or the chain between two frames."""
 
     DEFAULT_NAME = "tf2_monitor_main"
 
@@ -76,7 +76,7 @@ class Tf2Monitor(SingleNode):
             self._report()
 
     def _begin(self) -> bool:
-        """Start once the chain between the two frames is known."""
+        """Return whether the chain between the two frames is known, and start reporting if so."""
         what = "all frames"
         if self._ends is not None:
             first, second = self._ends

@@ -1,4 +1,4 @@
-"""Publishing velocities as geometry_msgs/msg/Twist or TwistStamped, whichever the subscribers take."""
+"""Publication of velocities as geometry_msgs/msg/Twist or TwistStamped, as expected by the subscribers."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ _DEPTH = 10
 
 
 def velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, ...]:
-    """Return the types to subscribe to for velocities: one if `stamped` is set, otherwise both.
+    """Return the types to subscribe to for velocities: one type if `stamped` is set, otherwise both.
 
-    The type that is already published comes first, so that no warning about a type mismatch is logged.
+    The type that is already published is the first one, so no warning about a type mismatch is logged.
     """
     if stamped is not None:
         return (TWIST_STAMPED if stamped else TWIST,)
@@ -24,7 +24,7 @@ def velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, .
 
 
 class VelocityTopic:
-    """A topic of velocities; not published on while it carries another type.
+    """A topic of velocities; nothing is published while it has another type.
 
     Args:
         node: the node that publishes.
@@ -35,7 +35,7 @@ class VelocityTopic:
 
     Attributes:
         name: the full name.
-        foreign: a type on the topic that is neither; None if there is none.
+        foreign: a type on the topic that is neither of the two; None if there is none.
 
     Raises:
         LinkwrightError: the name is not a topic name.
@@ -60,7 +60,7 @@ class VelocityTopic:
         """Switch to the type of the subscribers.
 
         Args:
-            may_change: whether the type may become another one; not while something moves.
+            may_change: whether the type may change; it must not while the robot moves.
 
         Returns:
             The number of subscribers with the published type.
@@ -82,7 +82,10 @@ class VelocityTopic:
         return listeners.count(self._publisher.type_name)
 
     def publish(self, linear: Sequence[float], angular: Sequence[float]) -> None:
-        """Publish a velocity: along x, y, z in m/s, and about them in rad/s. A closed topic publishes nothing."""
+        """Publish a velocity: linear along x, y, z in m/s, and angular in rad/s.
+
+        Does nothing if the topic is closed.
+        """
         publisher = self._publisher
         if publisher is None:
             return
@@ -97,7 +100,7 @@ class VelocityTopic:
         publisher.publish(message)
 
     def stop(self) -> None:
-        """Publish zero."""
+        """Publish a velocity of zero."""
         self.publish((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
     def close(self) -> None:

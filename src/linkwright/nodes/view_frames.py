@@ -18,10 +18,10 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node, start
 
 
 class ViewFrames(SingleNode):
-    """The running node. It writes ``frames_DATE.gv`` and ``frames_DATE.pdf`` into the current folder, and ends.
+    """The running view_frames node, which writes ``frames_DATE.gv`` and ``frames_DATE.pdf`` to the current folder.
 
     Raises:
-        LinkwrightError: NODE411, an argument is not right.
+        LinkwrightError: NODE411, an argument is invalid.
     """
 
     DEFAULT_NAME = "view_frames"
@@ -84,11 +84,11 @@ class ViewFrames(SingleNode):
 
 
 def frames_as_dot(frames: Mapping[str, Mapping[str, Any]], recorded_s: float) -> str:
-    """The drawing in Graphviz's language.
+    """Return the tree of frames in Graphviz's language.
 
     Args:
-        frames: the buffer's facts on each frame, by name.
-        recorded_s: when, seconds since the epoch.
+        frames: the buffer's data on each frame, by name.
+        recorded_s: the time of the recording, in seconds since the epoch.
     """
     if not frames:
         return 'digraph G { "No tf data received" }'

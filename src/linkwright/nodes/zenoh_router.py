@@ -1,4 +1,4 @@
-"""``rmw_zenohd``: the router through which nodes of rmw_zenoh_cpp find each other."""
+"""``rmw_zenohd``: the router by which nodes of rmw_zenoh_cpp find each other."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 class ZenohRouter(SingleNode):
     """A running Zenoh router, at tcp/localhost:7447 unless the settings give another address.
 
-    The settings are rmw_zenohd's, ``ZENOH_ROUTER_CONFIG_URI`` and ``ZENOH_CONFIG_OVERRIDE``. Unlike that it listens to
-    this machine alone by itself. Its node is a hidden one.
+    The settings are those of rmw_zenohd, ``ZENOH_ROUTER_CONFIG_URI`` and ``ZENOH_CONFIG_OVERRIDE``. Unlike rmw_zenohd,
+    the
+    router accepts only connections from this machine by default. Its node is hidden.
 
     Args:
-        graph: the graph.
-        options: how it is started.
+        graph: the graph to which the node is added.
+        options: the options of the node.
 
     Raises:
         LinkwrightError: NODE003, Zenoh is not installed; DDS111 and DDS112, the router cannot be opened.
@@ -52,7 +53,7 @@ class ZenohRouter(SingleNode):
         self._node.get_logger().warning(f"Not connected yet; retrying: {reasons}")
 
     def close(self) -> None:
-        """End it."""
+        """Close the router."""
         from linkwright.wire.zenoh.session import close_session
 
         self._reporter.end()

@@ -1,1 +1,1 @@
-"""The programs of topic_tools: they forward messages of any type between topics."""
+"""The programs of topic_tools, which forward messages of any type between topics."""

@@ -1,8 +1,10 @@
-"""transform and relay_field of topic_tools: messages computed by Python expressions from those of another topic.
+"""transform and relay_field of topic_tools.
 
-The expressions are as free as in topic_tools, because the author of a command line or a launch file may run programs
-anyway. Names of message packages give access to their types, ``std_msgs.msg.String``; other names are the modules that
-``--import`` imports.
+They compute messages by Python expressions from another topic's messages.
+
+The expressions are not restricted, as in topic_tools, because the author of a command line or a launch file can run
+programs anyway. Names of message packages give access to their types (``std_msgs.msg.String``); other names are the
+modules that ``--import`` imports.
 """
 
 from __future__ import annotations
@@ -41,10 +43,10 @@ class _Parser(argparse.ArgumentParser):
 
 
 class _ExpressionTool(SingleNode, ABC):
-    """A node that computes a message from each message of its input.
+    """A node that computes a message from each input message.
 
     Raises:
-        LinkwrightError: its words mean nothing (NODE432), or its expression (NODE434).
+        LinkwrightError: an argument (NODE432) or the expression (NODE434) is invalid.
     """
 
     _output_class: Any
@@ -65,7 +67,7 @@ class _ExpressionTool(SingleNode, ABC):
     PROGRAM: ClassVar[str]
 
     def close(self) -> None:
-        """End it."""
+        """Close the node."""
         self._graph.unwatch(self._changed.trigger)
         super().close()
 
@@ -75,7 +77,7 @@ class _ExpressionTool(SingleNode, ABC):
 
     @abstractmethod
     def _make(self, message: Any) -> Any:
-        """The message to be published for one of the input."""
+        """Return the message to publish for an input message."""
 
     def _parser(self) -> argparse.ArgumentParser:
         parser = _Parser(prog=self.PROGRAM, add_help=False)
@@ -128,7 +130,10 @@ class _ExpressionTool(SingleNode, ABC):
 
 
 class Transform(_ExpressionTool):
-    """The running transform: an expression over ``m``, the message or a field of it, gives the new message."""
+    """The running transform node.
+
+    It computes messages by an expression over ``m``, the message or one of its fields.
+    """
 
     PROGRAM = "transform"
 
@@ -158,7 +163,10 @@ class Transform(_ExpressionTool):
 
 
 class RelayField(_ExpressionTool):
-    """The running relay_field: YAML whose texts are expressions over the message ``m`` gives the fields."""
+    """The running relay_field node.
+
+    It computes fields by YAML whose texts are expressions over the message ``m``.
+    """
 
     PROGRAM = "relay_field"
 
@@ -191,7 +199,7 @@ class RelayField(_ExpressionTool):
 
 
 class _Types:
-    """A package of message classes in an expression: ``std_msgs.msg.String``."""
+    """The message types of a package in an expression: ``std_msgs.msg.String``."""
 
     def __init__(self, package: str) -> None:
         self.msg = _Messages(package)
@@ -217,7 +225,10 @@ def _imported(name: str) -> Any:
 
 
 def _prepared(value: Any) -> Callable[[Any], Any]:
-    """Compile a value of YAML: a text is an expression, or a literal text if it is not a valid expression."""
+    """Compile a YAML value.
+
+    A text is an expression, or a literal text if it is not a valid expression.
+    """
     if isinstance(value, dict):
         fields = {name: _prepared(compute) for name, compute in value.items()}
         return lambda message: {name: compute(message) for name, compute in fields.items()}

@@ -1,4 +1,4 @@
-"""mux and demux of topic_tools: forwards one of several topics, or to one of several."""
+"""mux and demux of topic_tools: forward one of several topics, or to one of several."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class _Switch(TopicTool):
 
     @abstractmethod
     def _place(self, single: str, selected: str) -> None:
-        """Set `_input` and `_output`."""
+        """Set `_input` and `_output` for the selected topic."""
 
     @property
     @abstractmethod
@@ -138,7 +138,7 @@ class _Switch(TopicTool):
 
 
 class Mux(_Switch):
-    """The running mux: forwards the selected one of its inputs.
+    """The running mux, which forwards the selected input topic.
 
     Raises:
         LinkwrightError: the parameter ``input_topics`` is missing (NODE431) or empty (NODE433).
@@ -161,7 +161,7 @@ class Mux(_Switch):
 
 
 class Demux(_Switch):
-    """The running demux: forwards to the selected one of its outputs.
+    """The running demux, which forwards to the selected output topic.
 
     Raises:
         LinkwrightError: the parameter ``output_topics`` is missing (NODE431) or empty (NODE433).

@@ -1,4 +1,4 @@
-"""relay, throttle, drop and delay of topic_tools: forward all messages or some, at once or later."""
+"""relay, throttle, drop and delay of topic_tools: forward all or some messages, immediately or later."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.nodes.topic_tools.tool import TopicTool
 
 
 class _InputToOutput(TopicTool):
-    """A tool with one input and one output, which is named after the input by default."""
+    """A tool with one input and one output; the output is named after the input by default."""
 
     SUFFIX: ClassVar[str]
 
@@ -35,11 +35,10 @@ class _InputToOutput(TopicTool):
 
 
 class Relay(_InputToOutput):
-    """The running relay: forwards every message.
+    """The running relay, which forwards every message.
 
     Raises:
-        LinkwrightError: the parameter ``input_topic`` is not given (NODE431), or the command line has words that mean
-            nothing (NODE432).
+        LinkwrightError: the parameter ``input_topic`` is missing (NODE431), or an argument is invalid (NODE432).
     """
 
     DEFAULT_NAME = "relay"
@@ -54,10 +53,10 @@ class Relay(_InputToOutput):
 
 
 class Throttle(_InputToOutput):
-    """The running throttle: forwards a number of messages, or bytes, a second, and drops the rest.
+    """The running throttle, which forwards a number of messages or bytes per second, and drops the rest.
 
     Raises:
-        LinkwrightError: a parameter is missing (NODE431) or means nothing (NODE433), or a word does (NODE432).
+        LinkwrightError: a parameter is missing (NODE431) or invalid (NODE433), or an argument is invalid (NODE432).
     """
 
     DEFAULT_NAME = "throttle"
@@ -119,10 +118,10 @@ class Throttle(_InputToOutput):
 
 
 class Drop(_InputToOutput):
-    """The running drop: of each Y messages it drops the first X.
+    """The running drop node, which drops the first X of every Y messages.
 
     Raises:
-        LinkwrightError: a parameter is missing (NODE431), or the command line has words that mean nothing (NODE432).
+        LinkwrightError: a parameter is missing (NODE431), or an argument is invalid (NODE432).
     """
 
     DEFAULT_NAME = "drop"
@@ -144,11 +143,12 @@ class Drop(_InputToOutput):
 
 
 class Delay(_InputToOutput):
-    """The running delay: forwards every message later.
+    """The running delay node, which forwards every message with a delay.
 
     Raises:
-        LinkwrightError: the parameter ``input_topic`` is not given (NODE431), a delay is negative (NODE433), or the
-            command line has words that mean nothing (NODE432).
+        LinkwrightError: the parameter ``input_topic`` is missing (NODE431), a delay is negative (NODE433), or an
+            argument
+            is invalid (NODE432).
     """
 
     DEFAULT_NAME = "delay"

@@ -1,7 +1,7 @@
-"""The base of topic_tools: an input whose type comes from the graph, and an output.
+"""The base of topic_tools: an input whose type is taken from the graph, and an output.
 
-Differences from topic_tools 1.3: a change of the graph is noticed at once and not within 100 ms; a source that returns
-with another type is subscribed to again; and a stop is sent when the publisher of the last velocity is lost.
+Differences from topic_tools 1.3: a change of the graph is noticed immediately instead of within 100 ms; a source that
+returns with another type is subscribed to again; and a stop is sent when the publisher of the last velocity is lost.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class TopicTool(SingleNode, ABC):
 
     Attributes:
         USAGE: the usage text.
-        WORDS: the parameters that the words of its command line set, with their converters.
+        WORDS: the parameters that are set by command-line arguments, with their converters.
     """
 
     USAGE: ClassVar[str]
@@ -53,12 +53,12 @@ class TopicTool(SingleNode, ABC):
         self._look()
 
     def close(self) -> None:
-        """End it."""
+        """Close the node."""
         self._graph.unwatch(self._changed.trigger)
         super().close()
 
     def _options(self, options: NodeOptions, words: list[str]) -> NodeOptions:
-        """The options with the words of the command line as parameters."""
+        """Return the options with the command-line arguments as parameters."""
         return options_from_words(options, words, self.WORDS, self.USAGE)
 
     @abstractmethod
@@ -67,7 +67,7 @@ class TopicTool(SingleNode, ABC):
 
     @abstractmethod
     def _receive(self, message: Any) -> None:
-        """Take a message of the input."""
+        """Handle an input message."""
 
     def _send(self, message: Any) -> None:
         if self._publisher is not None:
@@ -101,7 +101,7 @@ class TopicTool(SingleNode, ABC):
         return subscription
 
     def _stop_output(self, lost: EndpointInfo) -> None:
-        """Publish a stop for followers of forwarded velocities, as the publisher is lost."""
+        """Publish a stop for subscribers of forwarded velocities after their publisher was lost."""
         if self._publisher is not None and self._publisher.type_name in VELOCITIES:
             send_stop(self._node, self._publisher, lost)
 
