@@ -1,1 +1,1 @@
-"""Filters and conversions of sensor data: scans, images, inertial measurements."""
+"""Filters and conversions of sensor data: scans, images and inertial measurements."""

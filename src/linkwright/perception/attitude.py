@@ -1,6 +1,6 @@
-"""Orientation of a body from its gyroscope, accelerometer and magnetometer.
+"""Estimation of a body's orientation from its gyroscope, accelerometer and magnetometer.
 
-Orientations are unit quaternions x y z w that take vectors of the body to the world. Sources: S. Madgwick, "An
+Orientations are unit quaternions x y z w that rotate vectors from the body to the world. Sources: S. Madgwick, "An
 efficient orientation filter for inertial and inertial/magnetic sensor arrays", 2010; R. Valenti, I. Dryanovski and
 J. Xiao, "Keeping a Good Attitude", Sensors 2015.
 """
@@ -34,7 +34,7 @@ _NONE: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
 class World(Enum):
-    """The directions of the world's axes x, y and z: east, north, west, south, up, down."""
+    """The directions of the world's x, y and z axes: east, north, west, south, up, down."""
 
     ENU = "enu"
     NWU = "nwu"
@@ -42,16 +42,16 @@ class World(Enum):
 
     @property
     def up(self) -> float:
-        """1 where z points up, else -1."""
+        """1 if z points up, else -1."""
         return -1.0 if self is World.NED else 1.0
 
 
 def attitude(acceleration: Vector3, magnetic: Vector3 | None, world: World) -> Quaternion | None:
-    """The orientation of a body at rest.
+    """Return the orientation of a body at rest.
 
     Args:
-        acceleration: of its accelerometer: away from the earth.
-        magnetic: of its magnetometer, in any unit; None for an orientation without yaw.
+        acceleration: the reading of the accelerometer, which points away from the earth.
+        magnetic: the reading of the magnetometer, in any unit; None for an orientation without yaw.
         world: the axes of the world.
 
     Returns:
@@ -82,11 +82,11 @@ class MadgwickFilter:
     """Integrates the gyroscope, and corrects by gradient descent towards accelerometer and magnetometer (Madgwick).
 
     Attributes:
-        gain: how far down a second, rad/s.
-        zeta: how fast the drift of the gyroscope is learnt, rad/s a second.
+        gain: the step of the gradient descent per second, in rad/s.
+        zeta: the rate at which the gyroscope's drift is learnt, in rad/s per second.
         world: the axes of the world.
-        orientation: of the body in the world.
-        drift: of the gyroscope, rad/s.
+        orientation: the orientation of the body in the world.
+        drift: the drift of the gyroscope, in rad/s.
     """
 
     gain: float = 0.1
@@ -99,10 +99,10 @@ class MadgwickFilter:
         """Update the orientation by a measurement.
 
         Args:
-            rates: angular velocity, rad/s.
-            acceleration: m/s2.
-            magnetic: in any unit; None where it is not measured.
-            seconds: since the last call.
+            rates: the angular velocity, in rad/s.
+            acceleration: the acceleration, in m/s2.
+            magnetic: the magnetic field, in any unit; None if it is not measured.
+            seconds: the seconds since the last call.
         """
         slope = self._slope(acceleration, magnetic)
         if self.zeta and slope is not None:
@@ -115,7 +115,10 @@ class MadgwickFilter:
         self.orientation = normalized(*_sum4(self.orientation, change, seconds))
 
     def _slope(self, acceleration: Vector3, magnetic: Vector3 | None) -> Quaternion | None:
-        """The direction in which the error grows; None where it is zero, or there is nothing to compare with."""
+        """Return the direction in which the error grows.
+
+        Returns None if the error is zero or there is no reference.
+        """
         if hypot(*acceleration) < _FREE_FALL:
             return None
         slope = self._slope_of((0.0, 0.0, self.world.up), _unit(acceleration))
@@ -129,9 +132,10 @@ class MadgwickFilter:
         return _scaled4(slope, 1.0 / length) if length > 1e-12 else None
 
     def _slope_of(self, direction: Vector3, seen: Vector3) -> Quaternion:
-        """The gradient of half the squared difference between a direction of the world, seen from the body, and `seen`.
+        """Return the gradient of half the squared difference between a world direction in the body frame and `seen`.
 
-        A small change of the orientation q by dq changes the reading, q* d q, by dq* d q + q* d dq; its product with
+        A small change of the orientation q by dq changes the predicted reading, q* d q, by dq* d q + q* d dq; its
+        product with
         the difference e is that of dq with -2 d q e.
         """
         x, y, z = rotate(quaternion_inverse(self.orientation), direction)
@@ -141,16 +145,18 @@ class MadgwickFilter:
 
 @dataclass(slots=True)
 class ComplementaryFilter:
-    """Integrates the gyroscope, and corrects by a part of the error. The world is north, west, up.
+    """Integrates the gyroscope, and corrects by a fraction of the error.
+
+    The world axes are north, west, up.
 
     Attributes:
-        gain_acc: which part of the way, for the accelerometer.
-        gain_mag: the same for the magnetometer.
-        bias_alpha: how fast the bias of the gyroscope is learnt at rest.
-        do_bias_estimation: whether it is.
-        do_adaptive_gain: whether the accelerometer counts less while the body accelerates.
-        orientation: of the body in the world.
-        bias: of the gyroscope, rad/s.
+        gain_acc: the fraction of the error that the accelerometer corrects.
+        gain_mag: the fraction of the error that the magnetometer corrects.
+        bias_alpha: the rate at which the gyroscope's bias is learnt at rest.
+        do_bias_estimation: whether the bias is learnt.
+        do_adaptive_gain: whether the accelerometer has less weight while the body accelerates.
+        orientation: the orientation of the body in the world.
+        bias: the bias of the gyroscope, in rad/s.
     """
 
     gain_acc: float = 0.01
@@ -173,7 +179,7 @@ class ComplementaryFilter:
         if length >= _FREE_FALL:
             up = rotate(self.orientation, _unit(acceleration))
             gain = self.gain_acc * (_trust(length) if self.do_adaptive_gain else 1.0)
-            # From the measured up direction to the true one.
+            # Rotates the measured up direction to the true one.
             back = quaternion_inverse(rotation_from_z(up))
             self.orientation = quaternion_multiply(_part(back, gain), self.orientation)
         if magnetic is not None and hypot(*magnetic) > 0.0:
@@ -193,20 +199,20 @@ class ComplementaryFilter:
 
 
 def _trust(length: float) -> float:
-    """The weight of an acceleration by its length: 1 near that of gravity, 0 where it differs by a fifth."""
+    """Return the weight of an acceleration: 1 if its length is within 10 % of gravity, 0 beyond 20 %."""
     error = abs(length - GRAVITY) / GRAVITY
     return min(1.0, max(0.0, 2.0 - error / 0.1))
 
 
 def _rotation(turn: Vector3) -> Quaternion:
-    """The rotation by a rotation vector, rad."""
+    """Return the rotation given by a rotation vector in rad."""
     angle = hypot(*turn)
     scale = sin(angle / 2.0) / angle if angle > 0.0 else 0.5
     return turn[0] * scale, turn[1] * scale, turn[2] * scale, cos(angle / 2.0)
 
 
 def _part(rotation: Quaternion, share: float) -> Quaternion:
-    """A fraction of a rotation about the same axis."""
+    """Return a rotation by a fraction of the angle about the same axis."""
     x, y, z, w = rotation if rotation[3] >= 0.0 else _scaled4(rotation, -1.0)
     sine = hypot(x, y, z)
     if sine == 0.0:

@@ -1,1 +1,1 @@
-"""Nodes that filter and convert scans, clouds, images and inertial measurements, under the names of ROS packages."""
+"""Nodes that filter and convert sensor data, with the names of ROS packages."""

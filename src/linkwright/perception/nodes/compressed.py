@@ -1,4 +1,4 @@
-"""JPEG images for image_bridge.
+"""JPEG compression of images for image_bridge.
 
 Source: the plugin ``compressed`` of image_transport (the topic, the format's name, the quality).
 """
@@ -17,7 +17,9 @@ _CHANNELS = {"rgb8": 3, "bgr8": 3, "mono8": 1}
 
 
 def compressed(image: Any) -> Any | None:
-    """Compress an image to ``sensor_msgs/msg/CompressedImage``; None for pixels that JPEG cannot have.
+    """Compress an image to ``sensor_msgs/msg/CompressedImage``.
+
+    Returns None for pixels that JPEG cannot represent.
 
     Raises:
         ModuleNotFoundError: Pillow is not installed.
@@ -25,7 +27,7 @@ def compressed(image: Any) -> Any | None:
     channels = _CHANNELS.get(image.encoding)
     if channels is None or not image.width or not image.height:
         return None
-    from PIL import Image  # not above: an extra
+    from PIL import Image  # Imported here because Pillow is an optional extra.
 
     rows = np.frombuffer(bytes(image.data), np.uint8).reshape(image.height, image.step)
     stored = rows[:, : image.width * channels].reshape(image.height, image.width, channels)

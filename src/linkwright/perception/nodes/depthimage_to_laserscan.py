@@ -1,4 +1,4 @@
-"""depthimage_to_laserscan_node: a laser scan from the middle rows of a depth image.
+"""depthimage_to_laserscan_node: computes a laser scan from the middle rows of a depth image.
 
 Source: depthimage_to_laserscan 2.5 (ROS 2 Humble).
 """
@@ -22,10 +22,10 @@ _SECONDS_BETWEEN_COMPLAINTS = 5.0
 
 
 class DepthImageToLaserScan(SingleNode):
-    """The running node.
+    """The running depthimage_to_laserscan_node.
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+        LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
     """
 
     DEFAULT_NAME = "depthimage_to_laserscan"
@@ -55,7 +55,7 @@ class DepthImageToLaserScan(SingleNode):
         )
 
     def close(self) -> None:
-        """End it."""
+        """Close the node."""
         self._lazy.close()
         super().close()
 
@@ -91,10 +91,12 @@ class DepthImageToLaserScan(SingleNode):
 
 
 def depths_of(image: Any) -> NDArray[np.float64]:
-    """Return the depths of a sensor_msgs/msg/Image, shape (rows, columns), metres; NaN for pixels without one.
+    """Return the depths of a sensor_msgs/msg/Image in metres, of shape (rows, columns).
+
+    The value is NaN for pixels without a depth.
 
     Raises:
-        ValueError: it is not a depth image, or has too little data.
+        ValueError: the message is not a depth image, or has too little data.
     """
     kinds = {"16UC1": "u2", "mono16": "u2", "32FC1": "f4"}
     kind = kinds.get(image.encoding)

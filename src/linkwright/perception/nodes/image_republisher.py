@@ -1,9 +1,10 @@
 """republish of image_transport: converts images between the transports raw, compressed and compressedDepth.
 
 Sources: image_transport 3.1 (ROS 2 Humble) and later, compressed_image_transport, compressed_depth_image_transport. The
-transport of the input comes from the first word or the parameter ``in_transport``, that of the output likewise; without
-one there are all. The topics are ``in`` and ``out`` with the name of the transport behind them, and remappings of
-either form count: ``in:=/camera/image_raw``, as Jazzy takes them, and ``in/compressed:=...``, as Humble does.
+transport of the input is the first argument or the parameter ``in_transport``, that of the output the second argument
+or ``out_transport``. If none is given, all transports are used. The topics are ``in`` and ``out`` with the name of the
+transport appended. Remappings of either form apply: ``in:=/camera/image_raw``, as in Jazzy, and
+``in/compressed:=...``, as in Humble.
 """
 
 from __future__ import annotations
@@ -47,10 +48,10 @@ _PACKED: dict[str, Callable[[Any], Any]] = {
 
 
 class ImageRepublisher(SingleNode):
-    """The running republish.
+    """The running republish node.
 
     Raises:
-        LinkwrightError: there is no such transport (NODE433), or more words than two (NODE432).
+        LinkwrightError: there is no such transport (NODE433), or there are more than two arguments (NODE432).
     """
 
     DEFAULT_NAME = "image_republisher"
@@ -71,7 +72,7 @@ class ImageRepublisher(SingleNode):
         self._lazy = LazySubscriptions(graph, self._node, list(self._publishers.values()), self._subscribe)
 
     def close(self) -> None:
-        """End it."""
+        """Close the node."""
         self._lazy.close()
         super().close()
 
@@ -113,7 +114,7 @@ class ImageRepublisher(SingleNode):
 
 
 def topic_of(node: Node, base: str, transport: str) -> str:
-    """The name of a transport's topic: the remapped base with the transport behind it."""
+    """Return the name of a transport's topic: the remapped base with the transport appended."""
     if transport == "raw":
         return base
     resolved = node.resolve_topic_name(base)

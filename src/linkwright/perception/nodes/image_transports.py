@@ -1,4 +1,4 @@
-"""Converting images to messages of image_transport's plugins ``compressed`` and ``compressedDepth``, and back.
+"""Conversion between images and messages of image_transport's plugins ``compressed`` and ``compressedDepth``.
 
 Sources: compressed_image_transport (the format's text), compressed_depth_image_transport (the header, the quantization
 of depths in metres by ``depth_max`` 10 and ``depth_quantization`` 100).
@@ -31,7 +31,7 @@ def plain_image(message: Any) -> Any:
     """Decode a sensor_msgs/msg/CompressedImage of the transport ``compressed`` to a sensor_msgs/msg/Image.
 
     Raises:
-        BadImageError: it is neither JPEG nor PNG.
+        BadImageError: the data is neither JPEG nor PNG.
     """
     image = unpacked(message)
     if encoding_of(message).startswith("bgr") and image.encoding in ("rgb8", "rgba8"):
@@ -42,15 +42,15 @@ def plain_image(message: Any) -> Any:
 
 
 def compressed_depth(image: Any) -> Any | None:
-    """Encode a depth image for the transport ``compressedDepth``; None for other images.
+    """Encode a depth image for the transport ``compressedDepth``; return None for other images.
 
     Raises:
-        BadImageError: it has too little data.
+        BadImageError: the image has too little data.
         ModuleNotFoundError: Pillow is not installed.
     """
     if image.encoding not in (*_WHOLE, "32FC1"):
         return None
-    from PIL import Image  # not above: an extra
+    from PIL import Image  # Imported here because Pillow is an optional extra.
 
     try:
         depths = depths_of(image)
@@ -76,7 +76,7 @@ def plain_depth(message: Any) -> Any:
     """Decode a sensor_msgs/msg/CompressedImage of the transport ``compressedDepth`` to a sensor_msgs/msg/Image.
 
     Raises:
-        BadImageError: it is not such an image, or has no data.
+        BadImageError: the message is not such an image, or has no data.
     """
     return _message(unpacked_depth(message))
 

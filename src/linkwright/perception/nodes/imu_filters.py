@@ -37,7 +37,7 @@ class _Filter(Protocol):
 
 
 class _ImuFilter(SingleNode, ABC):
-    """The base of both: topics, transform, and the time between measurements."""
+    """The base of both nodes: topics, transform, and the time between measurements."""
 
     _USES_MAGNETOMETER: bool
     _PUBLISHES_TF: bool
@@ -73,17 +73,17 @@ class _ImuFilter(SingleNode, ABC):
 
     @abstractmethod
     def _make(self) -> _Filter:
-        """Make the filter from the rest of the parameters."""
+        """Create the filter from the remaining parameters."""
 
     def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
-        """Initialise the orientation; whether that succeeded."""
+        """Initialise the orientation, and return whether that succeeded."""
         return True
 
     def _published(self, orientation: Quaternion) -> Quaternion:
         return orientation
 
     def _felt(self, acceleration: Vector3) -> Vector3:
-        """The acceleration to be published."""
+        """Return the acceleration to publish, without gravity if that is to be removed."""
         return acceleration
 
     def _receive_magnetic(self, message: Any) -> None:
@@ -109,7 +109,7 @@ class _ImuFilter(SingleNode, ABC):
             return
         seconds = self._constant_s or (0.0 if self._last_ns is None else (stamp_ns - self._last_ns) / 1e9)
         self._last_ns = stamp_ns
-        if seconds >= 0.0:  # less after a jump of simulated time
+        if seconds >= 0.0:  # negative after simulated time jumped back
             self._filter.update(turn, acceleration, self._magnetic, seconds)
         self._publish(message, acceleration)
 
@@ -143,7 +143,7 @@ class MadgwickNode(_ImuFilter):
     """The running imu_filter_madgwick_node.
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+        LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
     """
 
     DEFAULT_NAME = "imu_filter_madgwick"
@@ -173,7 +173,7 @@ class MadgwickNode(_ImuFilter):
 
     def _receive(self, message: Any) -> None:
         if self._stateless:
-            self._last_ns = None  # each measurement is a first one
+            self._last_ns = None  # treat each measurement as the first one
         super()._receive(message)
 
     def _compensated(self, magnetic: Vector3) -> Vector3:
@@ -195,7 +195,7 @@ class ComplementaryNode(_ImuFilter):
     """The running complementary_filter_node.
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+        LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
     """
 
     DEFAULT_NAME = "complementary_filter_gain_node"

@@ -1,8 +1,8 @@
 """scan_to_scan_filter_chain of laser_filters: passes laser scans through a chain of filters.
 
-Source: laser_filters 2.0 (ROS 2 Humble): the topics, the qualities of service and the parameters ``filterN.name``,
-``filterN.type`` and ``filterN.params``. With ``tf_message_filter_target_frame`` a scan whose place in that frame is not
-known is dropped; it does not wait, so ``tf_message_filter_tolerance`` changes nothing.
+Source: laser_filters 2.0 (ROS 2 Humble): the topics, the QoS and the parameters ``filterN.name``, ``filterN.type`` and
+``filterN.params``. With ``tf_message_filter_target_frame``, a scan whose transform to that frame is unknown is dropped
+without waiting, so ``tf_message_filter_tolerance`` has no effect.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ _DEPTH = 1000
 
 
 class ScanToScanFilterChain(SingleNode):
-    """The running node.
+    """The running scan_to_scan_filter_chain node.
 
     Raises:
-        LinkwrightError: the chain names a filter that is not there (NODE451), which lacks a parameter (NODE452) or
-            cannot have its value (NODE433).
+        LinkwrightError: a filter of the chain does not exist (NODE451), lacks a parameter (NODE452), or has a parameter
+            with an invalid value (NODE433).
     """
 
     DEFAULT_NAME = "scan_to_scan_filter_chain"
@@ -48,7 +48,7 @@ class ScanToScanFilterChain(SingleNode):
         with starting(node):
             self._chain = read_chain(node)
             self._target: str = node.declare_parameter("tf_message_filter_target_frame", "").value
-            node.declare_parameter("tf_message_filter_tolerance", 0.03)  # of waiting, which is not done
+            node.declare_parameter("tf_message_filter_tolerance", 0.03)  # No effect: scans do not wait for transforms.
             is_lazy = node.declare_parameter("lazy_subscription", False).value
             log_unknown(node)
         self._poses = FramePoses(node, "Dropping Scan: Transform unavailable")
@@ -63,7 +63,7 @@ class ScanToScanFilterChain(SingleNode):
             subscribe()
 
     def close(self) -> None:
-        """End it."""
+        """Close the node."""
         if self._lazy is not None:
             self._lazy.close()
         super().close()
@@ -83,7 +83,7 @@ class ScanToScanFilterChain(SingleNode):
 
 
 def scan_of(message: Any) -> Scan:
-    """Convert a sensor_msgs/msg/LaserScan to a scan with arrays of its own."""
+    """Convert a sensor_msgs/msg/LaserScan to a scan with its own arrays."""
     return Scan(
         ranges=np.array(message.ranges, dtype=np.float32),
         intensities=np.array(message.intensities, dtype=np.float32),
@@ -110,7 +110,9 @@ def message_of(scan: Scan, scan_time: float) -> Any:
 
 
 def read_chain(node: Node) -> list[ScanFilter]:
-    """Declare the parameters of a chain, ``filter1.type`` and so on up to the first missing number.
+    """Create the filters of a chain from its parameters.
+
+    The parameters are declared from ``filter1.type`` up to the first missing number.
 
     Raises:
         LinkwrightError: see `ScanToScanFilterChain`.
@@ -163,7 +165,10 @@ def _filter(node: Node, prefix: str, tree: dict[str, Any]) -> ScanFilter:
 
 
 def _converted(name: str, value: Any, kind: Any) -> Any:
-    """Return a value in the type of its field. An integer is accepted as a float, and 0 and 1 as booleans."""
+    """Convert a value to the type of its field.
+
+    An integer is accepted as a float, and 0 and 1 as booleans.
+    """
     if kind is float and isinstance(value, int | float) and not isinstance(value, bool):
         return float(value)
     if kind is bool and value in (True, False):

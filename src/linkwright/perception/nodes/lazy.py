@@ -9,7 +9,7 @@ from linkwright.graph import Graph, Node, Publisher, Subscription
 
 
 class LazySubscriptions:
-    """Opens subscriptions with the first subscriber of some publishers, and closes them with the last.
+    """Opens subscriptions while any of some publishers has a subscriber.
 
     Args:
         graph: the graph, which reports changes.

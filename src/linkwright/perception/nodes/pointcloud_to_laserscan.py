@@ -1,7 +1,7 @@
-"""pointcloud_to_laserscan_node and laserscan_to_pointcloud_node: conversion between clouds and laser scans.
+"""pointcloud_to_laserscan_node and laserscan_to_pointcloud_node.
 
-Source: pointcloud_to_laserscan 2.0 (ROS 2 Humble). A message whose place in the target frame is not known is left out;
-it does not wait.
+Source: pointcloud_to_laserscan 2.0 (ROS 2 Humble). A message whose transform to the target frame is unknown is dropped
+without waiting.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _TINY = float(np.finfo(np.float64).tiny)
 
 
 class _Converter(SingleNode, ABC):
-    """The base of both: a target frame, two topics, and work only while the output has a subscriber."""
+    """The base of both nodes: a target frame, two topics, and work only while the output has a subscriber."""
 
     INPUT_TYPE: str
     OUTPUT_TYPE: str
@@ -41,7 +41,7 @@ class _Converter(SingleNode, ABC):
         node = self._node
         with starting(node):
             self._target: str = node.declare_parameter("target_frame", "").value
-            node.declare_parameter("transform_tolerance", 0.01)  # lookups never wait
+            node.declare_parameter("transform_tolerance", 0.01)  # Lookups never wait.
             depth = int(positive(node, "queue_size", node.declare_parameter("queue_size", _QUEUE).value))
             source, result = self._declare()
             log_unknown(node)
@@ -56,17 +56,17 @@ class _Converter(SingleNode, ABC):
         )
 
     def close(self) -> None:
-        """End it."""
+        """Close the node."""
         self._lazy.close()
         super().close()
 
     @abstractmethod
     def _declare(self) -> tuple[str, str]:
-        """Declare the rest of the parameters; returns the topics of input and output."""
+        """Declare the remaining parameters, and return the topics of input and output."""
 
     @abstractmethod
     def _receive(self, message: Any) -> None:
-        """Convert a message of the input to one of the output."""
+        """Convert an input message to an output message."""
 
     def _placed(self, points: NDArray[np.float64], header: Any) -> NDArray[np.float64] | None:
         """Transform points to the target frame; None if there is no transform."""
@@ -83,7 +83,7 @@ class PointCloudToLaserScan(_Converter):
     """The running pointcloud_to_laserscan_node.
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+        LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
     """
 
     DEFAULT_NAME = "pointcloud_to_laserscan"
@@ -131,7 +131,7 @@ class LaserScanToPointCloud(_Converter):
     """The running laserscan_to_pointcloud_node.
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+        LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
     """
 
     DEFAULT_NAME = "laserscan_to_pointcloud"
@@ -155,7 +155,10 @@ class LaserScanToPointCloud(_Converter):
 
 
 def points_of(cloud: Any) -> NDArray[np.float64] | None:
-    """Return the points of a sensor_msgs/msg/PointCloud2, shape (n, 3); None if it has no coordinates."""
+    """Return the points of a sensor_msgs/msg/PointCloud2, of shape (n, 3).
+
+    Returns None if it has no coordinates.
+    """
     fields = {field.name: field for field in cloud.fields}
     count = cloud.width * cloud.height
     data = np.frombuffer(bytes(cloud.data), np.uint8)
@@ -183,7 +186,7 @@ def points_of(cloud: Any) -> NDArray[np.float64] | None:
 
 
 def _cloud(columns: list[tuple[str, NDArray[Any]]], places: NDArray[np.int32], frame: str, stamp: Any) -> Any:
-    """A cloud of float32 fields, and ``index``, that of the ray, as laser_geometry makes it."""
+    """Return a point cloud of float32 fields and the ray's ``index``, as laser_geometry creates it."""
     field = get_message("sensor_msgs/msg/PointField")
     message = get_message("sensor_msgs/msg/PointCloud2")()
     message.header.stamp, message.header.frame_id = stamp, frame

@@ -1,1 +1,1 @@
-"""Filters of laser scans, by the names and parameters of laser_filters. Arithmetic without ROS."""
+"""Filters of laser scans, with the names and parameters of laser_filters, independent of ROS."""

@@ -1,4 +1,4 @@
-"""Filters that compare neighbouring points: shadows at edges, and speckles."""
+"""Filters that compare neighbouring points to find shadows at edges, and speckles."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from linkwright.perception.scans.scan import Flags, Lookup, Scan, ScanFilter, cl
 
 @dataclass(slots=True)
 class ScanShadowsFilter(ScanFilter):
-    """``ScanShadowsFilter``: removes points behind an edge, which the beam half hits and half misses.
+    """``ScanShadowsFilter``: removes points behind an edge.
 
-    Where the line through a point and one beside it is nearly along the ray, by less than ``min_angle`` or more than
-    ``max_angle`` degrees, the ``neighbors`` of the point that are further away are shadows.
+    There the beam is split between foreground and background.
+
+    If the line through two points of the window is nearly parallel to the ray (an angle below ``min_angle`` or above
+    ``max_angle`` degrees), those of the ``neighbors`` of the first point that are farther away are removed as shadows.
     """
 
     min_angle: float
@@ -50,7 +52,7 @@ class ScanShadowsFilter(ScanFilter):
             if shift:
                 here, there = _pairs(len(ranges), shift)
                 angle = shift * increment
-                with np.errstate(all="ignore"):  # missing measurements are NaN or infinite
+                with np.errstate(all="ignore"):  # Missing measurements are NaN or infinite.
                     across = ranges[there] * abs(np.sin(angle))
                     slope = across / (ranges[here] - ranges[there] * np.cos(angle))
                 edges[here] |= (slope < least) & (slope > most)
@@ -59,10 +61,11 @@ class ScanShadowsFilter(ScanFilter):
 
 @dataclass(slots=True)
 class SpeckleFilter(ScanFilter):
-    """``LaserScanSpeckleFilter``: removes points nearer than ``max_range`` without others beside them.
+    """``LaserScanSpeckleFilter``: removes isolated points nearer than ``max_range``.
 
-    With ``filter_type`` 0 the ranges of ``filter_window`` rays must not differ, with 1 so many of the points around
-    must be near.
+    With ``filter_type`` 0, the ranges of ``filter_window`` consecutive rays must be similar for the points to be kept.
+    With
+    1, that many of the surrounding points must be near.
     """
 
     filter_type: int = 0
@@ -113,7 +116,7 @@ class SpeckleFilter(ScanFilter):
 
 
 def _pairs(count: int, shift: int) -> tuple[slice, slice]:
-    """All pairs of indices below a count that differ by a number."""
+    """Return slices that select all pairs of indices below a count that differ by a shift."""
     if abs(shift) >= count:
         return slice(0, 0), slice(0, 0)
     if shift >= 0:

@@ -1,4 +1,4 @@
-"""Filters by the positions of points: angles, sectors, boxes, polygons."""
+"""Filters by the positions of points: angles, sectors, boxes and polygons."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 @dataclass(slots=True)
 class AngularBoundsFilter(ScanFilter):
-    """``LaserScanAngularBoundsFilter``: keeps only the rays between two angles; the scan gets shorter."""
+    """``LaserScanAngularBoundsFilter``: keeps only the rays between two angles, which shortens the scan."""
 
     lower_angle: float = 0.0
     upper_angle: float = 0.0
@@ -72,7 +72,7 @@ class SectorFilter(ScanFilter):
 
 @dataclass(slots=True)
 class BoxFilter(ScanFilter):
-    """``LaserScanBoxFilter``: removes the points in a box of some frame, or, inverted, those outside of it."""
+    """``LaserScanBoxFilter``: removes the points in a box in a given frame, or, inverted, the points outside it."""
 
     box_frame: str
     min_x: float
@@ -107,7 +107,7 @@ class FootprintFilter(ScanFilter):
 
 @dataclass(slots=True)
 class PolygonFilter(ScanFilter):
-    """``LaserScanPolygonFilter``: removes the points above a polygon of some frame, or, inverted, all others."""
+    """``LaserScanPolygonFilter``: removes the points above a polygon in a given frame, or, inverted, all others."""
 
     polygon: str
     polygon_frame: str = "base_link"
@@ -122,7 +122,7 @@ class PolygonFilter(ScanFilter):
             hint = phrase("such as '[[0.2, 0.2], [0.2, -0.2], [-0.2, 0.0]]'")
             raise LinkwrightError(Diagnostic("NODE433", message, hint=hint))
         corners = np.array(numbers).reshape(-1, 2)
-        # Each coordinate is moved away from the origin, as costmaps pad footprints.
+        # Move each coordinate away from the origin, as costmaps pad footprints.
         self._corners = corners + np.sign(corners) * self.polygon_padding
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
@@ -133,7 +133,7 @@ class PolygonFilter(ScanFilter):
 
 
 def _beyond(scan: Scan, which: Flags) -> Scan:
-    """The scan with some ranges put beyond the greatest, and their intensities at 0."""
+    """Return the scan with some ranges set beyond the maximum, and their intensities set to 0."""
     if len(scan.intensities) == len(which):
         scan.intensities[which] = 0.0
     return cleared(scan, which, scan.range_max + 1.0)

@@ -1,4 +1,4 @@
-"""Laser scans from depth images and point clouds, and clouds from scans."""
+"""Conversion of depth images and point clouds to laser scans, and of scans to point clouds."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Rays:
-    """The rays of a scan to be made: angles in rad, ranges in metres."""
+    """The rays of a scan to compute: angles in rad, ranges in metres."""
 
     angle_min: float
     angle_max: float
@@ -27,7 +27,10 @@ class Rays:
 
 @dataclass(frozen=True, slots=True)
 class Pinhole:
-    """A camera without distortion: focal length and centre in pixels, along the columns, and the row of the centre."""
+    """A camera without distortion.
+
+    The focal length and the centre's column and row are in pixels; the focal length is the one along the columns.
+    """
 
     focal_length: float
     centre_column: float
@@ -40,15 +43,15 @@ def scan_of_depths(
     """Return a laser scan from the rows around the centre of a depth image.
 
     Args:
-        depths: shape (rows, columns), metres along the view; NaN or infinite where there is none.
-        camera: that of the image.
-        height: the number of rows that count.
-        range_min: shorter ranges are left out.
-        range_max: longer ranges are left out.
+        depths: shape (rows, columns), metres along the optical axis; NaN or infinite where there is none.
+        camera: the camera of the image.
+        height: the number of rows to use.
+        range_min: shorter ranges are ignored.
+        range_max: longer ranges are ignored.
 
     Returns:
-        The ranges from right to left, shape (columns,): the nearest of each ray; for a ray without one, infinite if the
-        image has infinite values there, else NaN. And the angles of the rays.
+        The ranges from right to left, shape (columns,), and the angles of the rays. Each range is the nearest of its
+        column; if there is none, it is infinite if the image has infinite values there, else NaN.
 
     Raises:
         ValueError: the rows are not all in the image.
@@ -79,17 +82,17 @@ def scan_of_depths(
 def scan_of_points(
     points: NDArray[np.float64], rays: Rays, min_height: float, max_height: float, nothing: float
 ) -> Floats:
-    """A laser scan from a point cloud: the nearest point of each ray.
+    """Return a laser scan from a point cloud: the nearest point of each ray.
 
     Args:
-        points: shape (n, 3), metres in the frame of the laser; those that are not finite are left out.
-        rays: those of the scan.
-        min_height: lower points are left out.
-        max_height: higher points are left out.
-        nothing: the range where there is no point.
+        points: shape (n, 3), metres in the frame of the laser; points that are not finite are ignored.
+        rays: the rays of the scan.
+        min_height: lower points are ignored.
+        max_height: higher points are ignored.
+        nothing: the range of rays without a point.
 
     Returns:
-        Shape (rays,).
+        The ranges, shape (rays,).
 
     Source: pointcloud_to_laserscan.
     """
@@ -107,10 +110,10 @@ def scan_of_points(
 
 
 def points_of_scan(scan: Scan) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-    """The points of a scan in its frame, and the index of the range of each.
+    """Return the points of a scan in its frame, and the index of the range of each.
 
     Returns:
-        Arrays of shape (n, 3), metres, and (n,). Ranges that were not measured have no point.
+        Points, shape (n, 3), in metres, and indices, shape (n,). Ranges that were not measured have no point.
 
     Source: laser_geometry.
     """

@@ -1,7 +1,7 @@
 """Laser scans, and the base class of their filters.
 
-A filter is a dataclass: its fields are its parameters, those without a default must be given. Those of others are found
-through the entry points ``linkwright.laser_filters``, by the name that parameter files give as ``type``.
+A filter is a dataclass whose fields are its parameters; fields without a default are required. Filters of other
+packages are found by the entry points ``linkwright.laser_filters``, by the name that parameter files give as ``type``.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ class Scan:
 
     Attributes:
         ranges: shape (n,), metres; missing measurements are NaN, infinite, or outside the limits.
-        intensities: shape (n,), or (0,) where there are none.
-        angle_min: of the first range, rad.
-        angle_max: of the last one, rad.
-        angle_increment: from one to the next, rad.
-        range_min: the least that counts, metres.
-        range_max: the most that counts, metres.
-        time_increment: from one range to the next, seconds.
-        stamp_ns: when the first one was measured.
-        frame: x is forward, z upward.
+        intensities: shape (n,), or (0,) if there are none.
+        angle_min: the angle of the first range, rad.
+        angle_max: the angle of the last range, rad.
+        angle_increment: the angle between successive ranges, rad.
+        range_min: the minimum valid range, metres.
+        range_max: the maximum valid range, metres.
+        time_increment: the time between successive ranges, seconds.
+        stamp_ns: the time of the first range.
+        frame: the frame of the scan; x points forward, z upward.
     """
 
     ranges: Floats
@@ -53,7 +53,7 @@ class Scan:
 
     @property
     def angles(self) -> NDArray[np.float64]:
-        """Shape (n,), rad."""
+        """The angles of the rays; shape (n,), rad."""
         return np.asarray(self.angle_min + np.arange(len(self.ranges)) * self.angle_increment, dtype=np.float64)
 
     @property
@@ -62,9 +62,11 @@ class Scan:
         return (self.ranges >= self.range_min) & (self.ranges <= self.range_max)
 
     def points(self, frame: str, lookup: Lookup) -> NDArray[np.float64] | None:
-        """The end points of the rays in a frame, shape (n, 3); None where the transform is not known.
+        """Return the end points of the rays in a frame, shape (n, 3).
 
-        Those of ranges that were not measured mean nothing.
+        Returns None if the transform is unknown.
+
+        The points of ranges that were not measured are meaningless.
         """
         reach = np.where(self.measured, self.ranges, 0.0)
         angles = self.angles
@@ -80,14 +82,14 @@ class Scan:
 
 
 class ScanFilter(ABC):
-    """Filters scans."""
+    """The base class of scan filters."""
 
     @abstractmethod
     def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
-        """Filter a scan, which may be changed in place; None where it is to be dropped."""
+        """Filter a scan, which may be changed in place; return None to drop it."""
 
 
 def cleared(scan: Scan, which: Flags, value: float = float("nan")) -> Scan:
-    """The scan with some ranges, shape (n,), replaced."""
+    """Return the scan with some ranges, shape (n,), replaced."""
     scan.ranges[which] = value
     return scan

@@ -1,4 +1,4 @@
-"""Filters by the values of a scan: ranges, intensities, indices, and those of the scans before."""
+"""Filters by the values of a scan: ranges, intensities, indices, and values of previous scans."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class IntensityFilter(ScanFilter):
 class InterpolationFilter(ScanFilter):
     """``InterpolationFilter``: fills gaps with the mean of the neighbouring ranges.
 
-    At an end of the scan the other side counts as just below ``range_max``.
+    A missing neighbour at an end of the scan counts as just below ``range_max``.
     """
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
@@ -77,7 +77,7 @@ class InterpolationFilter(ScanFilter):
 
 @dataclass(slots=True)
 class MaskFilter(ScanFilter):
-    """``LaserScanMaskFilter``: removes the ranges at some indices, for each frame others."""
+    """``LaserScanMaskFilter``: removes the ranges at given indices, which depend on the scan's frame."""
 
     masks: Mapping[str, Any]
 
@@ -89,7 +89,7 @@ class MaskFilter(ScanFilter):
 
 @dataclass(slots=True)
 class ArrayFilter(ScanFilter):
-    """``LaserArrayFilter``: the median or mean of the last scans, of ranges and of intensities."""
+    """``LaserArrayFilter``: computes the median or mean of the last scans' ranges and intensities."""
 
     range_filter_chain: Mapping[str, Any] = field(default_factory=dict)
     intensity_filter_chain: Mapping[str, Any] = field(default_factory=dict)
@@ -109,7 +109,7 @@ class ArrayFilter(ScanFilter):
 
 
 class _Window:
-    """The last lists of numbers, and their median or mean."""
+    """A window of the last lists of numbers, and their median or mean."""
 
     def __init__(self, count: int, *, median: bool) -> None:
         self._median = median
@@ -119,9 +119,9 @@ class _Window:
         if self._last and len(self._last[0]) != len(values):
             self._last.clear()
         self._last.append(values.copy())
-        several = np.sort(np.stack(self._last), axis=0)  # NaN is last
+        several = np.sort(np.stack(self._last), axis=0)  # NaN is sorted to the end.
         if self._median:
-            # Of an even number, the greater of the two middle values, as in the package filters.
+            # For an even count, use the larger of the two middle values, as the package filters does.
             chosen: Floats = several[len(several) // 2]
             return chosen.copy()
         return np.asarray(several.mean(axis=0), dtype=np.float32)
