@@ -1,6 +1,7 @@
 """XML languages as data: tables of elements and attributes for reading, writing and explaining.
 
-A language is a tree of `ElementRule` objects. This room knows no language itself; URDF's is `linkwright.urdf.schema`.
+A language is a tree of `ElementRule` objects. This package contains no language itself; URDF's is
+`linkwright.urdf.schema`.
 """
 
 from linkwright.schema.describing import describe_attribute, describe_element

@@ -1,4 +1,4 @@
-"""Rules in words, for hover texts and documentation."""
+"""Descriptions of rules in words, for hover texts and documentation."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from linkwright.schema.rules import AttributeRule, ElementRule, Version
 
 
 def describe_element(rule: ElementRule) -> Phrase:
-    """Return an element in Markdown: its meaning, its attributes and its children."""
+    """Describe an element in Markdown: its meaning, its attributes and its children."""
     tag = joined([f"`<{rule.tag}>`", *_since(rule.since)])
     head = phrase("{name}: {meaning}", name=tag, meaning=term(rule.meaning))
     lines = [phrase("- {line}", line=describe_attribute(attribute)) for attribute in rule.attributes]
@@ -30,7 +30,7 @@ def describe_element(rule: ElementRule) -> Phrase:
 
 
 def describe_attribute(attribute: AttributeRule) -> Phrase:
-    """An attribute in one line of Markdown: meaning, type, unit, default, versions."""
+    """Describe an attribute in one line of Markdown: meaning, type, unit, default, versions."""
     return phrase(
         "{name}: {meaning} ({facts})",
         name=f"`{attribute.name}`",
@@ -40,7 +40,7 @@ def describe_attribute(attribute: AttributeRule) -> Phrase:
 
 
 def _describe_value(rule: ElementRule) -> Phrase:
-    """Return an element with one value in one line of Markdown, like an attribute."""
+    """Describe an element with a single value in one line of Markdown, like an attribute."""
     assert rule.text is not None
     facts = _facts(rule.text)
     if rule.many:

@@ -1,12 +1,12 @@
-"""Reading elements by their rules; the functions for it are generated and compiled once for each version.
+"""Reading of elements by their rules.
 
-An element with nothing but attributes is read once for each text it has: ``<origin xyz="0 0 0"/>`` comes hundreds of
-times in a robot. Readers are functions written from the rules, as Jinja writes them from templates (`source`), because
-loops over tables take half as long again as what one would write by hand.
+The functions for it are generated and compiled once for each version.
 
-Generate the source of functions that read elements, from their rules.
+An element that has only attributes is read once for each set of values: ``<origin xyz="0 0 0"/>`` occurs hundreds of
+times in a robot. Readers are functions generated from the rules, as Jinja generates them from templates, because loops
+over tables take half as long again as code written by hand.
 
-For ``<mass>`` of URDF it is, except for the names of the values:
+Except for the names of the values, the source generated for ``<mass>`` of URDF is:
 
     def read(element, owner, report):
         given = element.attributes
@@ -17,7 +17,7 @@ For ``<mass>`` of URDF it is, except for the names of the values:
             return explain(element, owner, report)
         ...
 
-and for ``<inertial>``, which has children, it begins like this:
+and for ``<inertial>``, which has children, it begins as follows:
 
     def read(element, owner, report):
         given = element.attributes
@@ -51,7 +51,10 @@ _REMEMBERED = 4096
 
 
 def is_remembered(rule: ElementRule) -> bool:
-    """Return whether elements of a rule are cached by their attributes: if they only have these, and not just names."""
+    """Return whether elements of a rule are cached by their attributes.
+
+    The elements must have only attributes, not all of which are plain texts.
+    """
     only_attributes = not (rule.children or rule.nests or rule.located or rule.text is not None)
     return only_attributes and any(attribute.type.read is not str for attribute in rule.attributes)
 
@@ -59,7 +62,7 @@ def is_remembered(rule: ElementRule) -> bool:
 def flat_source(rule: ElementRule, version: Version) -> str:
     """Return the source of ``read(element, owner, report)`` for elements without children.
 
-    An element with a mistake is left to ``explain``; the result of one without findings is stored in ``memory``.
+    An element with an error is passed to ``explain``; a result without findings is stored in ``memory``.
     """
     lines = ["given = element.attributes", "before = report.count"]
     values = []
@@ -83,7 +86,7 @@ def flat_source(rule: ElementRule, version: Version) -> str:
 
 
 def nested_source(rule: ElementRule, version: Version) -> str:
-    """The text of ``read(element, owner, report)`` for elements of a rule in files of a version."""
+    """Return the source of ``read(element, owner, report)`` for elements with children in files of a version."""
     attributes = [(f"attribute{index}", attribute) for index, attribute in enumerate(rule.attributes)]
     children = [(f"child{index}", child) for index, child in enumerate(rule.children) if child.since <= version]
     lines = ["given = element.attributes"]
@@ -144,7 +147,7 @@ def _child(name: str, child: ElementRule) -> Iterator[str]:
 
 
 def _unreadable(rule: ElementRule, attributes: list[str], children: list[tuple[str, ElementRule]]) -> Iterator[str]:
-    """The generated code for an element with unreadable parts."""
+    """Yield the generated code for an element with unreadable parts."""
     singles = [*attributes, *(name for name, child in children if not child.many)]
     if rule.keeps:
         for name in singles:
@@ -159,7 +162,7 @@ def _unreadable(rule: ElementRule, attributes: list[str], children: list[tuple[s
 
 
 def _fields(name: str, child: ElementRule) -> Iterator[str]:
-    """The generated arguments for a child."""
+    """Yield the generated arguments for a child."""
     if child.is_inline:
         for place, attribute in enumerate(child.values):
             yield f"{attribute.target}=({name}_absent if {name} is None else {name})[{place}]"
@@ -176,16 +179,16 @@ UNREADABLE: Final = type("Unreadable", (), {"__repr__": lambda _: "UNREADABLE"})
 class Report(Protocol):
     """Receives the findings of a reader, and formulates them for one XML language.
 
-    `owner` is the element that messages name an element's place by: the link or joint that it is part of.
+    `owner` is the element by which messages describe an element's place: the link or joint that it is part of.
 
     Attributes:
-        count: how many findings there are.
+        count: the number of findings.
     """
 
     count: int
 
     def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """Report that a required attribute, or the text inside, is missing."""
+        """Report that a required attribute, or the text inside the element, is missing."""
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
         """Report a malformed attribute or text, and return the value to continue with, or `UNREADABLE`."""
@@ -214,10 +217,10 @@ class ElementReader(NamedTuple):
     """A compiled rule.
 
     Attributes:
-        read: the object of an element, or `UNREADABLE`; of an element whose values are fields of the object around it,
-            the tuple of them.
-        memory: names and values of attributes -> what `read` makes of them, where it finds nothing to report; always
-            empty for elements with a text or children.
+        read: returns the object of an element, or `UNREADABLE`; for an element whose values are fields of the parent's
+            object, the tuple of these values.
+        memory: names and values of attributes -> the result of `read`, if it has nothing to report; always empty for
+            elements with a text or children.
     """
 
     read: Read
@@ -228,14 +231,14 @@ _memories: list[_Memory] = []
 
 
 def forget() -> None:
-    """Clear the memory of readers; for benchmarks."""
+    """Clear the cached results of readers; for benchmarks."""
     for memory in _memories:
         memory.clear()
 
 
 @cache
 def reader_of(rule: ElementRule, version: Version) -> ElementReader:
-    """The reader for elements of a rule in files of a version."""
+    """Return the reader for elements of a rule in files of a version."""
     if rule.choice:
         return _choice_reader(rule, version)
     if rule.children or rule.nests or rule.located:
@@ -244,7 +247,7 @@ def reader_of(rule: ElementRule, version: Version) -> ElementReader:
 
 
 def _flat_reader(rule: ElementRule, version: Version) -> ElementReader:
-    """Make the reader of elements with attributes or a text, and no children."""
+    """Return the reader of elements with attributes or a text, and no children."""
     values = rule.values
     make, check = rule.make, rule.check
 
@@ -265,7 +268,7 @@ def _flat_reader(rule: ElementRule, version: Version) -> ElementReader:
 
 
 def _choice_reader(rule: ElementRule, version: Version) -> ElementReader:
-    """Make the reader of elements whose first child decides their kind."""
+    """Return the reader of elements whose first child decides their kind."""
     table = {child.tag: child for child in rule.children if child.since <= version}
     check = rule.check
 
@@ -287,7 +290,7 @@ def _choice_reader(rule: ElementRule, version: Version) -> ElementReader:
 
 
 def _nested_reader(rule: ElementRule, version: Version) -> ElementReader:
-    """Make the reader of elements with children, or whose object has its element."""
+    """Return the reader of elements with children, or whose object stores its element."""
     scope = _scope(rule, version)
     for index, child in enumerate(rule.children):
         if child.since <= version:
@@ -298,7 +301,10 @@ def _nested_reader(rule: ElementRule, version: Version) -> ElementReader:
 
 
 def _compiled_later(name: str, rule: ElementRule, version: Version, scope: dict[str, Any]) -> Read:
-    """Return a reader that replaces itself at the first such element: most robots use half of the language."""
+    """Return a reader that compiles and replaces itself at the first element.
+
+    Most robots use only half of the language.
+    """
 
     def read(*arguments: Any) -> Any:
         scope[f"{name}_read"], scope[f"{name}_memory"] = reader_of(rule, version)
@@ -308,7 +314,7 @@ def _compiled_later(name: str, rule: ElementRule, version: Version, scope: dict[
 
 
 def _scope(rule: ElementRule, version: Version) -> dict[str, Any]:
-    """The names that the generated source of a reader uses."""
+    """Return the names used by the generated source of a reader."""
     scope: dict[str, Any] = {
         "Element": Element,
         "UNREADABLE": UNREADABLE,
@@ -334,7 +340,7 @@ def _compiled(source: str, rule: ElementRule, scope: dict[str, Any]) -> Read:
 def _read_value(
     element: Element, rule: ElementRule, attribute: AttributeRule, version: Version, owner: Element, report: Report
 ) -> Any:
-    """Return one value of an element, and report its mistakes."""
+    """Return one value of an element, and report its errors."""
     text = element.attributes.get(attribute.name) if attribute is not rule.text else element.text().strip() or None
     if attribute.since > version:
         if text is not None:

@@ -17,7 +17,7 @@ class ValueType:
 
     Attributes:
         name: the name in messages and documentation: ``3 numbers``.
-        read: parses a text; raises `ValueError` if it has no such value.
+        read: parses a text; raises `ValueError` if the text is not a valid value.
         write: formats a value; returns None for a value without a text.
     """
 
@@ -28,21 +28,21 @@ class ValueType:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AttributeRule:
-    """One attribute, or the text inside an element.
+    """The rule of an attribute, or of the text inside an element.
 
     Attributes:
-        name: as written in the file.
-        type: what its value must be.
+        name: the name as written in the file.
+        type: the type of the value.
         meaning: one phrase for hints, hover texts and documentation.
-        unit: SI unit, or an empty string.
+        unit: the SI unit, or an empty string.
         required: whether the element cannot be read without it.
         default: the value of an absent attribute, as text; None if there is none.
         since: the version that added it; files of older versions ignore it.
         until: the version that made a required attribute optional, or None.
         later_default: a version, and the default from that version on.
         usual: whether it is usually written although it is not required.
-        field: the field of the object for its value; the attribute's name by default.
-        get: returns the value to write from the object, if that is not simply its field.
+        field: the object's field for the value; the attribute's name by default.
+        get: returns the value to write from the object, if that is not simply the field.
     """
 
     name: str
@@ -60,19 +60,19 @@ class AttributeRule:
 
     @property
     def target(self) -> str:
-        """The field of its value."""
+        """The name of the object's field for the attribute's value."""
         return self.field or self.name
 
     def value_in(self, instance: Any) -> Any:
-        """Return the value of an object for it."""
+        """Return the attribute's value in an object."""
         return getattr(instance, self.target) if self.get is None else self.get(instance)
 
     def is_required(self, version: Version) -> bool:
-        """Return whether a file of this version must give it."""
+        """Return whether files of this version must contain the attribute."""
         return self.required and (self.until is None or version < self.until)
 
     def absent_value(self, version: Version) -> Any:
-        """Its default in this version of the language; None if there is none."""
+        """Return the default in this version of the language; None if there is none."""
         if self.later_default is not None and version >= self.later_default[0]:
             return self.later_default[1]
         return None if self.default is None else self.type.read(self.default)
@@ -80,7 +80,7 @@ class AttributeRule:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ElementRule:
-    """One element in its place: its attributes, its children, and the object that it is read into.
+    """The rule of an element in its place: its attributes, its children, and the object that it is read into.
 
     Attributes:
         tag: the element's name.
@@ -90,20 +90,21 @@ class ElementRule:
         attributes: the rules of its attributes, in the order of the documentation.
         children: the rules of the children that are read, in the order in which they are written.
         required: whether the parent element cannot be read without it.
-        many: whether all elements of the tag count; otherwise only the first is read.
+        many: whether all elements with the tag are read; otherwise only the first is.
         since: the version that added it.
-        text: the rule of the text inside, for an element with its value there.
+        text: the rule of the text inside, for an element whose value is its text.
         choice: whether the first child selects one of several kinds, and its object is this element's object.
-        make: makes the object, which must not be false, from keyword arguments: the fields of attributes and children;
+        make: creates the object, which must not be false, from keyword arguments: the fields of attributes and
+            children;
             None if they are fields of the parent's object, as for ``<mass value="1"/>``.
         located: whether `make` takes the element, as ``element``.
         field: the field of the parent's object; the tag's name by default.
         get: returns the value to write from the parent's object, if that is not simply its field.
         default: the default of an absent element: an object, or the tuple of values for the fields of the parent's
             object.
-        owns: whether messages name the places inside it by it, as a colour by its material.
-        keeps: whether an element with unreadable parts still makes an object, with defaults for these parts; among the
-            parts that may occur many times, an unreadable one is `UNREADABLE`.
+        owns: whether messages describe places inside the element by this element, such as a colour by its material.
+        keeps: whether an element with unreadable parts still results in an object, with defaults for these parts; an
+            unreadable part that may occur many times is `UNREADABLE`.
         nests: whether it may contain elements of its own kind.
         check: checks a value, with its element, its owner and the report; returns the value to use instead, or
             `UNREADABLE`.
@@ -137,24 +138,24 @@ class ElementRule:
 
     @property
     def target(self) -> str:
-        """The field of the parent's object for its own object."""
+        """The name of the parent's field for the element's object."""
         return self.field or self.tag
 
     @property
     def is_inline(self) -> bool:
-        """Whether its values are fields of the parent's object."""
+        """Whether the element's values are fields of the parent's object."""
         return self.make is None and not self.choice
 
     @property
     def is_value(self) -> bool:
-        """Whether its only value is the text inside, as for ``<mass>2.5</mass>`` of SDF."""
+        """Whether the element's only value is the text inside, as for ``<mass>2.5</mass>`` of SDF."""
         return self.text is not None and not (self.attributes or self.children)
 
     def value_in(self, instance: Any) -> Any:
-        """Return the object, or objects, of the parent's object for this element."""
+        """Return the object, or objects, for this element from the parent's object."""
         return getattr(instance, self.target) if self.get is None else self.get(instance)
 
     @property
     def values(self) -> tuple[AttributeRule, ...]:
-        """Its own values: its attributes, and the text inside."""
+        """The rules of the element's own values: its attributes, and the text inside."""
         return self.attributes if self.text is None else (*self.attributes, self.text)

@@ -1,4 +1,4 @@
-"""Writing objects as elements, by the rules that they are read by."""
+"""Writing of objects as elements, by the same rules by which they are read."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ Completion = Callable[[Element, ElementRule, Any], None]
 
 
 def write_element(rule: ElementRule, instance: Any, complete: Completion | None = None) -> Element:
-    """Return the element of an object, which reads back as an equal object.
+    """Convert an object to an element, which reads back as an equal object.
 
     Default values are omitted, except those that are usually written.
 
     Args:
         rule: the rule of the element.
         instance: the object, with a field for each attribute and child.
-        complete: called for each object that has an element of its own, with that element and its rule.
+        complete: called for each object that has its own element, with that element and its rule.
     """
     if rule.choice:
         chosen = next(child for child in rule.children if type(instance) is child.make)
