@@ -1,7 +1,9 @@
-"""A colcon plugin for ``ament_cmake`` packages without ament, which copies the files that a package installs.
+"""A colcon plugin for ``ament_cmake`` packages without ament.
 
-colcon finds the classes through the entry points of this distribution. Such a package gets its own type, for which the
-task is registered; if an ament_cmake is on the path, the plugin does nothing.
+It copies the files that a package installs.
+
+colcon finds the classes by the entry points of this distribution. Such a package gets a separate type, for which the
+task is registered; if ament_cmake is available, the plugin does nothing.
 """
 
 from __future__ import annotations
@@ -47,8 +49,9 @@ class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its ba
     async def build(self) -> int:
         """Copy the package's files and return the exit status.
 
-        An ``ament_cmake`` package is found through the same files as any other: its marker in the resource index, and
-        the scripts that put its prefix into the environment.
+        An ``ament_cmake`` package is found by the same files as any other package: its marker in the resource index,
+        and the
+        scripts that put its prefix into the environment.
         """
         args, package = self.context.args, self.context.pkg
         folder = Path(args.path)
@@ -73,7 +76,7 @@ class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its ba
             hooks += create_environment_hook(
                 "pythonpath", Path(args.install_base), package.name, "PYTHONPATH", _site(), mode="prepend"
             )
-        # Hooks in a shell's language call functions of ament; table hooks work with colcon, too.
+        # Hooks in a shell's language call functions of ament; ``.dsv`` hooks also work with colcon.
         hooks += [Path(hook) for hook in cmake.hooks if hook.endswith(".dsv")]
         create_environment_scripts(package, args, additional_hooks=hooks)
         return 0

@@ -1,4 +1,4 @@
-"""Hints on replacements for programs of ROS that are not available.
+"""Hints on replacements for ROS programs that are not available.
 
 ``python -m linkwright.shell.instead NAME`` prints a hint; shells run it for an unknown command.
 """
@@ -53,7 +53,7 @@ INSTEAD: dict[str, Phrase] = {
 
 
 def no_such_command(name: str, others: tuple[str, ...], otherwise: Phrase | None = None) -> LinkwrightError:
-    """Return the diagnostic SHELL101 about an unknown command, with a hint.
+    """Return the error SHELL101 for an unknown command, with a hint.
 
     Args:
         name: the command as typed.

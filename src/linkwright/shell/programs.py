@@ -1,4 +1,4 @@
-"""The commands of ROS 2 as small programs in a separate folder, for the end of the search path."""
+"""The commands of ROS 2 as small programs in a separate folder, which is appended to the search path."""
 
 from __future__ import annotations
 
@@ -73,5 +73,5 @@ def offer_ros_variables(environment: MutableMapping[str, str]) -> None:
         for name in (
             "GZ_SIM_RESOURCE_PATH",
             "LD_LIBRARY_PATH",
-        ):  # launch files append to them without checking that they exist
+        ):  # Launch files append to them without checking that they exist.
             environment.setdefault(name, "")

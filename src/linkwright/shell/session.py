@@ -1,4 +1,4 @@
-"""Run a shell, or one command, in an environment with the commands of ROS 2.
+"""Running a shell, or one command, in an environment with the commands of ROS 2.
 
 The folder of our programs is at the end of the search path, so that installed programs take precedence. Start-up files
 of shells (``~/.bashrc`` often sources a ROS 2) set the path again, so the shell reads them first and then our file.
@@ -92,7 +92,7 @@ def _interactive(scratch: Path, variables: dict[str, str], additions: Callable[[
         return [os.environ.get("COMSPEC", "cmd.exe")]
     shell = os.environ.get("SHELL") or "/bin/sh"
     kind = Path(shell).name
-    if kind in _STARTED_BY_A_FILE:  # our folder goes behind the entries of the user's own file
+    if kind in _STARTED_BY_A_FILE:  # Our folder is placed after the entries of the user's own file.
         parts = variables["PATH"].split(os.pathsep)
         variables["PATH"] = os.pathsep.join(part for part in parts if part != variables[MARK])
     if kind == "bash":
@@ -136,16 +136,18 @@ PS1="(linkwright) $PS1"
 
 
 def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
-    """Run the command to its end and forward signals, except Ctrl-C in a terminal, which reaches both.
+    """Run the command until it ends, and forward signals.
+
+    Ctrl-C in a terminal is not forwarded, because it reaches both processes.
 
     Without a terminal, the command is in its own process group, so that signals to ours do not reach it twice. Ctrl-C
-    must not become a KeyboardInterrupt here: one that is raised just after the end of the wait loses the exit status,
-    and `subprocess` returns 0 then.
+    must not become a KeyboardInterrupt here: if one is raised just after the wait ends, the exit status is lost, and
+    `subprocess` returns 0.
     """
     import signal
 
     child: subprocess.Popen[bytes] | None = None
-    early: list[int] = []  # signals that arrived during its start
+    early: list[int] = []  # signals that arrived while the command was starting
     alone = os.name == "posix" and not _has_terminal()
 
     def pass_on(number: int, _frame: object) -> None:
@@ -181,7 +183,10 @@ def _has_terminal() -> bool:
 
 
 def _detaching() -> Callable[[], None]:
-    """Return the pre-exec function: it leaves our process group, and on Linux ends the command if we are killed."""
+    """Return the pre-exec function of the command.
+
+    It leaves our process group and, on Linux, ends the command if we are killed.
+    """
     import ctypes
     import signal
 
