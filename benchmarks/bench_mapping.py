@@ -18,7 +18,7 @@ from tests.navigation.nodes import house
 from benchmarks.measure import Row
 from linkwright.geometry.single import rpy_from_quaternion
 from linkwright.navigation.nodes.slam_toolbox.nodes import AsyncSlamToolbox
-from linkwright.navigation.slam.poses import between, compose
+from linkwright.navigation.slam.poses import relative_pose, compose
 from linkwright.nodes import NodeOptions
 
 QUALITIES = {
@@ -64,8 +64,8 @@ def toured(scale: float, yaw_per_metre: float, noise: float) -> _Tour:
         house.drive(test, house.TOUR)
         here = test.robot_pose()
         true = np.array((here[0], here[1], rpy_from_quaternion(here[3:])[2]))
-        told = between(true, compose(toolbox._map_to_odom, drift.pose))
-        odometry = between(true, drift.pose)
+        told = relative_pose(true, compose(toolbox._map_to_odom, drift.pose))
+        odometry = relative_pose(true, drift.pose)
         occupied = house.occupied_of(toolbox.grid())
         near = occupied[house.distances(walls, occupied) < 0.2]
         return _Tour(

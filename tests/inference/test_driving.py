@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.geometry.single import Transform
 from linkwright.inference import Drive
-from linkwright.inference.applying import completed
+from linkwright.inference.applying import complete_description
 from linkwright.sdf.from_urdf import model_from_robot
 from linkwright.simulation.actuators import Motor
 from linkwright.simulation.simulation import Simulation
@@ -27,7 +27,7 @@ MOTOR = (20.0, 1.5)
 def standing(title: str) -> tuple[Simulation, Drive]:
     """A robot of the page on the ground, and its drive."""
     document, found = read_and_inferred(ROBOTS[title])
-    robot = read(completed(document, found)).robot
+    robot = read(complete_description(document, found)).robot
     assert robot is not None
     assert found.drive is not None
     simulation = simulated(GROUND)

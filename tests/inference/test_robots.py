@@ -9,7 +9,7 @@ import pytest
 from linkwright.descriptions import examine
 from linkwright.inertia import MeshLibrary
 from linkwright.inference import Inference, infer
-from linkwright.inference.applying import completed
+from linkwright.inference.applying import complete_description
 from linkwright.packages import PackageFinder
 from linkwright.xmltree import Document, write
 from tests.markdown import read_sections
@@ -56,7 +56,7 @@ def test_what_is_inferred_is_what_the_page_says(title, robot, expected):
 def test_a_completed_robot_lacks_nothing(robot):
     document, found = read_and_inferred(robot)
     before = write(document)
-    text = write(completed(document, found))
+    text = write(complete_description(document, found))
     assert write(document) == before, "the document that was read stays as it is"
     again = examine(text)
     assert not again.diagnostics
@@ -72,4 +72,4 @@ def test_a_completed_robot_lacks_nothing(robot):
 def test_what_is_added_has_a_place_in_the_users_file(robot):
     document, found = read_and_inferred(robot)
     assert all(diagnostic.span is not None and diagnostic.source is not None for diagnostic in found.diagnostics)
-    assert all(each.source is not None for each in completed(document, found).root.walk())
+    assert all(each.source is not None for each in complete_description(document, found).root.walk())

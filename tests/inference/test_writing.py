@@ -7,7 +7,7 @@ import pytest
 from linkwright.descriptions import examine, load
 from linkwright.inertia import MeshLibrary
 from linkwright.inference import infer
-from linkwright.inference.applying import completed
+from linkwright.inference.applying import complete_description
 from linkwright.inference.writing import write_inference
 from linkwright.packages import PackageFinder
 from linkwright.urdf import read
@@ -26,7 +26,7 @@ def write(tmp_path):
         description = examine(path)
         found = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
         written = write_inference(description.robot, found)
-        return written, read(completed(description.document, found)).robot, path.read_bytes().decode()
+        return written, read(complete_description(description.document, found)).robot, path.read_bytes().decode()
 
     return run
 

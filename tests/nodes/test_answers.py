@@ -4,7 +4,7 @@ import asyncio
 
 from linkwright.graph import Graph
 from linkwright.messages import get_service
-from linkwright.nodes.answers import is_served
+from linkwright.nodes.answers import wait_for_service
 
 TRIGGER = "std_srvs/srv/Trigger"
 
@@ -16,7 +16,7 @@ async def test_who_waits_for_a_service_may_be_ended_while_others_come_and_go() -
     graph = Graph()
     node = graph.create_node("waiting")
     client = node.create_client(get_service(TRIGGER), "answer")
-    waiting = loop.create_task(is_served(node, client, None))
+    waiting = loop.create_task(wait_for_service(node, client, None))
     await asyncio.sleep(0)
     graph.create_node("another").create_service(get_service(TRIGGER), "other", lambda _, answer: answer)
     waiting.cancel()

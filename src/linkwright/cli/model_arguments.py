@@ -33,7 +33,7 @@ def add_values(
 
 
 def add_second_model(parser: argparse.ArgumentParser) -> None:
-    """Declare `words`, for a second file and values for both files, and the option `against`."""
+    """Declare `words`, for a second file and values for both files, and the option `pair_with_commit`."""
     add_values(
         parser,
         values_help="a second file to compare FILE with, the new one, and NAME:=VALUE for <xacro:arg>",
@@ -63,7 +63,7 @@ def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
     """Return the two descriptions to compare; None if the command line does not name two.
 
     Args:
-        arguments: `file`, `words` and `against`.
+        arguments: `file`, `words` and `pair_with_commit`.
         stack: receives the resources to close.
 
     Raises:
@@ -71,7 +71,7 @@ def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
     """
     from pathlib import Path
 
-    from linkwright.descriptions.pairs import against, pair_of
+    from linkwright.descriptions.pairs import pair_of, pair_with_commit
 
     files = [word for word in arguments.words if names_file(word)]
     values = parse_assignments([word for word in arguments.words if not names_file(word)])
@@ -79,7 +79,7 @@ def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
         return None
     first = Path(arguments.file)
     if arguments.against:
-        pair = against(first, arguments.against, values)
+        pair = pair_with_commit(first, arguments.against, values)
         stack.callback(pair.close)
         return pair
     return pair_of(first, Path(files[0]), values)

@@ -146,7 +146,7 @@ def pair_of(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
     return Pair(first, second)
 
 
-def against(path: Path, commit: str, values: Mapping[str, str]) -> Pair:
+def pair_with_commit(path: Path, commit: str, values: Mapping[str, str]) -> Pair:
     """Return the pair of a file's version in a commit and the file.
 
     The commit's files exist until the pair is closed.

@@ -104,7 +104,7 @@ class NodeHost:
         """Drop all plans that were not started."""
         self._planned.clear()
 
-    async def give_out_pages(self) -> None:
+    async def serve_pages(self) -> None:
         """Serve the pages of the planned viewers, and meanwhile load the modules that the viewers need.
 
         If a server cannot listen, the error is raised when its viewer is started.
@@ -112,7 +112,7 @@ class NodeHost:
         planned = [plan for plan in self._planned if plan.is_viewer]
         for plan in planned:
             with suppress(LinkwrightError):
-                await self._viewers.give_out_page(plan)
+                await self._viewers.serve_page(plan)
         if planned:
             await asyncio.to_thread(load_viewer)
 
@@ -151,7 +151,7 @@ class NodeHost:
                 self._stop_node(plan, running)
         for plan in self._viewers.plans():
             if matcher(plan.owner):
-                self._session.spawn(self._stop_viewer(plan, self._viewers.take(plan)))
+                self._session.spawn(self._stop_viewer(plan, self._viewers.pop_viewer(plan)))
 
     def close_nodes(self) -> None:
         """End all nodes, and begin to end the viewers."""
@@ -164,7 +164,7 @@ class NodeHost:
         """End all nodes and viewers."""
         self.close_nodes()
         for plan in self._viewers.plans():
-            await self._stop_viewer(plan, self._viewers.take(plan))
+            await self._stop_viewer(plan, self._viewers.pop_viewer(plan))
         await self._viewers.close()
         self.network.close()
         if self._shared_names is not None:
@@ -328,7 +328,7 @@ class NodeHost:
             self._session.node_ended(plan, status)
         window = self._windows.pop(plan.process_name, None)
         if window is not None:
-            self._session.spawn(self._stop_viewer(window, self._viewers.take(window)))
+            self._session.spawn(self._stop_viewer(window, self._viewers.pop_viewer(window)))
 
     def _on_log(self, record: LogRecord) -> None:
         process = self._process_of(record.node)

@@ -38,9 +38,9 @@ def _as_it_is(description: Description) -> str:
 
 
 def _completed(description: Description, found: Inference) -> str:
-    from linkwright.inference.applying import completed  # Imported here because only some robots need it.
+    from linkwright.inference.applying import complete_description  # Imported here because only some robots need it.
 
-    return write(completed(description.document, found))
+    return write(complete_description(description.document, found))
 
 
 @dataclass(frozen=True, slots=True)

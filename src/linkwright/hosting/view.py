@@ -130,7 +130,7 @@ class ModelView:
                 self._plan_others()
                 if foxglove is not None:
                     self._plan("foxglove_bridge", "foxglove_bridge", {"port": foxglove})
-                await self.host.give_out_pages()
+                await self.host.serve_pages()
                 if not self._is_over.is_set():
                     await self.host.start_planned()
                     self.reload.start()

@@ -61,7 +61,7 @@ class ViewerHost:
         for _, viewer in self._viewers.values():
             _attach_panel(viewer, running)
 
-    async def give_out_page(self, plan: HostedPlan) -> None:
+    async def serve_page(self, plan: HostedPlan) -> None:
         """Serve the page of a viewer and print its address.
 
         Thus the page is fetched while the viewer is created.
@@ -168,7 +168,7 @@ class ViewerHost:
         if plan.process_name == self._at_given_port:
             self._at_given_port = ""
 
-    def take(self, plan: HostedPlan) -> Viewer:
+    def pop_viewer(self, plan: HostedPlan) -> Viewer:
         """Remove a viewer that is about to end, and return it."""
         self._release_port(plan)
         return self._viewers.pop(plan.process_name)[1]

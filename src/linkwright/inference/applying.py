@@ -11,7 +11,7 @@ SINGLE = ("inertial", "axis")
 """Elements that a link or joint holds only once; a new one replaces the old one."""
 
 
-def completed(document: Document, inference: Inference) -> Document:
+def complete_description(document: Document, inference: Inference) -> Document:
     """Return a description with all inferred elements, so that a simulator can read it.
 
     Args:

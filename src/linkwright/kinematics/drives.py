@@ -100,7 +100,7 @@ class CarDrive:
     def steering_angles(self, angle: float) -> tuple[float, float]:
         """Return the angles of the left and the right wheel in rad for the angle of a virtual wheel in the middle."""
         slope = tan(angle)
-        return steered_apart(slope, self.steering_track * slope / self.wheelbase)
+        return ackermann_angles(slope, self.steering_track * slope / self.wheelbase)
 
     def middle_angle(self, left: float, right: float) -> float:
         """Return the angle of a virtual wheel in the middle, in rad.
@@ -128,7 +128,7 @@ class CarDrive:
         return self.traction_track / 2.0 * tan(angle) / self.wheelbase
 
 
-def steered_apart(slope: float, track: float) -> tuple[float, float]:
+def ackermann_angles(slope: float, track: float) -> tuple[float, float]:
     """Return the angles in rad at which the left and the right steered wheel roll about a common point.
 
     Args:

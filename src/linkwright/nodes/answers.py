@@ -9,7 +9,7 @@ from linkwright.graph import Client, Clock, ClockType, Node
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 
 
-async def answered(node: Node, future: Any, seconds: float | None) -> bool:
+async def wait_for_future(node: Node, future: Any, seconds: float | None) -> bool:
     """Wait for a future, and return whether it was done in time.
 
     Args:
@@ -36,7 +36,7 @@ async def answered(node: Node, future: Any, seconds: float | None) -> bool:
             node.destroy_timer(timer)
 
 
-async def is_served(node: Node, client: Client[Any, Any], seconds: float | None, *, wanted: bool = True) -> bool:
+async def wait_for_service(node: Node, client: Client[Any, Any], seconds: float | None, *, wanted: bool = True) -> bool:
     """Wait until a service appears or disappears, and return whether that happened in time.
 
     Args:
@@ -57,7 +57,7 @@ async def is_served(node: Node, client: Client[Any, Any], seconds: float | None,
 
     node.graph.watch(changed)
     try:
-        return client.service_is_ready() is wanted or await answered(node, come, seconds)
+        return client.service_is_ready() is wanted or await wait_for_future(node, come, seconds)
     finally:
         node.graph.unwatch(changed)
         come.cancel()  # Callbacks that are already scheduled then do nothing.

@@ -113,7 +113,7 @@ class JointPositions:
             if row is not None:
                 self._store(joint, before[:, row], zeros_before[joint.name])
 
-    def hear(self, message: JointState) -> None:
+    def apply_message(self, message: JointState) -> None:
         """Apply the values of a message to the free joints, including positions outside the limits."""
         for number, name in enumerate(message.name):
             row = self._rows.get(name)
@@ -345,7 +345,7 @@ class JointStatePublisher(SingleNode):
         ]
 
     def _on_source(self, message: JointState) -> None:
-        self._joints.hear(message)
+        self._joints.apply_message(message)
         self._notify_moved()
 
     def _on_timer(self) -> None:

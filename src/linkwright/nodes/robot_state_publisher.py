@@ -231,7 +231,7 @@ class Throttle:
         """Return whether these positions differ from those published last."""
         return group.positions is None or not np.array_equal(group.positions, positions)
 
-    def opens_ns(self, group: JointGroup, now_ns: int, *, move: bool) -> int:
+    def earliest_stamp_ns(self, group: JointGroup, now_ns: int, *, move: bool) -> int:
         """Return the earliest stamp at which a message may be published."""
         before = self._moved_ns if move else self._sent_ns
         return min(int(before[group.rows].min()), now_ns) + self.interval_ns
@@ -410,7 +410,7 @@ class RobotStatePublisher(SingleNode):
         group = self._throttle.group(message.name)
         stamp_ns = message.header.stamp.nanoseconds
         move = self._throttle.is_move(group, message.position)
-        opens_ns = self._throttle.opens_ns(group, now_ns, move=move)
+        opens_ns = self._throttle.earliest_stamp_ns(group, now_ns, move=move)
         if self._ignore_timestamp or stamp_ns >= opens_ns:
             self._drop_held(group)
             self._publish_moving(message, stamp_ns)

@@ -7,8 +7,15 @@ from math import pi
 import numpy as np
 import pytest
 
-from linkwright.navigation.behaviors.behaviors import DriveStraight, Outcome, Spin, SpinParameters, Wait, slowed
-from linkwright.navigation.following.follower import Velocity, motions
+from linkwright.navigation.behaviors.behaviors import (
+    DriveStraight,
+    Outcome,
+    Spin,
+    SpinParameters,
+    Wait,
+    slow_near_obstacles,
+)
+from linkwright.navigation.following.follower import Velocity, predict_poses
 
 PERIOD = 0.1
 START = (1.0, 2.0, 0.5)
@@ -21,7 +28,7 @@ def run(behavior, is_free=lambda poses: True, start=START):
         if step.outcome is not Outcome.RUNNING:
             return step, pose, elapsed, speeds
         speeds.append(step.velocity)
-        pose = tuple(motions(pose, np.array([step.velocity]), np.array([PERIOD]))[0, 0])
+        pose = tuple(predict_poses(pose, np.array([step.velocity]), np.array([PERIOD]))[0, 0])
         elapsed += PERIOD
 
 
@@ -64,7 +71,7 @@ def test_waiting_ends():
 
 def test_who_drives_is_slowed_before_an_obstacle():
     velocity = Velocity(0.5, 0.0, 0.2)
-    assert slowed((0.0, 0.0, 0.0), velocity, 1.0, lambda poses: True) == velocity
-    half = slowed((0.0, 0.0, 0.0), velocity, 1.0, lambda poses: poses[:, 0].max() < 0.27)
+    assert slow_near_obstacles((0.0, 0.0, 0.0), velocity, 1.0, lambda poses: True) == velocity
+    half = slow_near_obstacles((0.0, 0.0, 0.0), velocity, 1.0, lambda poses: poses[:, 0].max() < 0.27)
     assert 0.2 <= half.x <= 0.3
     assert half.yaw == pytest.approx(half.x * 0.4)

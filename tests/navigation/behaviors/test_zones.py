@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from linkwright.navigation.behaviors.zones import Action, Circle, Outline, Rule, SpeedRange, Verdict, judged
+from linkwright.navigation.behaviors.zones import Action, Circle, Outline, Rule, SpeedRange, Verdict, limit_by_zones
 from linkwright.navigation.following.follower import Velocity
 
 AHEAD = Outline(np.array([[0.0, -0.3], [0.6, -0.3], [0.6, 0.3], [0.0, 0.3]]))
@@ -69,15 +69,15 @@ def test_of_several_zones_the_one_counts_that_leaves_least():
     slow, slower = Rule(Action.SLOWDOWN, 1, slowdown_ratio=0.5), Rule(Action.SLOWDOWN, 1, slowdown_ratio=0.1)
     seen = points(1, 0.5)
     zones = [("slow", slow, AHEAD, seen), ("slower", slower, AHEAD, seen), ("again", slow, AHEAD, seen)]
-    assert judged(FORWARD, zones).zone == "slower"
+    assert limit_by_zones(FORWARD, zones).zone == "slower"
     stop = ("stop", Rule(Action.STOP, 1), AHEAD, seen)
-    assert judged(FORWARD, [stop, *zones]) == Verdict(Velocity(0.0, 0.0, 0.0), Action.STOP, "stop")
-    assert judged(FORWARD, [("off", Rule(Action.NOTHING, 1), AHEAD, seen)]) == Verdict(FORWARD)
+    assert limit_by_zones(FORWARD, [stop, *zones]) == Verdict(Velocity(0.0, 0.0, 0.0), Action.STOP, "stop")
+    assert limit_by_zones(FORWARD, [("off", Rule(Action.NOTHING, 1), AHEAD, seen)]) == Verdict(FORWARD)
 
 
 def test_a_robot_that_stands_is_stopped_all_the_same():
     still = Velocity(0.0, 0.0, 0.0)
-    verdict = judged(still, [("stop", Rule(Action.STOP, 1), AHEAD, points(1, 0.5))])
+    verdict = limit_by_zones(still, [("stop", Rule(Action.STOP, 1), AHEAD, points(1, 0.5))])
     assert verdict == Verdict(still, Action.STOP, "stop")
 
 

@@ -15,8 +15,8 @@ from linkwright.navigation.costmaps.footprints import (
     BadFootprintError,
     circle,
     outline,
-    padded,
-    placed,
+    pad_footprint,
+    place_footprint,
     radii,
     read_footprint,
 )
@@ -59,8 +59,8 @@ def test_many_poses_are_asked_at_once():
 
 
 def test_padding_moves_corners_outwards():
-    assert padded(SQUARE, 0.01) == pytest.approx(SQUARE * 1.05)
-    assert padded(np.array([[0.0, 0.1]]), 0.02) == pytest.approx(np.array([[0.0, 0.12]]))
+    assert pad_footprint(SQUARE, 0.01) == pytest.approx(SQUARE * 1.05)
+    assert pad_footprint(np.array([[0.0, 0.1]]), 0.02) == pytest.approx(np.array([[0.0, 0.12]]))
 
 
 def test_the_circles_in_and_around_a_footprint():
@@ -80,7 +80,7 @@ def test_points_in_a_footprint(x, y):
 
 
 def test_a_footprint_is_placed():
-    assert placed(np.array([[0.2, 0.1]]), 1.0, 2.0, pi / 2) == pytest.approx(np.array([[0.9, 2.2]]))
+    assert place_footprint(np.array([[0.2, 0.1]]), 1.0, 2.0, pi / 2) == pytest.approx(np.array([[0.9, 2.2]]))
 
 
 def test_the_rim_has_no_gaps():

@@ -12,7 +12,7 @@ from linkwright.navigation.estimation.kalman import (
     Settings,
     UnscentedKalmanFilter,
 )
-from linkwright.navigation.estimation.motion_model import SIZE, State, derivatives, wrapped
+from linkwright.navigation.estimation.motion_model import SIZE, State, state_jacobian, wrapped
 
 SECOND = 1_000_000_000
 FILTERS = pytest.mark.parametrize("kind", [ExtendedKalmanFilter, UnscentedKalmanFilter])
@@ -63,7 +63,7 @@ def batch_solution(settings, measurements, steps):
     count = len(measurements)
     free = np.flatnonzero(np.diag(settings.initial_covariance))
     size = len(free)
-    motions = [derivatives(np.zeros(SIZE), step)[np.ix_(free, free)] for step in steps]
+    motions = [state_jacobian(np.zeros(SIZE), step)[np.ix_(free, free)] for step in steps]
     rows, targets = [], []
 
     def add(block_by_time, target, covariance):

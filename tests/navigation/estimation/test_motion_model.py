@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from linkwright.navigation.estimation.motion_model import SIZE, State, derivatives, predicted, rotation, wrapped
+from linkwright.navigation.estimation.motion_model import SIZE, State, predict_state, rotation, state_jacobian, wrapped
 
 numbers = st.floats(-2.0, 2.0)
 # Near a pitch of 90 degrees the rates of roll and yaw have no bound.
@@ -22,12 +22,12 @@ def moving(**values):
 
 
 def test_constant_velocity_is_a_line():
-    later = predicted(moving(x=1.0, yaw=pi / 2, vx=2.0, vy=1.0), 0.5)
+    later = predict_state(moving(x=1.0, yaw=pi / 2, vx=2.0, vy=1.0), 0.5)
     assert later[:3] == pytest.approx([0.5, 1.0, 0.0])
 
 
 def test_constant_acceleration():
-    later = predicted(moving(vx=1.0, ax=2.0), 3.0)
+    later = predict_state(moving(vx=1.0, ax=2.0), 3.0)
     assert later[State.X] == pytest.approx(1.0 * 3.0 + 0.5 * 2.0 * 9.0)
     assert later[State.VX] == pytest.approx(7.0)
 
@@ -36,7 +36,7 @@ def test_a_constant_turn_comes_near_the_circle_as_steps_get_small():
     def end(steps):
         state = moving(vx=1.0, vyaw=0.5)
         for _ in range(steps):
-            state = predicted(state, 2.0 / steps)
+            state = predict_state(state, 2.0 / steps)
         return state
 
     radius = 1.0 / 0.5
@@ -47,12 +47,12 @@ def test_a_constant_turn_comes_near_the_circle_as_steps_get_small():
 
 
 def test_angles_stay_between_minus_pi_and_pi():
-    assert predicted(moving(yaw=3.0, vyaw=1.0), 1.0)[State.YAW] == pytest.approx(4.0 - 2.0 * pi)
+    assert predict_state(moving(yaw=3.0, vyaw=1.0), 1.0)[State.YAW] == pytest.approx(4.0 - 2.0 * pi)
     assert wrapped(-pi - 0.1) == pytest.approx(pi - 0.1)
 
 
 def test_rates_of_a_rolled_body_turn_its_pitch():
-    later = predicted(moving(roll=pi / 2, vyaw=1.0), 0.1)
+    later = predict_state(moving(roll=pi / 2, vyaw=1.0), 0.1)
     assert later[State.PITCH] == pytest.approx(-0.1)
     assert later[State.YAW] == pytest.approx(0.0)
 
@@ -76,7 +76,7 @@ def test_derivatives_are_those_of_small_differences(state, seconds):
         up, down = state.copy(), state.copy()
         up[index] += step
         down[index] -= step
-        difference = predicted(up, seconds) - predicted(down, seconds)
+        difference = predict_state(up, seconds) - predict_state(down, seconds)
         difference[3:6] = [wrapped(float(angle)) for angle in difference[3:6]]
         columns.append(difference / (2.0 * step))
-    np.testing.assert_allclose(derivatives(state, seconds), np.array(columns).T, atol=1e-7)
+    np.testing.assert_allclose(state_jacobian(state, seconds), np.array(columns).T, atol=1e-7)

@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
 from linkwright.navigation.costmaps.footprints import circle
-from linkwright.navigation.following.follower import STILL, Situation, motions
+from linkwright.navigation.following.follower import STILL, Situation, predict_poses
 from linkwright.navigation.following.path import FollowedPath
 from linkwright.navigation.grids.grid import Grid
 
@@ -66,9 +66,9 @@ def drive(follower, path, checker, *, pose=(0.0, 0.0, 0.0), costmap=None, cycles
         if checker.is_reached(pose, tuple(path[-1]), velocity):
             break
         followed.progress(pose[0], pose[1])
-        now = situation(followed.ahead(3.0), pose, velocity, costmap, footprint, checker.xy_tolerance)
+        now = situation(followed.poses_ahead(3.0), pose, velocity, costmap, footprint, checker.xy_tolerance)
         velocity = follower.velocity(now)
-        pose = tuple(motions(pose, np.array([velocity]), np.array([PERIOD]))[0, 0])
+        pose = tuple(predict_poses(pose, np.array([velocity]), np.array([PERIOD]))[0, 0])
         poses.append(pose)
         velocities.append(velocity)
     return np.array(poses), np.array(velocities)

@@ -16,7 +16,7 @@ from linkwright.navigation.following.checkers import (
     SimpleGoalParameters,
     StoppedGoalChecker,
 )
-from linkwright.navigation.following.follower import STILL, FollowingError, Velocity, motions, wrapped
+from linkwright.navigation.following.follower import STILL, FollowingError, Velocity, predict_poses, wrapped
 from linkwright.navigation.following.path import FollowedPath
 from linkwright.navigation.following.pure_pursuit import (
     PurePursuitParameters,
@@ -43,12 +43,12 @@ FOLLOWERS = [
 
 class TestMotions:
     def test_a_circle_is_closed_after_a_whole_turn(self):
-        end = motions((1.0, 2.0, 0.3), np.array([[0.5, 0.0, 0.5]]), np.array([4.0 * pi]))[0, 0]
+        end = predict_poses((1.0, 2.0, 0.3), np.array([[0.5, 0.0, 0.5]]), np.array([4.0 * pi]))[0, 0]
         assert end[:2] == pytest.approx([1.0, 2.0])
         assert wrapped(end[2]) == pytest.approx(0.3)
 
     def test_sideways_and_straight(self):
-        assert motions((0, 0, pi / 2), np.array([[0.0, 1.0, 0.0]]), np.array([2.0]))[0, 0] == pytest.approx(
+        assert predict_poses((0, 0, pi / 2), np.array([[0.0, 1.0, 0.0]]), np.array([2.0]))[0, 0] == pytest.approx(
             [-2.0, 0.0, pi / 2]
         )
 
@@ -59,7 +59,7 @@ class TestPurePursuit:
         curvature = curvature_to(np.array([x, y]))
         turned = 2.0 * np.arctan2(y, x)
         length = turned / curvature if abs(curvature) > 1e-9 else x
-        end = motions((0, 0, 0), np.array([[1.0, 0.0, curvature]]), np.array([length]))[0, 0]
+        end = predict_poses((0, 0, 0), np.array([[1.0, 0.0, curvature]]), np.array([length]))[0, 0]
         assert end[:2] == pytest.approx([x, y], abs=1e-6)
 
     def test_the_carrot_is_where_the_circle_cuts_the_path(self):
@@ -182,12 +182,12 @@ class TestPath:
         path = FollowedPath(eight, 1.0)
         path.progress(1.0, 0.0)
         assert path.remaining(1.0, 0.0) == pytest.approx(8.0, abs=0.06)
-        assert path.ahead(0.5)[-1, :2] == pytest.approx([1.5, 0.0], abs=0.06)
+        assert path.poses_ahead(0.5)[-1, :2] == pytest.approx([1.5, 0.0], abs=0.06)
 
     def test_its_end_is_two_poses(self):
         path = FollowedPath(line((0.0, 0.0), (1.0, 0.0)), 5.0)
         path.progress(1.0, 0.0)
-        assert len(path.ahead(1.0)) == 2
+        assert len(path.poses_ahead(1.0)) == 2
 
 
 class TestCheckers:
@@ -210,12 +210,12 @@ class TestCheckers:
 
     def test_no_progress_is_noticed_after_the_time_allowed(self):
         checker = ProgressChecker()
-        assert checker.gets_on((0.0, 0.0, 0.0), 0)
-        assert checker.gets_on((0.1, 0.0, 3.0), 10_000_000_000)
-        assert not checker.gets_on((0.1, 0.0, 3.0), 10_100_000_000)
-        assert checker.gets_on((0.6, 0.0, 3.0), 10_200_000_000)
+        assert checker.makes_progress((0.0, 0.0, 0.0), 0)
+        assert checker.makes_progress((0.1, 0.0, 3.0), 10_000_000_000)
+        assert not checker.makes_progress((0.1, 0.0, 3.0), 10_100_000_000)
+        assert checker.makes_progress((0.6, 0.0, 3.0), 10_200_000_000)
 
     def test_turning_counts_where_it_is_to(self):
         checker = ProgressChecker(PoseProgressParameters())
-        assert checker.gets_on((0.0, 0.0, 0.0), 0)
-        assert checker.gets_on((0.0, 0.0, 0.6), 20_000_000_000)
+        assert checker.makes_progress((0.0, 0.0, 0.0), 0)
+        assert checker.makes_progress((0.0, 0.0, 0.6), 20_000_000_000)

@@ -12,7 +12,7 @@ from linkwright.geometry.single import quaternion_from_rpy, rpy_from_quaternion
 from linkwright.graph import TF_QOS
 from linkwright.messages import TFMessage, TransformBatch
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, Grid
-from linkwright.navigation.slam.poses import between, compose
+from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.testing import SteppedSimulation
 from linkwright.testing.scenes import read_world
 from tests.places import GAZEBO_PACKAGE, PACKAGE
@@ -91,7 +91,7 @@ class Drift:
 
     def _move(self, pose: np.ndarray) -> None:
         if self._before is not None:
-            step = between(self._before, pose)
+            step = relative_pose(self._before, pose)
             length = hypot(step[0], step[1])
             step *= (self._scale, self._scale, self._yaw_scale)
             step[2] += self._yaw_per_metre * length

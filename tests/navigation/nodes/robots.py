@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwright.graph import ActionClient, Graph, JumpClock
 from linkwright.messages import get_action, get_message
-from linkwright.navigation.following.follower import STILL, Velocity, motions
+from linkwright.navigation.following.follower import STILL, Velocity, predict_poses
 from tests.navigation.nodes.scene import Scene
 
 PERIOD = 0.02
@@ -45,7 +45,7 @@ class DrivingScene(Scene):
 
     def _move(self) -> None:
         velocity = STILL if self.held else self.velocity
-        self.pose = tuple(map(float, motions(self.pose, np.array([velocity]), np.array([PERIOD]))[0, 0]))
+        self.pose = tuple(map(float, predict_poses(self.pose, np.array([velocity]), np.array([PERIOD]))[0, 0]))
         if self.told:
             self.tell_pose()
         message = self._odometry.msg_type()

@@ -9,7 +9,7 @@ from linkwright.geometry.single import rpy_from_quaternion
 from linkwright.messages import get_service
 from linkwright.navigation.grids.occupancy import grid_of
 from linkwright.navigation.nodes.slam_toolbox.nodes import AsyncSlamToolbox
-from linkwright.navigation.slam.poses import between, compose
+from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.nodes import NodeOptions
 from tests.navigation.nodes.house import (
     TOUR,
@@ -49,8 +49,8 @@ def test_the_walls_of_our_house_are_mapped_within_5_cm_and_the_loop_is_closed(mo
     # The loop: odometry ends a metre from where the robot is, and the map does not.
     at, turned = correction.transform.translation, correction.transform.rotation
     yaw = rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2]
-    assert np.hypot(*between(true, drift.pose)[:2]) > 0.8
-    error = between(true, compose(np.array((at.x, at.y, yaw)), drift.pose))
+    assert np.hypot(*relative_pose(true, drift.pose)[:2]) > 0.8
+    error = relative_pose(true, compose(np.array((at.x, at.y, yaw)), drift.pose))
     assert np.hypot(error[0], error[1]) < 0.05
     assert abs(error[2]) < 0.02
     # The walls: what is occupied near them lies on them, and what can be seen of them is there.

@@ -22,7 +22,7 @@ from linkwright.navigation.nodes.slam_toolbox.nodes import (
     MapAndLocalizationSlamToolbox,
     SyncSlamToolbox,
 )
-from linkwright.navigation.slam.poses import between, compose
+from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.nodes import NodeOptions
 from linkwright.testing import SteppedGraph
 from tests.navigation.slam.scenes import along, drifting, house, ranges_at
@@ -120,13 +120,13 @@ def is_a_map(message: Any) -> bool:
 def test_map_pose_and_transform_are_there_and_right(test, kind):
     start(test, kind)
     maps, sizes, poses, tf = (test.record(topic) for topic in ("/map", "/map_metadata", "/pose", "/tf"))
-    robot, odometry = Robot(test), drifting(between(PATH[0], PATH), 1.04, 0.05)
+    robot, odometry = Robot(test), drifting(relative_pose(PATH[0], PATH), 1.04, 0.05)
     robot.go(PATH, odometry)
     assert is_a_map(maps.last)
     assert maps.last.header.frame_id == "map"
     assert maps.last.info.resolution == pytest.approx(0.05)
     assert sizes.last == maps.last.info
-    true = between(PATH[0], PATH[-1])  # the map lies where the first scan was taken
+    true = relative_pose(PATH[0], PATH[-1])  # the map lies where the first scan was taken
     correction = map_to_odom(tf)
     assert compose(planar(correction.transform), odometry[-1]) == pytest.approx(true, abs=0.03)
     assert (
@@ -143,10 +143,10 @@ def test_a_laser_may_look_backwards_and_upside_down(test):
     start(test)
     maps, tf = test.record("/map"), test.record("/tf")
     robot = Robot(test, (0.15, 0.0, 0.3, pi, 0.0, 2.0))
-    odometry = drifting(between(PATH[0], PATH), 1.04, 0.05)
+    odometry = drifting(relative_pose(PATH[0], PATH), 1.04, 0.05)
     robot.go(PATH, odometry)
     assert compose(planar(map_to_odom(tf).transform), odometry[-1]) == pytest.approx(
-        between(PATH[0], PATH[-1]), abs=0.04
+        relative_pose(PATH[0], PATH[-1]), abs=0.04
     )
     assert is_a_map(maps.last)
 
@@ -174,7 +174,7 @@ def test_without_transforms_scans_are_dropped_and_the_log_says_why(test):
         test.advance(0.5)
     assert len(maps) == 0
     assert any("scans are dropped" in line and "odom" in line for line in logged(test, "WARN"))
-    robot.go(PATH[:4], between(PATH[0], PATH[:4]))
+    robot.go(PATH[:4], relative_pose(PATH[0], PATH[:4]))
     assert len(maps) > 0
     node.close()
 
@@ -206,27 +206,27 @@ def test_scans_of_a_fast_laser_are_dropped_unless_the_robot_moved(test):
 def test_throttled_scans_are_not_looked_at(test):
     start(test, throttle_scans=3, minimum_travel_distance=0.1)
     robot, poses = Robot(test), test.record("/pose")
-    robot.go(PATH[:9], between(PATH[0], PATH[:9]))
+    robot.go(PATH[:9], relative_pose(PATH[0], PATH[:9]))
     assert len(poses) == 3
 
 
 def test_measuring_can_be_paused(test):
     start(test)
     robot, poses = Robot(test), test.record("/pose")
-    robot.go(PATH[:5], between(PATH[0], PATH[:5]))
+    robot.go(PATH[:5], relative_pose(PATH[0], PATH[:5]))
     count = len(poses)
     assert call(test, "pause_new_measurements", "slam_toolbox/srv/Pause").status
-    robot.go(PATH[5:12], between(PATH[0], PATH[5:12]))
+    robot.go(PATH[5:12], relative_pose(PATH[0], PATH[5:12]))
     assert len(poses) == count
     assert call(test, "pause_new_measurements", "slam_toolbox/srv/Pause").status
-    robot.go(PATH[12:16], between(PATH[0], PATH[12:16]))
+    robot.go(PATH[12:16], relative_pose(PATH[0], PATH[12:16]))
     assert len(poses) > count
 
 
 def test_the_map_is_saved_and_asked_for(test, tmp_path):
     start(test)
     robot, maps = Robot(test), test.record("/map")
-    robot.go(PATH[:6], between(PATH[0], PATH[:6]))
+    robot.go(PATH[:6], relative_pose(PATH[0], PATH[:6]))
     name = get_message("std_msgs/msg/String")(data=str(tmp_path / "flat"))
     response = call(test, "save_map", "slam_toolbox/srv/SaveMap", name=name)
     assert response.result == response.RESULT_SUCCESS
@@ -240,7 +240,7 @@ def test_the_map_is_saved_and_asked_for(test, tmp_path):
 def test_a_new_map_begins_where_that_is_asked_for(test):
     start(test)
     robot, tf = Robot(test), test.record("/tf")
-    odometry = drifting(between(PATH[0], PATH), 1.04, 0.05)
+    odometry = drifting(relative_pose(PATH[0], PATH), 1.04, 0.05)
     robot.go(PATH[:16], odometry[:16])
     response = call(test, "reset", "slam_toolbox/srv/Reset", pause_new_measurements=True)
     assert response.result == response.RESULT_SUCCESS
@@ -251,7 +251,7 @@ def test_a_new_map_begins_where_that_is_asked_for(test):
 
 def serialized(test: SteppedGraph, path: Path, node: Any) -> str:
     robot = Robot(test)
-    robot.go(PATH, between(PATH[0], PATH))
+    robot.go(PATH, relative_pose(PATH[0], PATH))
     name = str(path / "flat")
     response = call(test, "serialize_map", "slam_toolbox/srv/SerializePoseGraph", filename=name)
     assert response.result == response.RESULT_SUCCESS
@@ -266,8 +266,8 @@ def test_a_robot_is_found_in_a_saved_map(test, tmp_path):
     test.advance(3.0)
     assert is_a_map(maps.last)
     robot, back = Robot(test), along([(-2, -3), (0, -3), (2, -2.8)], step=0.25)
-    robot.go(back, drifting(between(back[0], back), 1.05, 0.03))
-    where = [between(PATH[0], each) for each in back]
+    robot.go(back, drifting(relative_pose(back[0], back), 1.05, 0.03))
+    where = [relative_pose(PATH[0], each) for each in back]
     at = poses.last.pose.pose.position
     assert min(np.hypot(at.x - pose[0], at.y - pose[1]) for pose in where[-3:]) < 0.05
     initial = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()
@@ -279,7 +279,7 @@ def test_a_robot_is_found_in_a_saved_map(test, tmp_path):
     pose = np.array((0.3, -3.0, 0.0))
     robot.go(pose[None], np.array([[20.0, 7.0, 2.0]]))  # it was carried away
     at = poses.last.pose.pose.position
-    assert [at.x, at.y] == pytest.approx(between(PATH[0], pose)[:2], abs=0.05)
+    assert [at.x, at.y] == pytest.approx(relative_pose(PATH[0], pose)[:2], abs=0.05)
 
 
 def test_mapping_goes_on_with_a_saved_map(test, tmp_path):
@@ -298,13 +298,13 @@ def test_mapping_goes_on_with_a_saved_map(test, tmp_path):
     robot, poses = Robot(test), test.record("/pose")
     before = len(node._work[0].mapper.scans)
     on = along([(3, -3), (4, -3), (4, 2)], step=0.25, turn=0.25)
-    robot.go(on, drifting(between(on[0], on), 1.02, 0.02))
+    robot.go(on, drifting(relative_pose(on[0], on), 1.02, 0.02))
     assert len(node._work[0].mapper.scans) > before
     at = poses.last.pose.pose.position
-    assert [at.x, at.y] == pytest.approx(between(PATH[0], on[-1])[:2], abs=0.3)
+    assert [at.x, at.y] == pytest.approx(relative_pose(PATH[0], on[-1])[:2], abs=0.3)
     assert call(test, "set_localization_mode", "std_srvs/srv/SetBool", data=True).success
     count = len(node._work[0].mapper.scans)
-    robot.go(on[::-1], between(on[0], on[::-1]))
+    robot.go(on[::-1], relative_pose(on[0], on[::-1]))
     assert len(node._work[0].mapper.scans) == count
 
 
@@ -329,7 +329,7 @@ def test_a_file_that_is_no_graph_is_refused_with_a_reason(test, tmp_path):
 
 def test_who_localises_without_a_map_is_told_so(test):
     start(test, LocalizationSlamToolbox)
-    Robot(test).go(PATH[:3], between(PATH[0], PATH[:3]))
+    Robot(test).go(PATH[:3], relative_pose(PATH[0], PATH[:3]))
     assert any("map_file_name" in line for line in logged(test, "ERROR"))
 
 
@@ -337,20 +337,20 @@ def test_in_jazzy_the_node_is_managed(test, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
     running = start(test)
     robot, maps = Robot(test), test.record("/map")
-    robot.go(PATH[:3], between(PATH[0], PATH[:3]))
+    robot.go(PATH[:3], relative_pose(PATH[0], PATH[:3]))
     assert len(maps) == 0
     running.node.trigger_configure()
     running.node.trigger_activate()
-    robot.go(PATH[:3], between(PATH[0], PATH[:3]))
+    robot.go(PATH[:3], relative_pose(PATH[0], PATH[:3]))
     assert len(maps) > 0
     running.node.trigger_deactivate()
     count = len(maps)
-    robot.go(PATH[3:12], between(PATH[0], PATH[3:12]))
+    robot.go(PATH[3:12], relative_pose(PATH[0], PATH[3:12]))
     assert len(maps) == count
     running.node.trigger_cleanup()
     running.node.trigger_configure()
     running.node.trigger_activate()
-    robot.go(PATH[:3], between(PATH[0], PATH[:3]))
+    robot.go(PATH[:3], relative_pose(PATH[0], PATH[:3]))
     assert len(maps) > count
     running.close()
 
@@ -367,7 +367,7 @@ def test_what_a_file_has_that_changes_nothing_is_known_and_what_is_misspelt_is_t
 def test_the_graph_is_shown(test):
     start(test)
     markers = test.record("/slam_toolbox/graph_visualization")
-    Robot(test).go(PATH[:12], between(PATH[0], PATH[:12]))
+    Robot(test).go(PATH[:12], relative_pose(PATH[0], PATH[:12]))
     nodes, edges, others = markers.last.markers
     assert len(edges.points) == 2 * (len(nodes.points) - 1) > 4
     assert others.action == others.DELETE
@@ -404,7 +404,7 @@ def test_where_time_jumps_back_the_map_begins_anew(test):
 def test_the_synchronous_node_forgets_what_waits(test):
     node = start(test, SyncSlamToolbox)
     robot = Robot(test)
-    robot.go(PATH[:4], between(PATH[0], PATH[:4]))
+    robot.go(PATH[:4], relative_pose(PATH[0], PATH[:4]))
     node._work[0].queue.append((None, np.zeros(3)))
     assert call(test, "clear_queue", "slam_toolbox/srv/ClearQueue").status
     assert not node._work[0].queue
@@ -414,5 +414,5 @@ def test_a_launch_file_of_jazzy_starts_it_by_a_parameter(test, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
     start(test, autostart_node=True)
     maps = test.record("/map")
-    Robot(test).go(PATH[:3], between(PATH[0], PATH[:3]))
+    Robot(test).go(PATH[:3], relative_pose(PATH[0], PATH[:3]))
     assert len(maps) > 0

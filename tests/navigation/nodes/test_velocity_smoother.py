@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from linkwright.messages import get_message
 from linkwright.navigation.nodes.velocity_smoother import VelocitySmoother
-from linkwright.navigation.nodes.velocity_smoothing import Limits, smoothed
+from linkwright.navigation.nodes.velocity_smoothing import Limits, smooth_velocities
 from linkwright.nodes import NodeOptions
 from tests.outside import Outside, Stranger
 
@@ -21,7 +21,7 @@ LIMITS = [Limits(-0.5, 0.5, 2.5, -2.0), Limits(-1.0, 1.0, 0.0, 0.0), Limits(-2.5
 
 @given(wanted=st.tuples(*[velocities] * 3), now=st.tuples(*[st.floats(-0.5, 0.5)] * 3), scaled=st.booleans())
 def test_no_axis_leaves_its_limits(wanted, now, scaled):
-    after = smoothed(LIMITS, now, wanted, 0.05, scaled=scaled)
+    after = smooth_velocities(LIMITS, now, wanted, 0.05, scaled=scaled)
     for limits, before, velocity, goal in zip(LIMITS, now, after, wanted, strict=True):
         assert abs(velocity - before) <= limits.change(before, limits.clamped(goal), 0.05) + 1e-12
         assert min(before, limits.least) - 1e-12 <= velocity <= max(before, limits.most) + 1e-12
@@ -29,8 +29,8 @@ def test_no_axis_leaves_its_limits(wanted, now, scaled):
 
 def test_the_direction_stays_where_it_is_asked_for():
     limits = [Limits(-1, 1, 1.0, -1.0), Limits(-1, 1, 4.0, -4.0)]
-    assert smoothed(limits, (0, 0), (1.0, 1.0), 0.1, scaled=True) == pytest.approx([0.1, 0.1])
-    assert smoothed(limits, (0, 0), (1.0, 1.0), 0.1, scaled=False) == pytest.approx([0.1, 0.4])
+    assert smooth_velocities(limits, (0, 0), (1.0, 1.0), 0.1, scaled=True) == pytest.approx([0.1, 0.1])
+    assert smooth_velocities(limits, (0, 0), (1.0, 1.0), 0.1, scaled=False) == pytest.approx([0.1, 0.4])
 
 
 class Line:

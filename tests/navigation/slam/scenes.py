@@ -7,7 +7,7 @@ from math import atan2, hypot, pi
 
 import numpy as np
 
-from linkwright.navigation.slam.poses import between, compose
+from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.navigation.slam.scan import planar_scan
 
 AHEAD = (np.eye(3), np.zeros(3))
@@ -75,7 +75,7 @@ def drifting(poses, scale=1.02, yaw_per_metre=0.03, noise=0.0, rng=None):
     """What odometry says of poses: too long a way, and a turn with it; noise is a part of each step."""
     result = [poses[0]]
     for before, after in pairwise(poses):
-        step = between(before, after)
+        step = relative_pose(before, after)
         length = hypot(step[0], step[1])
         wrong = np.array((scale * step[0], scale * step[1], step[2] + yaw_per_metre * length))
         if rng is not None:

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.navigation.slam.mapper import Mapper
 from linkwright.navigation.slam.occupancy import OccupancyMap
-from linkwright.navigation.slam.poses import between, compose
+from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.navigation.slam.scan import PlanarScan
 from linkwright.navigation.slam.settings import MapperSettings
 from linkwright.navigation.slam.steps import finish
@@ -27,7 +27,7 @@ def mapped(walls, path, odometry, settings=None, farthest=12.0, count=180):
     outcomes, taken = [], []
     for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
         stamp_ns = number * HALF_A_SECOND
-        if mapper.wants(text, stamp_ns):
+        if mapper.should_process(text, stamp_ns):
             scan = scan_at(walls, pose, stamp_ns, rng, count, farthest)
             outcomes.append(finish(mapper.process(scan, text)))
             taken.append(pose)
@@ -43,7 +43,7 @@ def test_a_flat_is_mapped_whatever_odometry_says(yaw_per_metre):
     path = AROUND_IT
     odometry = drifting(path, 1.03, yaw_per_metre, 0.02, np.random.default_rng(1))
     mapper, outcomes, taken = mapped(house(), path, odometry)
-    errors = between(taken, mapper.graph.poses)
+    errors = relative_pose(taken, mapper.graph.poses)
     assert furthest(errors) < 0.02
     assert np.abs(errors[:, 2]).max() < 0.004
     assert all(outcome.matched for outcome in outcomes[1:])
@@ -55,7 +55,7 @@ def test_a_loop_is_closed_where_odometry_slipped_in_a_corridor_without_marks():
     path = along([(-7, -4.8), (7.6, -4.8), (7.7, 4.8), (-7.7, 4.8), (-7.7, -4.8), (-4, -4.8)], step=0.2, turn=0.2)
     odometry = [path[0]]
     for before, after in pairwise(path):
-        step = between(before, after)
+        step = relative_pose(before, after)
         step[0] *= 1.1 if before[1] > 4.7 and abs(step[2]) < 0.01 else 1.0  # along the second long side
         odometry.append(compose(odometry[-1], step))
     odometry = np.array(odometry)
@@ -66,8 +66,8 @@ def test_a_loop_is_closed_where_odometry_slipped_in_a_corridor_without_marks():
     assert sum(outcome.loops for outcome in outcomes) >= 1
     count = len(taken)
     first = int(np.argmin(np.hypot(*(taken[: count // 2] - taken[-1])[:, :2].T)))
-    true = between(taken[first], taken[-1])
-    result = between(mapper.graph.poses[first], mapper.graph.poses[-1])
+    true = relative_pose(taken[first], taken[-1])
+    result = relative_pose(mapper.graph.poses[first], mapper.graph.poses[-1])
     assert result == pytest.approx(true, abs=0.06)
     assert not any(outcome.loops for outcome in without)
     assert furthest((without[-1].pose - taken[-1])[None]) > 0.8
@@ -76,14 +76,14 @@ def test_a_loop_is_closed_where_odometry_slipped_in_a_corridor_without_marks():
 def test_scans_are_taken_after_a_way_or_a_turn_and_not_too_often():
     mapper = Mapper(MapperSettings(), OccupancyMap(0.05))
     here = np.zeros(3)
-    assert mapper.wants(here, 0)
+    assert mapper.should_process(here, 0)
     finish(mapper.process(scan_at(house(), np.array([-4.0, -3.0, 0.0])), here))
     second = 1_000_000_000
-    assert not mapper.wants(here, 10 * second)
-    assert not mapper.wants(np.array([0.3, 0.0, 0.0]), second)
-    assert mapper.wants(np.array([0.5, 0.0, 0.0]), second)
-    assert not mapper.wants(np.array([0.5, 0.0, 0.0]), second // 10)
-    assert mapper.wants(np.array([0.0, 0.0, -0.6]), second)
+    assert not mapper.should_process(here, 10 * second)
+    assert not mapper.should_process(np.array([0.3, 0.0, 0.0]), second)
+    assert mapper.should_process(np.array([0.5, 0.0, 0.0]), second)
+    assert not mapper.should_process(np.array([0.5, 0.0, 0.0]), second // 10)
+    assert mapper.should_process(np.array([0.0, 0.0, -0.6]), second)
 
 
 def test_in_an_empty_world_odometry_is_believed_and_nothing_is_drawn():
@@ -93,7 +93,7 @@ def test_in_an_empty_world_odometry_is_believed_and_nothing_is_drawn():
     for pose in poses:
         outcome = finish(mapper.process(empty, pose))
         assert not outcome.matched
-    assert between(poses, mapper.graph.poses) == pytest.approx(np.zeros((30, 3)), abs=1e-9)
+    assert relative_pose(poses, mapper.graph.poses) == pytest.approx(np.zeros((30, 3)), abs=1e-9)
     assert mapper.occupancy.grid() is None
     assert outcome.links == outcome.loops == 0
 
@@ -110,13 +110,13 @@ def test_a_robot_finds_itself_in_a_map_that_stays():
     count, walls = len(mapper.scans), house()
     mapper.begin_session(np.array([3.2, -2.2, 1.3]))
     path = along([(4, -3), (4, 3), (-4, 3)])
-    odometry = drifting(between(path[0], path), 1.05, 0.05)
+    odometry = drifting(relative_pose(path[0], path), 1.05, 0.05)
     rng = np.random.default_rng(4)
     for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
-        if mapper.wants(text, number * HALF_A_SECOND):
+        if mapper.should_process(text, number * HALF_A_SECOND):
             outcome = finish(mapper.localize(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), text))
             assert outcome.matched
-            assert between(pose, outcome.pose) == pytest.approx([0, 0, 0], abs=0.03)
+            assert relative_pose(pose, outcome.pose) == pytest.approx([0, 0, 0], abs=0.03)
     assert len(mapper.scans) == count
 
 
@@ -126,11 +126,11 @@ def test_another_session_goes_on_with_the_map():
     count = len(mapper.scans)
     mapper.begin_session(np.array([3.8, 2.2, 1.8]))
     path = along([(4, 2.5), (4, 3), (-4, 3), (-4, -3)])
-    odometry = drifting(between(path[0], path), 1.02, 0.03)
+    odometry = drifting(relative_pose(path[0], path), 1.02, 0.03)
     rng = np.random.default_rng(4)
     taken = []
     for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
-        if mapper.wants(text, number * HALF_A_SECOND):
+        if mapper.should_process(text, number * HALF_A_SECOND):
             finish(mapper.process(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), text))
             taken.append(pose)
-    assert furthest(between(np.array(taken), mapper.graph.poses[count:])) < 0.03
+    assert furthest(relative_pose(np.array(taken), mapper.graph.poses[count:])) < 0.03

@@ -10,7 +10,7 @@ import pytest
 
 from linkwright.navigation.slam.contradiction import contradiction
 from linkwright.navigation.slam.matching import match
-from linkwright.navigation.slam.poses import between, compose
+from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.navigation.slam.reference import Likelihood, Reference
 from linkwright.navigation.slam.scan import PlanarScan
 from linkwright.navigation.slam.search import Search, best_pose
@@ -37,7 +37,7 @@ def test_a_scan_is_found_to_millimetres(reference, away):
     true = np.array([-1.8, -2.9, 0.4])
     scan = scan_at(WALLS, true, rng=np.random.default_rng(5))
     found = finish(match(reference, scan, true + away, Search()))
-    error = between(true, found.pose)
+    error = relative_pose(true, found.pose)
     assert np.hypot(error[0], error[1]) < 0.005
     assert abs(error[2]) < 0.002
     assert found.response > 0.7
@@ -51,7 +51,7 @@ def test_the_search_for_a_loop_finds_a_robot_that_is_metres_off(reference):
     true = np.array([-1.8, -2.9, 0.4])
     scan = scan_at(WALLS, true, rng=np.random.default_rng(6))
     found = finish(match(reference, scan, true + np.array([1.9, 1.2, -0.3]), EVERYWHERE))
-    assert between(true, found.pose) == pytest.approx([0, 0, 0], abs=0.006)
+    assert relative_pose(true, found.pose) == pytest.approx([0, 0, 0], abs=0.006)
 
 
 def test_branch_and_bound_finds_what_trying_everything_finds(reference):
@@ -74,7 +74,7 @@ def test_branch_and_bound_finds_what_trying_everything_finds(reference):
         distance = max(1 - 0.2 * (row**2 + column**2) * 0.05**2 / 0.5, 0.5)
         best = max(best, seen * distance * max(1 - 0.2 * (turn * step) ** 2, 0.9))
     assert response == pytest.approx(best, abs=1e-6)
-    assert np.abs(between(np.array([-2.0, -3.1, 0.2]), pose))[:2].max() < 0.05
+    assert np.abs(relative_pose(np.array([-2.0, -3.1, 0.2]), pose))[:2].max() < 0.05
 
 
 def test_along_a_corridor_a_scan_tells_nothing_and_odometry_stays():

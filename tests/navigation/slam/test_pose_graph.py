@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.slam.pose_graph import PoseGraph
-from linkwright.navigation.slam.poses import between, compose, wrapped
+from linkwright.navigation.slam.poses import compose, relative_pose, wrapped
 from linkwright.navigation.slam.steps import finish
 
 
@@ -23,7 +23,7 @@ def square(noise=0.0, seed=0, side=10):
     graph = PoseGraph()
     graph.add_node(true[0])
     for number, (before, after) in enumerate(pairwise(true)):
-        measured = between(before, after) + rng.normal(0, noise, 3)
+        measured = relative_pose(before, after) + rng.normal(0, noise, 3)
         graph.add_node(compose(graph.poses[number], measured))
         graph.add_edge(number, number + 1, measured, np.diag([1e2, 1e2, 1e3]))
     return np.array(true), graph
@@ -31,7 +31,7 @@ def square(noise=0.0, seed=0, side=10):
 
 def weighted_residuals(graph, poses):
     """The deviation of each edge, in standard deviations."""
-    left = between(np.array(graph.measured), between(poses[graph.first], poses[graph.second]))
+    left = relative_pose(np.array(graph.measured), relative_pose(poses[graph.first], poses[graph.second]))
     left[:, 2] = wrapped(left[:, 2])
     return left * np.sqrt([np.diag(each) for each in graph.information])
 
@@ -76,7 +76,7 @@ def test_a_closed_loop_is_what_a_batch_of_least_squares_gives():
 
     batch = load_scipy("optimize").least_squares(residuals, start[1:].ravel(), xtol=1e-14, ftol=1e-14, gtol=1e-14)
     assert (errors(graph).sum()) == pytest.approx(2 * batch.cost, rel=1e-6)
-    away = between(batch.x.reshape(-1, 3), graph.poses[1:])
+    away = relative_pose(batch.x.reshape(-1, 3), graph.poses[1:])
     assert away == pytest.approx(np.zeros(away.shape), abs=1e-4)
 
 
@@ -95,7 +95,7 @@ def test_a_wrong_edge_among_right_ones_is_overruled():
     true, graph = square(noise=0.005, seed=3)
     last = len(true) - 1
     for first, second in ((0, last), (1, last - 1), (3, last), (0, 41), (2, last)):
-        measured = between(true[first], true[second])
+        measured = relative_pose(true[first], true[second])
         graph.add_edge(first, second, measured, np.eye(3) * 1e4, doubtful=True)
     graph.add_edge(5, 25, np.array([1.0, 1.0, 0.0]), np.eye(3) * 1e4, doubtful=True)
     finish(graph.solve())

@@ -7,18 +7,18 @@ from math import pi
 import numpy as np
 import pytest
 
-from linkwright.navigation.slam.poses import between, compose, inverse, placed, wrapped
+from linkwright.navigation.slam.poses import compose, inverse, relative_pose, transform_points, wrapped
 
 
 def test_a_pose_and_its_inverse_are_nothing():
     poses = np.random.default_rng(1).uniform(-3, 3, (50, 3))
     assert np.allclose(compose(poses, inverse(poses)), 0, atol=1e-12)
-    assert np.allclose(compose(poses, between(poses, poses[::-1]))[:, :2], poses[::-1, :2])
+    assert np.allclose(compose(poses, relative_pose(poses, poses[::-1]))[:, :2], poses[::-1, :2])
 
 
 def test_points_go_where_poses_do():
     pose, child = np.array([1.0, 2.0, pi / 2]), np.array([3.0, 0.5, 0.1])
-    assert np.allclose(placed(pose, child[None, :2]), compose(pose, child)[:2])
+    assert np.allclose(transform_points(pose, child[None, :2]), compose(pose, child)[:2])
     assert compose(pose, child) == pytest.approx([0.5, 5.0, pi / 2 + 0.1])
 
 

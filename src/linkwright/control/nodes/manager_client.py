@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Node, Parameter
 from linkwright.messages import get_message, get_service
-from linkwright.nodes.answers import answered, is_served
+from linkwright.nodes.answers import wait_for_future, wait_for_service
 from linkwright.nodes.options import SingleNode
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -80,7 +80,7 @@ class ManagerClient:
             await self._wait_for(client, name)
             for attempt in range(1, _ATTEMPTS + 1):
                 future = client.call_async(made.Request(**fields))
-                if await answered(self._node, future, self._call_timeout):
+                if await wait_for_future(self._node, future, self._call_timeout):
                     return future.result()
                 client.remove_pending_request(future)
                 self._node.get_logger().warning(
@@ -96,7 +96,7 @@ class ManagerClient:
         logger = self._node.get_logger()
         while not client.service_is_ready():
             logger.info(f"waiting for service {name} to become available...")
-            if await is_served(self._node, client, self._timeout or _LOOK_AGAIN):
+            if await wait_for_service(self._node, client, self._timeout or _LOOK_AGAIN):
                 return
             if self._timeout:
                 raise NoManagerError(f"Could not contact service {name}")

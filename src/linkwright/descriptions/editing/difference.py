@@ -48,7 +48,7 @@ def path_to(root: Element, element: Element) -> tuple[int, ...] | None:
     return None
 
 
-def others(before: Element, after: Element, target: Target) -> Iterator[tuple[Element, ...]]:
+def other_differences(before: Element, after: Element, target: Target) -> Iterator[tuple[Element, ...]]:
     """Yield the differences other than the edited attribute.
 
     Args:

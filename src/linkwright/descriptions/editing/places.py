@@ -95,7 +95,7 @@ def is_constant(word: Place) -> bool:
     return tree is not None and _names(tree) <= _OF_PI
 
 
-def exchanged(word: Place, value: float) -> Candidate:
+def replacement_candidate(word: Place, value: float) -> Candidate:
     """Return a candidate that replaces a whole word by a number, as a fraction of pi if the word contains pi."""
 
     def write(number: float, tolerance: float) -> str:
@@ -111,7 +111,7 @@ def exchanged(word: Place, value: float) -> Candidate:
     return Candidate(word, value, write)
 
 
-def summed(word: Place, *, is_angle: bool) -> Candidate | None:
+def addition_candidate(word: Place, *, is_angle: bool) -> Candidate | None:
     """Return a candidate that adds a number to an expression.
 
     Returns None if the word is not a single expression.

@@ -12,7 +12,7 @@ from itertools import islice
 from math import isfinite
 
 from linkwright.descriptions.editing.definitions import attribute
-from linkwright.descriptions.editing.difference import Target, described, others, path_to
+from linkwright.descriptions.editing.difference import Target, described, other_differences, path_to
 from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.numbers import EXACT, numbers_of, same, shortest
 from linkwright.descriptions.editing.places import Candidate, Place, literal, words
@@ -132,7 +132,7 @@ class _Planner:
         place = self._written(element, name)
         parts = words(place)
         if len(parts) == len(wanted) and all(literal(parts[i]) for i in changed) and len(changed) > 1:
-            together = self._together(target, place, parts, {i: wanted[i] for i in changed})
+            together = self._edit_together(target, place, parts, {i: wanted[i] for i in changed})
             if together is not None:
                 self._now = together
                 return
@@ -209,7 +209,9 @@ class _Planner:
         attempts.append(Attempt(candidate.place))
         return None
 
-    def _together(self, target: Target, place: Place, parts: list[Place], new: dict[int, float]) -> Snapshot | None:
+    def _edit_together(
+        self, target: Target, place: Place, parts: list[Place], new: dict[int, float]
+    ) -> Snapshot | None:
         """Return the result of editing several literal numbers of an attribute in one edit.
 
         Returns None if more would change.
@@ -244,7 +246,7 @@ class _Planner:
         return tuple(dict.fromkeys(found))
 
     def _differences(self, trial: Snapshot, target: Target) -> list[str]:
-        return [described(trail) for trail in others(self._now.root, trial.root, target)]
+        return [described(trail) for trail in other_differences(self._now.root, trial.root, target)]
 
     # attributes that are not written yet
 

@@ -10,10 +10,10 @@ from linkwright.descriptions.editing.places import (
     Candidate,
     Place,
     added_constants,
-    exchanged,
+    addition_candidate,
     is_constant,
     literal,
-    summed,
+    replacement_candidate,
     words,
 )
 from linkwright.xacro.faults import Frame
@@ -46,12 +46,12 @@ def proposals(
     for word in reached:
         yield from definitions.given(word.text, index, frame)
     for word in reached:
-        found = summed(word, is_angle=is_angle)
+        found = addition_candidate(word, is_angle=is_angle)
         if found is not None:
             yield found
     own = words(place)
     if len(own) == len(present):
-        yield exchanged(own[index], present[index])
+        yield replacement_candidate(own[index], present[index])
     elif len(own) == 1:
         yield _whole(place, index, present)
 
@@ -85,7 +85,7 @@ def _numbers_in(word: Place, value: float) -> Iterator[Candidate]:
         return
     found = list(added_constants(word))
     if is_constant(word) and (not found or ("pi" in word.text and "180" not in word.text)):
-        found = [exchanged(word, value)]
+        found = [replacement_candidate(word, value)]
     yield from found
 
 

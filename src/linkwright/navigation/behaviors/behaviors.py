@@ -14,7 +14,7 @@ from math import copysign, hypot, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.navigation.following.follower import STILL, Pose, Velocity, motions, wrapped
+from linkwright.navigation.following.follower import STILL, Pose, Velocity, predict_poses, wrapped
 
 IsFree = Callable[[NDArray[np.float64]], bool]
 """Whether the robot touches nothing at all of some poses, of shape (poses, 3)."""
@@ -107,7 +107,7 @@ class Spin(Behavior):
             parameters.max_rotational_vel,
         )
         velocity = Velocity(yaw=copysign(speed, self._angle))
-        ahead = _ahead(pose, velocity, min(parameters.simulate_ahead_time, left / speed))
+        ahead = _predicted_poses(pose, velocity, min(parameters.simulate_ahead_time, left / speed))
         if not is_free(ahead):
             return Step(Outcome.COLLISION, traveled=self._turned)
         return Step(Outcome.RUNNING, velocity, self._turned)
@@ -137,7 +137,7 @@ class DriveStraight(Behavior):
         if left <= 0.0:
             return Step(Outcome.DONE, traveled=traveled)
         velocity = Velocity(self._speed)
-        if not is_free(_ahead(pose, velocity, min(self._look_ahead, left / abs(self._speed)))):
+        if not is_free(_predicted_poses(pose, velocity, min(self._look_ahead, left / abs(self._speed)))):
             return Step(Outcome.COLLISION, traveled=traveled)
         return Step(Outcome.RUNNING, velocity, traveled)
 
@@ -153,7 +153,7 @@ class Wait(Behavior):
         return Step(Outcome.DONE if elapsed >= self._seconds else Outcome.RUNNING)
 
 
-def slowed(pose: Pose, velocity: Velocity, seconds: float, is_free: IsFree) -> Velocity:
+def slow_near_obstacles(pose: Pose, velocity: Velocity, seconds: float, is_free: IsFree) -> Velocity:
     """Return an operator's velocity, slowed down before obstacles (nav2's assisted teleoperation).
 
     The sooner the velocity leads into an obstacle, the more it is reduced.
@@ -164,7 +164,7 @@ def slowed(pose: Pose, velocity: Velocity, seconds: float, is_free: IsFree) -> V
         seconds: how far ahead obstacles are checked, in seconds.
         is_free: see `IsFree`.
     """
-    ahead = _ahead(pose, velocity, seconds)
+    ahead = _predicted_poses(pose, velocity, seconds)
     for index in range(len(ahead)):
         if not is_free(ahead[index : index + 1]):
             share = index / len(ahead)
@@ -172,10 +172,10 @@ def slowed(pose: Pose, velocity: Velocity, seconds: float, is_free: IsFree) -> V
     return velocity
 
 
-def _ahead(pose: Pose, velocity: Velocity, seconds: float) -> NDArray[np.float64]:
+def _predicted_poses(pose: Pose, velocity: Velocity, seconds: float) -> NDArray[np.float64]:
     """Return the poses reached with a velocity over the next seconds, of shape (poses, 3)."""
     count = max(2, round(seconds / _LOOKS) + 1)
-    ahead: NDArray[np.float64] = motions(pose, np.array([velocity]), np.linspace(0.0, seconds, count)[1:])[0]
+    ahead: NDArray[np.float64] = predict_poses(pose, np.array([velocity]), np.linspace(0.0, seconds, count)[1:])[0]
     return ahead
 
 

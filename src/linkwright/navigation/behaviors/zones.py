@@ -173,7 +173,7 @@ class Verdict:
     zone: str = ""
 
 
-def judged(velocity: Velocity, zones: Sequence[tuple[str, Rule, Shape, Points]]) -> Verdict:
+def limit_by_zones(velocity: Velocity, zones: Sequence[tuple[str, Rule, Shape, Points]]) -> Verdict:
     """Limit a velocity by all zones: the lowest limit wins, and a stop ends the search.
 
     Args:

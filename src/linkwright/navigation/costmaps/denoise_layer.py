@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from linkwright.navigation.costmaps.costmap import FREE, LETHAL
-from linkwright.navigation.costmaps.layer import Layer, Moment, Window
+from linkwright.navigation.costmaps.layer import Layer, UpdateContext, Window
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.library import load_scipy
 
@@ -29,11 +29,11 @@ class DenoiseLayer(Layer):
         if group_connectivity_type != _ALL_NEIGHBOURS:
             self._together[[0, 0, 2, 2], [0, 2, 0, 2]] = False
 
-    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
+    def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
         """Return the window changed by the layers below, padded by the size of a small group."""
         return window.padded(self._least, grid)
 
-    def write(self, grid: Grid, window: Window, moment: Moment) -> None:
+    def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Free small groups of lethal cells.
 
         Groups at the edge of the window are completed from the cells around it.

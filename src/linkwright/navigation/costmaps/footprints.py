@@ -48,7 +48,7 @@ def read_footprint(text: str) -> Footprint:
     return corners
 
 
-def padded(footprint: Footprint, padding: float) -> Footprint:
+def pad_footprint(footprint: Footprint, padding: float) -> Footprint:
     """Return a footprint whose corners are moved outward along both axes by a padding in metres."""
     larger: Footprint = footprint + padding * np.sign(footprint)
     return larger
@@ -74,7 +74,7 @@ def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
     return np.concatenate(parts)
 
 
-def placed(footprint: Footprint, x: float, y: float, yaw: float) -> Footprint:
+def place_footprint(footprint: Footprint, x: float, y: float, yaw: float) -> Footprint:
     """Return the corners of a footprint with the robot at a pose, in the frame of that pose."""
     cosine, sine = np.cos(yaw), np.sin(yaw)
     turned: Footprint = footprint @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)

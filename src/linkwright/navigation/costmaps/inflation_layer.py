@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.costmaps.costmap import FREE, INSCRIBED, LETHAL, MAX_PASSABLE, UNKNOWN
-from linkwright.navigation.costmaps.layer import Costs, Layer, Moment, Window
+from linkwright.navigation.costmaps.layer import Costs, Layer, UpdateContext, Window
 from linkwright.navigation.grids.distances import distance_field
 from linkwright.navigation.grids.grid import Grid
 
@@ -61,7 +61,7 @@ class InflationLayer(Layer):
     def inflation(self, inflation: Inflation) -> None:
         self._inflation, self._inscribed_radius = inflation, None
 
-    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
+    def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
         """Return the window changed below, padded by the inflation radius.
 
         If the footprint changed, the window is the whole grid.
@@ -71,7 +71,7 @@ class InflationLayer(Layer):
             return Window.of(grid)
         return window.padded(self._reach(grid), grid)
 
-    def write(self, grid: Grid, window: Window, moment: Moment) -> None:
+    def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Write the costs in the window that are caused by obstacles inside and around it."""
         reach = self._reach(grid)
         if not reach:

@@ -80,7 +80,7 @@ class Window:
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class UpdateContext:
     """The time of an update and the robot's pose at that time.
 
     Attributes:
@@ -115,7 +115,7 @@ class Layer(ABC):
         """
 
     @abstractmethod
-    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
+    def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
         """Process new data, and return the window whose costs change.
 
         Args:
@@ -128,7 +128,7 @@ class Layer(ABC):
         """
 
     @abstractmethod
-    def write(self, grid: Grid, window: Window, moment: Moment) -> None:
+    def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Write costs into the cells of the window."""
 
     def reset(self) -> None:  # noqa: B027  # most keep nothing
@@ -142,7 +142,7 @@ class Layer(ABC):
         return True
 
 
-class SeenLayer(Layer):
+class PersistentLayer(Layer):
     """A layer with its own cells, which keep their values until they are cleared.
 
     Attributes:
@@ -158,7 +158,7 @@ class SeenLayer(Layer):
 
     def match(self, grid: Grid, default: int) -> None:
         """Keep the cells that are still in the costmap after it moved."""
-        cells = shifted(self.seen.cells, self.seen, grid, default)
+        cells = shift_cells(self.seen.cells, self.seen, grid, default)
         self.seen = Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y)
         self._default = default
         self._extra = Window.of(grid)
@@ -184,7 +184,7 @@ class SeenLayer(Layer):
         return extra
 
 
-def shifted(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray[Any]:
+def shift_cells(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray[Any]:
     """Return the cells of a grid moved to another grid; cells outside the old grid are `fill`."""
     moved = np.full((new.rows, new.columns), fill, cells.dtype)
     if old.resolution != new.resolution:
@@ -197,12 +197,12 @@ def shifted(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray[Any
     return moved
 
 
-def footprint_window(moment: Moment, grid: Grid) -> Window:
+def footprint_window(moment: UpdateContext, grid: Grid) -> Window:
     """Return the window around the robot's footprint."""
     return Window.around(grid.cells_of(moment.footprint), grid)
 
 
-def free_footprint(cells: Costs, moment: Moment, grid: Grid, window: Window) -> None:
+def free_footprint(cells: Costs, moment: UpdateContext, grid: Grid, window: Window) -> None:
     """Free the cells below the robot's footprint."""
     inside = footprint_window(moment, grid)
     inside = Window(

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from linkwright.navigation.costmaps.costmap import FREE, UNKNOWN, Costmap
-from linkwright.navigation.costmaps.footprints import Footprint, padded, placed, radii
-from linkwright.navigation.costmaps.layer import Layer, Moment, Window
+from linkwright.navigation.costmaps.footprints import Footprint, pad_footprint, place_footprint, radii
+from linkwright.navigation.costmaps.layer import Layer, UpdateContext, Window
 from linkwright.navigation.grids.grid import Grid
 
 Pose = tuple[float, float, float]
@@ -62,7 +62,7 @@ class LayeredCostmap:
 
     @footprint.setter
     def footprint(self, unpadded: Footprint) -> None:
-        self._footprint = padded(unpadded, self.padding)
+        self._footprint = pad_footprint(unpadded, self.padding)
         self.inscribed_radius, self.circumscribed_radius = radii(self._footprint)
 
     def resize(self, grid: Grid) -> None:
@@ -87,8 +87,8 @@ class LayeredCostmap:
         if self.rolling:
             self._centre(x, y)
         grid = self.costmap.grid
-        footprint = placed(self._footprint, x, y, yaw)
-        moment = Moment(x, y, footprint, self.inscribed_radius, time_ns)
+        footprint = place_footprint(self._footprint, x, y, yaw)
+        moment = UpdateContext(x, y, footprint, self.inscribed_radius, time_ns)
         active = [layer for layer in self.layers if layer.enabled]
         window = Window() if self._updated and not self.rolling else Window.of(grid)
         for layer in active:

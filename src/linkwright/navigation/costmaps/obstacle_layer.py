@@ -14,7 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.costmaps.costmap import FREE, LETHAL, UNKNOWN
-from linkwright.navigation.costmaps.layer import Moment, SeenLayer, Window, footprint_window, free_footprint
+from linkwright.navigation.costmaps.layer import (
+    PersistentLayer,
+    UpdateContext,
+    Window,
+    footprint_window,
+    free_footprint,
+)
 from linkwright.navigation.costmaps.observations import Observation, ObservationBuffer
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.rays import cells_on_lines
@@ -33,7 +39,7 @@ class Heights:
     max_obstacle_height: float = 2.0
 
 
-class ObstacleLayer(SeenLayer):
+class ObstacleLayer(PersistentLayer):
     """A layer that marks the cells of points, and clears the cells on the rays to them.
 
     Args:
@@ -67,7 +73,7 @@ class ObstacleLayer(SeenLayer):
         """Return whether all sensors published within the expected time."""
         return not self._forgotten and all(buffer.is_current(time_ns) for buffer in self.buffers)
 
-    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
+    def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
         """Return the window touched by the rays and points of the new observations."""
         self._forgotten = False
         window = window.joined(self.pop_extra())
@@ -86,7 +92,7 @@ class ObstacleLayer(SeenLayer):
             window = window.joined(footprint_window(moment, grid))
         return window
 
-    def write(self, grid: Grid, window: Window, moment: Moment) -> None:
+    def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Merge the layer's cells into the costmap."""
         if self._footprint_clearing:
             free_footprint(self.seen.cells, moment, self.seen, window)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.costmaps.costmap import FREE, LETHAL, UNKNOWN
-from linkwright.navigation.costmaps.layer import Moment, SeenLayer, Window
+from linkwright.navigation.costmaps.layer import PersistentLayer, UpdateContext, Window
 from linkwright.navigation.grids.grid import Grid
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -71,7 +71,7 @@ class Reading:
     time_ns: int
 
 
-class RangeLayer(SeenLayer):
+class RangeLayer(PersistentLayer):
     """A layer of probabilities updated by readings: in `seen`, 0 is certainly free and 254 certainly occupied."""
 
     def __init__(self, settings: RangeSettings) -> None:
@@ -99,14 +99,14 @@ class RangeLayer(SeenLayer):
         most = self.settings.no_readings_timeout
         return not most or (self._heard_ns is not None and (time_ns - self._heard_ns) / NANOSECONDS_PER_SECOND <= most)
 
-    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
+    def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
         """Return the window that new readings touch."""
         window = window.joined(self.pop_extra())
         while self._readings:
             window = window.joined(self._learn(self._readings.popleft(), grid))
         return window
 
-    def write(self, grid: Grid, window: Window, moment: Moment) -> None:
+    def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Write cells as occupied or free where their probability is beyond a threshold."""
         likely, below = self.seen.cells[window.cells], grid.cells[window.cells]
         below[(likely < self.settings.clear_threshold * _CERTAIN) & (below == UNKNOWN)] = FREE

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.costmaps.costmap import FREE, LETHAL, UNKNOWN
-from linkwright.navigation.costmaps.layer import Costs, Layer, Moment, Window, footprint_window, free_footprint
+from linkwright.navigation.costmaps.layer import Costs, Layer, UpdateContext, Window, footprint_window, free_footprint
 from linkwright.navigation.grids.grid import Grid
 
 MapPose = tuple[float, float, float]
@@ -109,7 +109,7 @@ class StaticLayer(Layer):
         """Return whether a map exists and its transform is known."""
         return self.map is not None and (self._placed is not None or self._news)
 
-    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
+    def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
         """Return the changed window; after a new map or transform it is the whole grid."""
         if self.map is None:
             return window
@@ -123,17 +123,17 @@ class StaticLayer(Layer):
         self._news = False
         return Window.of(grid)
 
-    def write(self, grid: Grid, window: Window, moment: Moment) -> None:
+    def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Write the map's cells in the window."""
         if self.map is None or self._placed is None:
             return
         part = grid.cells[window.cells]
-        inside, costs = self._lying_straight(grid, window) or self._lying_anyhow(grid, window)
+        inside, costs = self._aligned_cells(grid, window) or self._sampled_cells(grid, window)
         part[inside] = np.maximum(part[inside], costs) if self._use_maximum else costs
         if self._footprint_clearing:
             free_footprint(grid.cells, moment, grid, window)
 
-    def _lying_straight(self, grid: Grid, window: Window) -> tuple[tuple[slice, slice], Costs] | None:
+    def _aligned_cells(self, grid: Grid, window: Window) -> tuple[tuple[slice, slice], Costs] | None:
         """Return the cells of a window that the map covers, and their costs.
 
         Returns None if the grids are not aligned.
@@ -155,8 +155,8 @@ class StaticLayer(Layer):
         there = slice(top, top + seen.bottom - seen.top), slice(left, left + seen.right - seen.left)
         return there, known.cells[seen.cells]
 
-    def _lying_anyhow(self, grid: Grid, window: Window) -> tuple[NDArray[np.bool_], Costs]:
-        """Return the same as `_lying_straight` for grids that are not aligned, sampled at the cell centres."""
+    def _sampled_cells(self, grid: Grid, window: Window) -> tuple[NDArray[np.bool_], Costs]:
+        """Return the same as `_aligned_cells` for grids that are not aligned, sampled at the cell centres."""
         assert self.map is not None
         assert self._placed is not None
         rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.costmaps.costmap import FREE, LETHAL, UNKNOWN
-from linkwright.navigation.costmaps.layer import Window, shifted
+from linkwright.navigation.costmaps.layer import Window, shift_cells
 from linkwright.navigation.costmaps.observations import Observation, ObservationBuffer
 from linkwright.navigation.costmaps.obstacle_layer import Cells, Heights, ObstacleLayer, ray_ends
 from linkwright.navigation.grids.grid import Grid
@@ -68,8 +68,8 @@ class VoxelLayer(ObstacleLayer):
 
     def match(self, grid: Grid, default: int) -> None:
         """Keep the cells that are still in the costmap after it moved."""
-        self._occupied = shifted(self._occupied, self.seen, grid, 0)
-        self._unknown = shifted(self._unknown, self.seen, grid, _ALL)
+        self._occupied = shift_cells(self._occupied, self.seen, grid, 0)
+        self._unknown = shift_cells(self._unknown, self.seen, grid, _ALL)
         super().match(grid, default)
 
     def reset(self) -> None:

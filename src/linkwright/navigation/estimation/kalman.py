@@ -22,8 +22,8 @@ from linkwright.navigation.estimation.motion_model import (
     Matrix,
     State,
     Vector,
-    derivatives,
-    predicted,
+    predict_state,
+    state_jacobian,
     wrap_angles,
     wrapped,
 )
@@ -238,8 +238,8 @@ class ExtendedKalmanFilter(KalmanFilter):
     """A Kalman filter that linearises the motion at the state."""
 
     def _predict(self, seconds: float) -> None:
-        jacobian, noise = derivatives(self.state, seconds), self._noise_of(seconds)
-        self.state = predicted(self.state, seconds)
+        jacobian, noise = state_jacobian(self.state, seconds), self._noise_of(seconds)
+        self.state = predict_state(self.state, seconds)
         self.covariance = jacobian @ self.covariance @ jacobian.T + noise
 
 
@@ -268,7 +268,7 @@ class UnscentedKalmanFilter(KalmanFilter):
         noise = self._noise_of(seconds)
         root = _square_root(self.covariance) * self._scale
         points = [self.state, *(self.state + column for column in root.T), *(self.state - column for column in root.T)]
-        moved = np.array([predicted(point, seconds) for point in points])
+        moved = np.array([predict_state(point, seconds) for point in points])
         # Angles near +-pi are averaged relative to the first point.
         centre = moved[0]
         away = moved - centre

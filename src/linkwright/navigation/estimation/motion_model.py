@@ -68,7 +68,7 @@ def rotation(roll: float, pitch: float, yaw: float) -> Matrix:
     )
 
 
-def predicted(state: Vector, seconds: float) -> Vector:
+def predict_state(state: Vector, seconds: float) -> Vector:
     """Return the state after some seconds as a new array of shape (15,), with angles between -pi and pi."""
     turn, angle_rates = rotation(*state[ANGLES].tolist()), _angle_rates(state)
     later = state.copy()
@@ -79,8 +79,8 @@ def predicted(state: Vector, seconds: float) -> Vector:
     return later
 
 
-def derivatives(state: Vector, seconds: float) -> Matrix:
-    """Return the Jacobian of `predicted` with respect to the state, shape (15, 15)."""
+def state_jacobian(state: Vector, seconds: float) -> Matrix:
+    """Return the Jacobian of `predict_state` with respect to the state, shape (15, 15)."""
     roll, pitch, yaw = state[ANGLES].tolist()
     turn, angle_rates = rotation(roll, pitch, yaw), _angle_rates(state)
     jacobian = np.eye(SIZE)

@@ -119,7 +119,10 @@ class PoseReader:
         pose, known = _known_pose(pose, self.used)
         if not any(known):
             return None
-        used = (*_turned(self.used, known, turn, POSITION), *_turned(self.used, known, turn, ANGLES))
+        used = (
+            *_rotated_components(self.used, known, turn, POSITION),
+            *_rotated_components(self.used, known, turn, ANGLES),
+        )
         both = _twice(turn)
         turned = both @ covariance @ both.T
         if self.differential:
@@ -174,7 +177,12 @@ def read_twist(
     reading.values[VELOCITY] = turn @ linear + (y * yaw - z * pitch, z * roll - x * yaw, x * pitch - y * roll)
     reading.values[RATES] = turn @ angular
     reading.covariance[TWIST, TWIST] = both @ covariance @ both.T
-    mask = (*([False] * 6), *_turned(used, known, turn, VELOCITY), *_turned(used, known, turn, RATES), *([False] * 3))
+    mask = (
+        *([False] * 6),
+        *_rotated_components(used, known, turn, VELOCITY),
+        *_rotated_components(used, known, turn, RATES),
+        *([False] * 3),
+    )
     return _finished(reading, mask, two_d=two_d)
 
 
@@ -195,7 +203,7 @@ def read_acceleration(
     reading = _empty()
     reading.values[ACCELERATION] = turn @ _numbers(acceleration)
     reading.covariance[ACCELERATION, ACCELERATION] = turn @ covariance @ turn.T
-    return _finished(reading, (*([False] * 12), *_turned(used, known, turn, ACCELERATION)), two_d=two_d)
+    return _finished(reading, (*([False] * 12), *_rotated_components(used, known, turn, ACCELERATION)), two_d=two_d)
 
 
 def without_gravity(acceleration: Vector, orientation: Quaternion, gravity: float = GRAVITY) -> Vector:
@@ -244,16 +252,18 @@ def _numbers(values: Vector) -> Vector:
     return numbers
 
 
-def _turned(used: Used, known: Used, turn: Matrix, part: slice) -> Used:
+def _rotated_components(used: Used, known: Used, turn: Matrix, part: slice) -> Used:
     """Return which components are known in the body's axes when only some are known in the sensor's."""
     lost = tuple(each and not here for each, here in zip(used, known, strict=True))
     return tuple(
         bool(here and not gone)
-        for here, gone in zip(_touched(known, turn, part), _touched(lost, turn, part), strict=True)
+        for here, gone in zip(
+            _affected_components(known, turn, part), _affected_components(lost, turn, part), strict=True
+        )
     )
 
 
-def _touched(flags: Used, turn: Matrix, part: slice) -> NDArray[np.bool_]:
+def _affected_components(flags: Used, turn: Matrix, part: slice) -> NDArray[np.bool_]:
     """Return which components in the body's axes depend on a flagged component in the sensor's axes."""
     columns = turn[:, np.array(flags[part], dtype=bool)]
     touched: NDArray[np.bool_] = np.sum(columns * columns, axis=1) >= _LEAST * _LEAST

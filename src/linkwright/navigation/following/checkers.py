@@ -110,7 +110,7 @@ class ProgressChecker:
         """Reset for a new goal."""
         self._from = None
 
-    def gets_on(self, pose: Pose, time_ns: int) -> bool:
+    def makes_progress(self, pose: Pose, time_ns: int) -> bool:
         """Return whether the robot made enough progress within the time limit."""
         if self._from is None or self._has_moved(self._from, pose):
             self._from, self._since_ns = pose, time_ns

@@ -97,7 +97,7 @@ def wrapped(angle: float) -> float:
     return float(np.arctan2(np.sin(angle), np.cos(angle)))
 
 
-def in_frame_of(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float64]:
+def to_robot_frame(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Transform points, of shape (..., 2), to the frame of a robot at a pose: x forward, y to the left."""
     x, y, yaw = pose
     cosine, sine = np.cos(yaw), np.sin(yaw)
@@ -113,7 +113,7 @@ def lengths_along(path: NDArray[np.float64]) -> NDArray[np.float64]:
     return lengths
 
 
-def motions(pose: Pose, velocities: NDArray[np.float64], times: NDArray[Any]) -> NDArray[np.float64]:
+def predict_poses(pose: Pose, velocities: NDArray[np.float64], times: NDArray[Any]) -> NDArray[np.float64]:
     """Return the poses of a robot that moves at constant velocity: exactly, on circular arcs.
 
     Args:

@@ -34,7 +34,7 @@ class FollowedPath:
         near = self.poses[self._index : max(limit, self._index + 1), :2]
         self._index += int(np.argmin((near[:, 0] - x) ** 2 + (near[:, 1] - y) ** 2))
 
-    def ahead(self, distance: float) -> NDArray[np.float64]:
+    def poses_ahead(self, distance: float) -> NDArray[np.float64]:
         """Return the poses ahead of the robot up to a distance along the path in metres.
 
         There are at least two.

@@ -22,10 +22,10 @@ from linkwright.navigation.following.follower import (
     Pose,
     Situation,
     Velocity,
-    in_frame_of,
     lengths_along,
     limited,
-    motions,
+    predict_poses,
+    to_robot_frame,
     wrapped,
 )
 
@@ -74,13 +74,13 @@ class RegulatedPurePursuit(Follower):
     def velocity(self, situation: Situation) -> Velocity:
         """Return the velocity for the next cycle; see `Follower.velocity`."""
         parameters = self.parameters
-        seen = in_frame_of(situation.pose, situation.path[:, :2])
+        seen = to_robot_frame(situation.pose, situation.path[:, :2])
         cusp = _distance_to_cusp(seen) if parameters.allow_reversing else len(seen)
         seen = seen[: cusp + 1]
         lookahead = self._lookahead(situation.velocity.x)
         carrot = carrot_on(seen, lookahead)
         sign = -1.0 if parameters.allow_reversing and carrot[0] < 0.0 else 1.0
-        to_goal = hypot(*in_frame_of(situation.pose, situation.path[-1, :2]))
+        to_goal = hypot(*to_robot_frame(situation.pose, situation.path[-1, :2]))
         if parameters.use_rotate_to_heading and to_goal < situation.xy_tolerance:
             command = self._turn(wrapped(situation.path[-1, 2] - situation.pose[2]), situation)
         elif self._must_turn(angle := atan2(sign * carrot[1], sign * carrot[0])):
@@ -230,7 +230,7 @@ def is_free(situation: Situation, command: Velocity, seconds: float) -> bool:
         return True
     step = situation.costmap.grid.resolution / fastest
     times = np.arange(step, max(seconds, step) + step, step)
-    ways = motions(situation.pose, np.array([command]), times)
+    ways = predict_poses(situation.pose, np.array([command]), times)
     costs = situation.costmap.footprint_cost(ways, situation.footprint)
     return not bool(np.any(costs == LETHAL))
 

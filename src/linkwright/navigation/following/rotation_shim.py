@@ -15,8 +15,8 @@ from linkwright.navigation.following.follower import (
     FollowingError,
     Situation,
     Velocity,
-    in_frame_of,
     lengths_along,
+    to_robot_frame,
 )
 from linkwright.navigation.following.pure_pursuit import is_free, turning_speed
 
@@ -59,7 +59,7 @@ class RotationShim(Follower):
     def velocity(self, situation: Situation) -> Velocity:
         """Return the velocity for the next cycle; see `Follower.velocity`."""
         parameters = self._parameters
-        seen = in_frame_of(situation.pose, situation.path[:, :2])
+        seen = to_robot_frame(situation.pose, situation.path[:, :2])
         lengths = lengths_along(situation.path)
         index = min(int(np.searchsorted(lengths, parameters.forward_sampling_distance)), len(seen) - 1)
         angle = atan2(float(seen[index, 1]), float(seen[index, 0]))

@@ -20,10 +20,10 @@ from linkwright.navigation.following.follower import (
     FollowingError,
     Situation,
     Velocity,
-    in_frame_of,
     lengths_along,
     limited,
-    motions,
+    predict_poses,
+    to_robot_frame,
     wrapped,
 )
 from linkwright.navigation.following.pure_pursuit import is_free, turning_speed
@@ -108,7 +108,7 @@ class SamplingFollower(Follower):
         return self._best(situation)
 
     def _angle_to_path(self, situation: Situation) -> float:
-        seen = in_frame_of(situation.pose, situation.path[:, :2])
+        seen = to_robot_frame(situation.pose, situation.path[:, :2])
         index = min(int(np.searchsorted(lengths_along(situation.path), _LOOK_AHEAD)), len(seen) - 1)
         return atan2(float(seen[index, 1]), float(seen[index, 0]))
 
@@ -136,12 +136,12 @@ class SamplingFollower(Follower):
         """
         parameters = self.parameters
         candidates = self._candidates(situation)
-        ways = motions(situation.pose, candidates, np.linspace(0.0, parameters.seconds, parameters.steps + 1)[1:])
+        ways = predict_poses(situation.pose, candidates, np.linspace(0.0, parameters.seconds, parameters.steps + 1)[1:])
         costs = situation.costmap.cost_at(ways[..., :2]).astype(np.float64)
         costs[costs == UNKNOWN] = 0.0
         highest: NDArray[np.float64] = costs.max(axis=1)
         free = np.flatnonzero(highest < INSCRIBED)
-        judged = self._judged(ways[free], highest[free] / INSCRIBED, situation)
+        judged = self._motion_costs(ways[free], highest[free] / INSCRIBED, situation)
         for index in free[np.argsort(judged)][:_MOST_FOOTPRINTS]:
             best = Velocity(*map(float, candidates[index]))
             if highest[index] <= 0.0 or is_free(situation, best, parameters.seconds):
@@ -175,7 +175,7 @@ class SamplingFollower(Follower):
                 share = min(share, change / abs(after - before))
         return Velocity(*(before + share * (after - before) for before, after in zip(now, wanted, strict=True)))
 
-    def _judged(
+    def _motion_costs(
         self, ways: NDArray[np.float64], costs: NDArray[np.float64], situation: Situation
     ) -> NDArray[np.float64]:
         """Return the costs of motions, in metres of the path, of shape (motions,)."""

@@ -45,7 +45,7 @@ MotionModel = Callable[[Poses, Pose, Pose, Noise, np.random.Generator], None]
 """Moves particles in place: particles, the odometry poses before and after, the noise, and the random generator."""
 
 
-def turned_by(angle: float) -> float:
+def wrap_angle(angle: float) -> float:
     """Return an angle wrapped to -pi to pi."""
     return atan2(sin(angle), cos(angle))
 
@@ -58,12 +58,12 @@ def differential(
     random: np.random.Generator,
 ) -> None:
     """Move particles by the differential model: rotation, translation, rotation."""
-    x, y, turn = after[0] - before[0], after[1] - before[1], turned_by(after[2] - before[2])
+    x, y, turn = after[0] - before[0], after[1] - before[1], wrap_angle(after[2] - before[2])
     drive = hypot(x, y)
-    first = 0.0 if drive < _STANDS_STILL else turned_by(atan2(y, x) - before[2])
-    second = turned_by(turn - first)
+    first = 0.0 if drive < _STANDS_STILL else wrap_angle(atan2(y, x) - before[2])
+    second = wrap_angle(turn - first)
     # Driving backward must not count as a half turn.
-    first_size, second_size = (min(abs(rotation), abs(turned_by(rotation - pi))) for rotation in (first, second))
+    first_size, second_size = (min(abs(rotation), abs(wrap_angle(rotation - pi))) for rotation in (first, second))
     count = len(particles)
     drive_sigma = sqrt(
         noise.drive_of_drive * drive**2 + noise.drive_of_turn * first_size**2 + noise.drive_of_turn * second_size**2
@@ -85,13 +85,13 @@ def omnidirectional(
     random: np.random.Generator,
 ) -> None:
     """Move particles by the omnidirectional model: translation in any direction, and rotation."""
-    x, y, turn = after[0] - before[0], after[1] - before[1], turned_by(after[2] - before[2])
+    x, y, turn = after[0] - before[0], after[1] - before[1], wrap_angle(after[2] - before[2])
     drive = hypot(x, y)
     count = len(particles)
     drive_sigma = sqrt(noise.drive_of_drive * drive**2 + noise.turn_of_turn * turn**2)
     turn_sigma = sqrt(noise.drive_of_turn * turn**2 + noise.turn_of_drive * drive**2)
     strafe_sigma = sqrt(noise.turn_of_turn * turn**2 + noise.strafe * drive**2)
-    bearing = turned_by(atan2(y, x) - before[2]) + particles[:, 2]
+    bearing = wrap_angle(atan2(y, x) - before[2]) + particles[:, 2]
     way = drive + random.normal(0.0, drive_sigma, count)
     sideways = random.normal(0.0, strafe_sigma, count)
     particles[:, 0] += way * np.cos(bearing) + sideways * np.sin(bearing)

@@ -21,7 +21,7 @@ from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import TFMessage, TransformBatch, get_message, get_service
 from linkwright.navigation.grids.occupancy import BadGridError, grid_of
 from linkwright.navigation.localization.beams import Beams, beams_of_scan
-from linkwright.navigation.localization.motion_models import Pose, turned_by
+from linkwright.navigation.localization.motion_models import Pose, wrap_angle
 from linkwright.navigation.localization.particle_filter import Estimate, ParticleFilter
 from linkwright.navigation.localization.sensor_models import MapLikelihoods
 from linkwright.navigation.nodes.amcl_parameters import declare_parameters, read_parameters
@@ -212,7 +212,7 @@ class AmclNode(ManagedNode):
         return (
             abs(odometry[0] - before[0]) > settings.given.update_min_d
             or abs(odometry[1] - before[1]) > settings.given.update_min_d
-            or abs(turned_by(odometry[2] - before[2])) > settings.given.update_min_a
+            or abs(wrap_angle(odometry[2] - before[2])) > settings.given.update_min_a
         )
 
     def _begin_at(self, pose: Pose | None, covariance: NDArray[np.float64]) -> None:
@@ -311,11 +311,11 @@ class AmclNode(ManagedNode):
             logger.error("Received initial pose contains NaNs or Infs! Ignoring as invalid!")
             return
         covariance[2, :2] = covariance[:2, 2] = 0.0  # as nav2 does
-        self._set_pose(self._since(pose, message.header.stamp.nanoseconds), covariance)
+        self._set_pose(self._moved_by_odometry(pose, message.header.stamp.nanoseconds), covariance)
         if not self._active:
             logger.warning("Received initial pose request, but AMCL is not yet in the active state")
 
-    def _since(self, pose: Pose, stamp_ns: int) -> Pose:
+    def _moved_by_odometry(self, pose: Pose, stamp_ns: int) -> Pose:
         """Return an earlier pose moved by the odometry since then, as far as the odometry is known."""
         if not stamp_ns:
             return pose

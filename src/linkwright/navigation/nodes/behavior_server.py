@@ -27,7 +27,7 @@ from linkwright.navigation.behaviors.behaviors import (
     SpinParameters,
     Step,
     Wait,
-    slowed,
+    slow_near_obstacles,
 )
 from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
 from linkwright.navigation.costmaps.footprints import Footprint
@@ -67,7 +67,7 @@ class _AssistedTeleop(Behavior):
         self._seconds, self._asked = seconds, asked
 
     def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
-        return Step(Outcome.RUNNING, slowed(pose, self._asked(), self._seconds, is_free))
+        return Step(Outcome.RUNNING, slow_near_obstacles(pose, self._asked(), self._seconds, is_free))
 
 
 class BehaviorNode(ManagedNode):
@@ -215,7 +215,7 @@ class BehaviorNode(ManagedNode):
         if pose is None:
             self._finish(server, name, "TF_ERROR", "the pose of the robot is not known", elapsed)
             return
-        if name != "wait" and (reason := self._blind()):
+        if name != "wait" and (reason := self._blindness_reason()):
             self._finish(server, name, "UNKNOWN", reason, elapsed)
             return
         step = behavior.step(pose, elapsed, self._is_free)
@@ -244,7 +244,7 @@ class BehaviorNode(ManagedNode):
 
     # --- what is known of the surroundings ----------------------------------------------------------------------------
 
-    def _blind(self) -> str:
+    def _blindness_reason(self) -> str:
         """Return the reason why obstacles are unknown; empty if they are known."""
         if self._costmap is None or self._footprint is None:
             return "no costmap has come yet"

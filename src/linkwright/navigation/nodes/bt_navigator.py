@@ -27,7 +27,7 @@ from linkwright.navigation.nodes.costmap_reading import costmap_of
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedServer
 from linkwright.navigation.nodes.plugins import texts_of
-from linkwright.navigation.nodes.steps import Sent, Step, StepError, StepNode
+from linkwright.navigation.nodes.steps import SentGoal, Step, StepError, StepNode
 
 _DEPTH = 10
 _COSTMAP_TOPIC = "global_costmap/costmap_raw"
@@ -183,7 +183,7 @@ class NavigatorNode(StepNode):
     def _plan_and_drive(self, which: str) -> Step:
         """Follow a path that is replanned periodically."""
         path = yield from self._planned(which)
-        driving = Sent(self._clients["follow_path"], self._to_follow(path))
+        driving = SentGoal(self._clients["follow_path"], self._to_follow(path))
         cleared = False
         planned_ns = self.now_ns()
         try:
@@ -196,14 +196,14 @@ class NavigatorNode(StepNode):
                         raise StepError("UNKNOWN", driving.reason("the controller failed"))
                     cleared = True
                     yield from self._clear("local")
-                    driving = Sent(self._clients["follow_path"], self._to_follow(path))
+                    driving = SentGoal(self._clients["follow_path"], self._to_follow(path))
                 elif driving.has_succeeded:
                     return
                 elif self.now_ns() - planned_ns > _REPLANNING[which] * 1e9:
                     path = yield from self._planned(which)
                     planned_ns = self.now_ns()
                     if not driving.is_over:
-                        driving = Sent(self._clients["follow_path"], self._to_follow(path))
+                        driving = SentGoal(self._clients["follow_path"], self._to_follow(path))
         finally:
             driving.cancel()
 
@@ -217,7 +217,7 @@ class NavigatorNode(StepNode):
         try:
             return (yield from self._plan(which))
         except StepError as failure:
-            if reason := self._objection():
+            if reason := self._refusal_reason():
                 raise StepError("UNKNOWN", f"{reason}: {failure}", is_final=True) from None
             raise
 
@@ -229,7 +229,7 @@ class NavigatorNode(StepNode):
             self._drop_passed()
             goal = get_action("nav2_msgs/action/ComputePathThroughPoses").Goal(goals=self._poses)
             name = "compute_path_through_poses"
-        response = yield from self.asked(self._clients[name], goal, "the planner found no path")
+        response = yield from self.run_remote_goal(self._clients[name], goal, "the planner found no path")
         path = response.path
         if not path.poses:
             raise StepError("NO_VALID_PATH", "the planner found no path")
@@ -237,7 +237,7 @@ class NavigatorNode(StepNode):
         self._left = _length(path)
         return path
 
-    def _objection(self) -> str:
+    def _refusal_reason(self) -> str:
         """Return the reason why the global costmap prevents a goal; empty if it does not."""
         at, frame = self._poses[-1].pose.position, self._poses[-1].header.frame_id
         if self._costmap is None or (frame and frame != self._costmap_frame):
@@ -278,18 +278,18 @@ class NavigatorNode(StepNode):
     def _spin(self) -> Step:
         goal = get_action("nav2_msgs/action/Spin").Goal(target_yaw=_SPIN)
         goal.time_allowance = Duration(seconds=_ALLOWANCE).to_msg()
-        yield from self.asked(self._clients["spin"], goal, "it could not spin")
+        yield from self.run_remote_goal(self._clients["spin"], goal, "it could not spin")
 
     def _wait(self) -> Step:
         goal = get_action("nav2_msgs/action/Wait").Goal()
         goal.time = Duration(seconds=_WAIT).to_msg()
-        yield from self.asked(self._clients["wait"], goal, "it could not wait")
+        yield from self.run_remote_goal(self._clients["wait"], goal, "it could not wait")
 
     def _back_up(self) -> Step:
         goal = get_action("nav2_msgs/action/BackUp").Goal(speed=_BACK_UP_SPEED)
         goal.target.x = _BACK_UP
         goal.time_allowance = Duration(seconds=_ALLOWANCE).to_msg()
-        yield from self.asked(self._clients["backup"], goal, "it could not back up")
+        yield from self.run_remote_goal(self._clients["backup"], goal, "it could not back up")
 
     # --- topics -------------------------------------------------------------------------------------------------------
 
@@ -308,7 +308,7 @@ class NavigatorNode(StepNode):
         self._speed = hypot(twist.linear.x, twist.linear.y)
         place = self._pose() if self._path is not None else None
         if place is not None:
-            self._left = _left_on(self._path, *place)
+            self._left = _remaining_distance(self._path, *place)
 
     def _transform(self) -> Any:
         """Return the robot's pose in the global frame; None if it is unknown."""
@@ -342,7 +342,7 @@ def _length(path: Any) -> float:
     return sum(hypot(b.x - a.x, b.y - a.y) for a, b in pairwise(places))
 
 
-def _left_on(path: Any, x: float, y: float) -> float:
+def _remaining_distance(path: Any, x: float, y: float) -> float:
     """Return the remaining distance along a path, in metres.
 
     It is the distance from a position to the nearest pose of the path, plus the length from there to the end.

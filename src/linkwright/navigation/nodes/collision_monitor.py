@@ -20,7 +20,7 @@ from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import get_message
-from linkwright.navigation.behaviors.zones import Action, Verdict, judged
+from linkwright.navigation.behaviors.zones import Action, Verdict, limit_by_zones
 from linkwright.navigation.following.follower import STILL, Velocity
 from linkwright.navigation.nodes.collision_sources import Source
 from linkwright.navigation.nodes.collision_zones import Zone
@@ -142,7 +142,7 @@ class MonitorNode(ManagedNode):
                 return Verdict(STILL, Action.STOP, _NO_SOURCE)
             seen[source.name] = points
         zones = [zone.judging(velocity, seen) for zone in self._zones]
-        return judged(velocity, [zone for zone in zones if zone is not None])
+        return limit_by_zones(velocity, [zone for zone in zones if zone is not None])
 
     def _publish(self, velocity: Velocity) -> None:
         """Publish a velocity; zeros end after ``stop_pub_timeout``, so that other nodes can drive the robot."""

@@ -37,7 +37,7 @@ _STALE_PATH_FRAME = 5.0
 """Seconds after which where the path's frame is, is not known any more."""
 
 
-class _NotNowError(GoalError):
+class _TemporarilyUnavailableError(GoalError):
     """Raised when data is temporarily unavailable; the goal fails if that lasts."""
 
 
@@ -169,12 +169,12 @@ class ControllerNode(ManagedNode):
             return
         try:
             self._drive(goals)
-        except _NotNowError as problem:
+        except _TemporarilyUnavailableError as problem:
             self._wait(problem)
         except GoalError as failure:
             self._fail(failure)
 
-    def _wait(self, problem: _NotNowError) -> None:
+    def _wait(self, problem: _TemporarilyUnavailableError) -> None:
         """Stop the robot until the missing data arrives, or abort."""
         self._publish(STILL)
         waited = (self.now_ns() - self._good_ns) / 1e9
@@ -190,7 +190,7 @@ class ControllerNode(ManagedNode):
         frame = self._pose(self._path_frame, _STALE_PATH_FRAME)
         pose = self._pose(self.costmap.robot_base_frame, self.costmap.get_parameter("transform_tolerance").value)
         if not self.costmap.is_current:
-            raise _NotNowError("CONTROLLER_TIMED_OUT", "the costmap is not current")
+            raise _TemporarilyUnavailableError("CONTROLLER_TIMED_OUT", "the costmap is not current")
         x, y, yaw = _seen_from(frame, pose)
         self._path.progress(x, y)
         velocity = self._velocity()
@@ -199,12 +199,12 @@ class ControllerNode(ManagedNode):
             self._halt()
             goals.succeed()
             return
-        if not self._progress_checker.gets_on((x, y, yaw), now_ns):
+        if not self._progress_checker.makes_progress((x, y, yaw), now_ns):
             raise GoalError("FAILED_TO_MAKE_PROGRESS", "Failed to make progress")
         situation = Situation(
             pose=pose,
             velocity=velocity,
-            path=_placed(frame, self._path.ahead(self._reach)),
+            path=_transform_poses(frame, self._path.poses_ahead(self._reach)),
             costmap=self.costmap.costmap,
             footprint=self.costmap.footprint,
             period=1.0 / self._frequency,
@@ -245,10 +245,12 @@ class ControllerNode(ManagedNode):
         try:
             found, stamp_ns = self.costmap.transforms.lookup(target, frame, 0)
         except TransformException as error:
-            raise _NotNowError("TF_ERROR", f"Failed to obtain the pose of {frame} in {target}: {error}") from None
+            raise _TemporarilyUnavailableError(
+                "TF_ERROR", f"Failed to obtain the pose of {frame} in {target}: {error}"
+            ) from None
         age = (self.now_ns() - stamp_ns) / 1e9
         if stamp_ns and age > most_seconds:
-            raise _NotNowError("TF_ERROR", f"the pose of {frame} in {target} is {age:.2f} s old")
+            raise _TemporarilyUnavailableError("TF_ERROR", f"the pose of {frame} in {target} is {age:.2f} s old")
         return found[0], found[1], rpy_from_quaternion(found[3:])[2]
 
     def _fail(self, failure: GoalError) -> None:
@@ -309,7 +311,7 @@ def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
     raise GoalError(code, f"there is no {what} '{name}'; available: {', '.join(plugins)}")
 
 
-def _placed(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.float64]:
+def _transform_poses(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.float64]:
     """Transform poses, of shape (poses, 3), by the pose of their frame."""
     x, y, yaw = frame
     c, s = cos(yaw), sin(yaw)

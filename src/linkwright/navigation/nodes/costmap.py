@@ -22,7 +22,13 @@ from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC, TransformListener
 from linkwright.messages import get_message, get_service, is_before_iron
 from linkwright.navigation.costmaps.costmap import Costmap
-from linkwright.navigation.costmaps.footprints import BadFootprintError, Footprint, circle, placed, read_footprint
+from linkwright.navigation.costmaps.footprints import (
+    BadFootprintError,
+    Footprint,
+    circle,
+    place_footprint,
+    read_footprint,
+)
 from linkwright.navigation.costmaps.layered import LayeredCostmap, Pose
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.library import load_scipy
@@ -284,7 +290,7 @@ class CostmapNode(ManagedNode):
         message = self._footprints.msg_type()
         message.header.frame_id, message.header.stamp = self.global_frame, self.get_clock().now().to_msg()
         point = get_message("geometry_msgs/msg/Point32")
-        corners = placed(self.layered.footprint, *pose)
+        corners = place_footprint(self.layered.footprint, *pose)
         message.polygon.points = [point(x=float(x), y=float(y)) for x, y in corners]
         self._footprints.publish(message)
 

@@ -155,7 +155,7 @@ def _static(shared: Surroundings, name: str) -> Layer:
     map_topic.append(
         MapTopic(
             shared.node,
-            _beside(shared.node, topic),
+            _in_parent_namespace(shared.node, topic),
             layer,
             transient_local=shared.value(f"{name}.map_subscribe_transient_local", True),
             updates=shared.value(f"{name}.subscribe_to_updates", False),
@@ -202,7 +202,7 @@ def _buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
         buffer = ObservationBuffer(declared(shared.node, Source, prefix))
         topic = PointsTopic(
             shared.node,
-            _beside(shared.node, shared.value(f"{prefix}.topic", source)),
+            _in_parent_namespace(shared.node, shared.value(f"{prefix}.topic", source)),
             kind,
             buffer,
             shared.transforms,
@@ -225,7 +225,9 @@ def _ranges(shared: Surroundings, name: str) -> Layer:
     shared.value(f"{name}.inflate_cone", 1.0)
     shared.value(f"{name}.input_sensor_type", "ALL")
     for topic in texts_of(shared.node, f"{name}.topics", []):
-        listening = RangeTopic(shared.node, _beside(shared.node, topic), layer, shared.transforms, shared.frame)
+        listening = RangeTopic(
+            shared.node, _in_parent_namespace(shared.node, topic), layer, shared.transforms, shared.frame
+        )
         shared.topics.append(listening)
         shared.sensors.append(listening)
     return layer
@@ -237,6 +239,6 @@ def _denoise(shared: Surroundings, name: str) -> Layer:
     )
 
 
-def _beside(node: Node, topic: str) -> str:
+def _in_parent_namespace(node: Node, topic: str) -> str:
     """Resolve a relative topic in the parent of the costmap's namespace."""
     return topic if topic.startswith(("/", "~")) else join(split(node.get_namespace())[0], topic)

@@ -17,7 +17,7 @@ from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCON
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_service
 from linkwright.navigation.nodes.bond import TIMEOUT, Bond
-from linkwright.nodes.answers import answered, is_served
+from linkwright.nodes.answers import wait_for_future, wait_for_service
 from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import bad_value, log_unknown
@@ -84,7 +84,7 @@ class _ManagedNodeClient:
     async def wait(self, look_again: float) -> None:
         """Wait until the services of the managed node exist, with a log line every few seconds."""
         for client in (self._changing, self._asking):
-            while not await is_served(self._node, client, look_again):
+            while not await wait_for_service(self._node, client, look_again):
                 self._node.get_logger().info(f"Waiting for service {client.service_name}...")
 
     async def change(self, step: _Step, word_each: float) -> bool:
@@ -104,7 +104,7 @@ class _ManagedNodeClient:
         if not self.is_there():
             return False
         future = self._asking.call_async(self._get.Request())
-        if await answered(self._node, future, seconds):
+        if await wait_for_future(self._node, future, seconds):
             answer: Any = future.result()
             return bool(answer.current_state.id == UNCONFIGURED.state_id)
         self._asking.remove_pending_request(future)
@@ -120,7 +120,7 @@ class _ManagedNodeClient:
         if not client.service_is_ready():
             return None
         future = client.call_async(request)
-        while not await answered(self._node, future, word_each):
+        while not await wait_for_future(self._node, future, word_each):
             if not client.service_is_ready():
                 client.remove_pending_request(future)
                 return None
@@ -158,7 +158,7 @@ class LifecycleManager(SingleNode):
             self._node.create_service(get_service(kind), f"{name}/{service}", answer, callback_group=group)
         DiagnosticUpdater(self._node, "Nav2 Health", lambda: _HEALTH[self._state], hardware_id="Nav2")
         if self._autostart:
-            self._begin(self._alone(self._startup))
+            self._begin(self._run_exclusively(self._startup))
 
     def close(self) -> None:
         """Close the manager; the managed nodes keep their states."""
@@ -196,7 +196,7 @@ class LifecycleManager(SingleNode):
             self._cleanup,
         )
         if request.command < len(commands):
-            response.success = await self._alone(commands[request.command])
+            response.success = await self._run_exclusively(commands[request.command])
         else:
             self._logger.error(f"{request.command} is not a command of ManageLifecycleNodes")
         return response
@@ -205,44 +205,44 @@ class LifecycleManager(SingleNode):
         response.success = self._state is _State.ACTIVE
         return response
 
-    async def _alone(self, command: Callable[[], Coroutine[Any, Any, bool]]) -> bool:
+    async def _run_exclusively(self, command: Callable[[], Coroutine[Any, Any, bool]]) -> bool:
         """Run a command after all earlier commands have finished."""
         async with self._busy:
             return await command()
 
     async def _startup(self) -> bool:
         self._logger.info("Starting managed nodes bringup...")
-        if not await self._all(_Step.CONFIGURE) or not await self._all(_Step.ACTIVATE):
+        if not await self._transition_all(_Step.CONFIGURE) or not await self._transition_all(_Step.ACTIVATE):
             return self._failed("Failed to bring up all requested nodes. Aborting bringup.")
         return self._reached(_State.ACTIVE, "Managed nodes are active")
 
     async def _configure(self) -> bool:
         self._logger.info("Configuring managed nodes...")
-        if not await self._all(_Step.CONFIGURE):
+        if not await self._transition_all(_Step.CONFIGURE):
             return self._failed("Failed to configure all requested nodes. Aborting bringup.")
         return self._reached(_State.INACTIVE, "Managed nodes are now configured")
 
     async def _cleanup(self) -> bool:
         self._logger.info("Cleaning up managed nodes...")
-        if not await self._all(_Step.CLEANUP):
+        if not await self._transition_all(_Step.CLEANUP):
             return self._failed("Failed to cleanup all requested nodes. Aborting cleanup.")
         return self._reached(_State.UNCONFIGURED, "Managed nodes have been cleaned up")
 
     async def _pause(self) -> bool:
         self._logger.info("Pausing managed nodes...")
-        if not await self._all(_Step.DEACTIVATE):
+        if not await self._transition_all(_Step.DEACTIVATE):
             return self._failed("Failed to pause nodes: aborting pause")
         return self._reached(_State.INACTIVE, "Managed nodes have been paused")
 
     async def _resume(self) -> bool:
         self._logger.info("Resuming managed nodes...")
-        if not await self._all(_Step.ACTIVATE):
+        if not await self._transition_all(_Step.ACTIVATE):
             return self._failed("Failed to resume nodes: aborting resume")
         return self._reached(_State.ACTIVE, "Managed nodes are active")
 
     async def _reset(self) -> bool:
         self._logger.info("Resetting managed nodes...")
-        if not await self._all(_Step.DEACTIVATE) or not await self._all(_Step.CLEANUP):
+        if not await self._transition_all(_Step.DEACTIVATE) or not await self._transition_all(_Step.CLEANUP):
             return self._failed("Failed to reset nodes: aborting reset")
         return self._reached(_State.UNCONFIGURED, "Managed nodes have been reset")
 
@@ -251,7 +251,7 @@ class LifecycleManager(SingleNode):
         self._logger.info("Deactivate, cleanup, and shutdown nodes")
         self._state = _State.FINALIZED
         for step in (_Step.DEACTIVATE, _Step.CLEANUP, _Step.SHUTDOWN):
-            await self._all(step, whatever_happens=True)
+            await self._transition_all(step, whatever_happens=True)
         return self._reached(_State.FINALIZED, "Managed nodes have been shut down")
 
     def _failed(self, line: str) -> bool:
@@ -264,7 +264,7 @@ class LifecycleManager(SingleNode):
         self._state = state
         return True
 
-    async def _all(
+    async def _transition_all(
         self, step: _Step, *, whatever_happens: bool = False, without: _ManagedNodeClient | None = None
     ) -> bool:
         """Run a transition of all nodes, in reverse order for shutting down."""
@@ -299,7 +299,7 @@ class LifecycleManager(SingleNode):
             on_formed=lambda: _finish(formed),
             on_broken=lambda: self._broke(managed),
         )
-        if not await answered(self._node, formed, self._bond_timeout):
+        if not await wait_for_future(self._node, formed, self._bond_timeout):
             formed.cancel()
             managed.end_bond()
             self._logger.error(
@@ -311,7 +311,7 @@ class LifecycleManager(SingleNode):
         return True
 
     def _broke(self, managed: _ManagedNodeClient) -> None:
-        self._begin(self._alone(lambda: self._bring_down(managed)))
+        self._begin(self._run_exclusively(lambda: self._bring_down(managed)))
 
     async def _bring_down(self, dead: _ManagedNodeClient) -> bool:
         """Take the other nodes down after one died, and bring all up when it returns."""
@@ -327,7 +327,7 @@ class LifecycleManager(SingleNode):
         self._logger.info("Resetting managed nodes...")
         dead.end_bond()
         for step in (_Step.DEACTIVATE, _Step.CLEANUP):
-            await self._all(step, whatever_happens=True, without=dead)
+            await self._transition_all(step, whatever_happens=True, without=dead)
         self._reached(_State.UNCONFIGURED, "Managed nodes have been reset")
         if self._respawns:
             self._begin(self._reconnect())
@@ -337,7 +337,7 @@ class LifecycleManager(SingleNode):
         """Wait until all nodes are back, and start them."""
         waited = 0.0
         while waited < self._respawn_most and self._stays_down():
-            await answered(self._node, asyncio.get_running_loop().create_future(), _ONE_SECOND)
+            await wait_for_future(self._node, asyncio.get_running_loop().create_future(), _ONE_SECOND)
             waited += _ONE_SECOND
             async with self._busy:
                 if self._stays_down() and all([await managed.answers(_ONE_SECOND) for managed in self._managed]):

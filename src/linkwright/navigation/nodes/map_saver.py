@@ -17,7 +17,7 @@ from linkwright.navigation.grids.occupancy import BadGridError, grid_of
 from linkwright.navigation.maps.map_files import FREE_THRESH, OCCUPIED_THRESH, SavedAs, save_map
 from linkwright.navigation.maps.map_yaml import MapMode
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.nodes.answers import answered
+from linkwright.nodes.answers import wait_for_future
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import log_unknown
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
@@ -119,7 +119,7 @@ class _Saving:
         kind = get_message("nav_msgs/msg/OccupancyGrid")
         subscription = node.create_subscription(kind, topic, receive, qos, callback_group=group)
         try:
-            if not await answered(node, come, self._timeout):
+            if not await wait_for_future(node, come, self._timeout):
                 senders = node.count_publishers(topic)
                 why = (
                     f"no node publishes on '{subscription.name}'"

@@ -66,7 +66,7 @@ class StepNode(ManagedNode):
         self._stop()
         self._server = None
 
-    def asked(self, client: ActionClient, goal: Any, complaint: str) -> Step:
+    def run_remote_goal(self, client: ActionClient, goal: Any, complaint: str) -> Step:
         """Send a goal to another server and wait for its result.
 
         The goal is canceled when this generator is closed.
@@ -76,7 +76,7 @@ class StepNode(ManagedNode):
         """
         if not client.server_is_ready():
             raise StepError("UNKNOWN", f"{complaint}: there is no action {client.action_name}")
-        sent = Sent(client, goal)
+        sent = SentGoal(client, goal)
         try:
             while not sent.is_over:
                 yield
@@ -130,7 +130,7 @@ class StepNode(ManagedNode):
         self.end_cycles()
 
 
-class Sent:
+class SentGoal:
     """A goal sent to another server."""
 
     def __init__(self, client: ActionClient, goal: Any) -> None:

@@ -20,7 +20,7 @@ from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
 from linkwright.messages import get_message
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.navigation.nodes.velocity_smoothing import Limits, smoothed
+from linkwright.navigation.nodes.velocity_smoothing import Limits, smooth_velocities
 from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -74,7 +74,7 @@ class _ManagedSmoother(ManagedNode):
         self._read()
         stamped = self._stamped
         self._output = VelocityTopic(self, "cmd_vel_smoothed", stamped)
-        commander = Commander(self._lose, DriverWatch.of(self))
+        commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
         for kind in velocity_types(self, "cmd_vel", stamped):
             heard: Subscription[Any] = self.create_subscription(
                 kind, "cmd_vel", commander.tracking_callback(self._receive), _DEPTH
@@ -166,7 +166,7 @@ class _ManagedSmoother(ManagedNode):
         self._command = values
         self._commanded_ns = self.get_clock().now().nanoseconds
 
-    def _rest(self) -> None:
+    def _on_timeout(self) -> None:
         """Decelerate to zero when commands time out."""
         if self._command is not None and any(self._command):
             self._command = [0.0] * len(_AXES)
@@ -178,7 +178,7 @@ class _ManagedSmoother(ManagedNode):
                 )
             )
 
-    def _lose(self, publisher: EndpointInfo) -> None:
+    def _on_publisher_lost(self, publisher: EndpointInfo) -> None:
         """Decelerate to zero when the publisher of commands is lost."""
         if self._command is not None and any(self._command):
             self._command = [0.0] * len(_AXES)
@@ -197,14 +197,14 @@ class _ManagedSmoother(ManagedNode):
             if self._stopped or not any(self._last):
                 self._stopped = True
                 return
-            self._rest()
+            self._on_timeout()
         self._stopped = False
         now = self._last
         if self._closed:
             seen = [values for _, values in self._measured] or [[0.0] * len(_AXES)]
             now = [sum(column) / len(seen) for column in zip(*seen, strict=True)]
-        self._last = smoothed(self._limits, now, self._command, 1.0 / self._frequency, scaled=self._scaled)
-        quiet = [axis.quiet(speed) for axis, speed in zip(self._limits, self._last, strict=True)]
+        self._last = smooth_velocities(self._limits, now, self._command, 1.0 / self._frequency, scaled=self._scaled)
+        quiet = [axis.apply_deadband(speed) for axis, speed in zip(self._limits, self._last, strict=True)]
         assert self._output is not None, "it is configured"
         self._output.publish(quiet[:3], quiet[3:])
 

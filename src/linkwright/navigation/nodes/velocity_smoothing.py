@@ -37,12 +37,12 @@ class Limits:
         faster = abs(wanted) >= abs(now) and now * wanted >= 0.0
         return (self.acceleration if faster else -self.deceleration) * seconds
 
-    def quiet(self, velocity: float) -> float:
+    def apply_deadband(self, velocity: float) -> float:
         """Return the velocity, or 0 if it is within the deadband."""
         return 0.0 if abs(velocity) < self.deadband else velocity
 
 
-def smoothed(
+def smooth_velocities(
     limits: Sequence[Limits], now: Sequence[float], wanted: Sequence[float], seconds: float, *, scaled: bool
 ) -> list[float]:
     """Return the velocities of the next cycle, before deadbands are applied.

@@ -75,7 +75,7 @@ class WaypointNode(StepNode):
     def _go_to(self, pose: Any) -> Step:
         goal = get_action("nav2_msgs/action/NavigateToPose").Goal(pose=pose)
         try:
-            yield from self.asked(self._navigation, goal, f"waypoint {self._index} was not reached")
+            yield from self.run_remote_goal(self._navigation, goal, f"waypoint {self._index} was not reached")
         except StepError as failure:
             self._missed.append(self._miss(pose, str(failure)))
             if self.get_parameter("stop_on_failure").value:

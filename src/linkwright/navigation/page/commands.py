@@ -16,7 +16,7 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.graph import ACTION_STATUS_QOS, Client
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.page.goal_outcome import accepted_at
-from linkwright.nodes.answers import answered
+from linkwright.nodes.answers import wait_for_future
 from linkwright.page.audience import Page
 from linkwright.page.protocol.navigation import (
     CommandNavigation,
@@ -213,7 +213,7 @@ class _Watch:
     async def _call(self, client: Client[Any, Any], **fields: Any) -> Any:
         """Return the response of a service, or None if its server disappeared meanwhile."""
         future = client.call_async(client.srv_type.Request(**fields))
-        while not await answered(self._node, future, _PERIOD):
+        while not await wait_for_future(self._node, future, _PERIOD):
             if not client.service_is_ready():
                 client.remove_pending_request(future)
                 return None

@@ -44,7 +44,7 @@ class _Slope:
             row == to_row or column == to_column or max(self.at(row, to_column), self.at(to_row, column)) < inf
         )
 
-    def lowest_beside(self, cell: Cell) -> Cell:
+    def steepest_neighbour(self, cell: Cell) -> Cell:
         """Return the neighbour of a cell with the steepest descent."""
         row, column = cell
         here = self.at(row, column)
@@ -123,7 +123,7 @@ def descend(least: Floats, source: Cell, begin: Place) -> Generator[None, None, 
             yield
         following = _step(slope, place, cell) if stayed < _STEPS_IN_A_CELL else None
         if following is None:
-            beside = slope.lowest_beside(cell)
+            beside = slope.steepest_neighbour(cell)
             following = (beside[0] + 0.5, beside[1] + 0.5)
         now = (floor(following[0]), floor(following[1]))
         stayed = stayed + 1 if now == cell else 0

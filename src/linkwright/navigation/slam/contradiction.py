@@ -6,7 +6,7 @@ from math import pi
 
 import numpy as np
 
-from linkwright.navigation.slam.poses import Floats, between, placed
+from linkwright.navigation.slam.poses import Floats, relative_pose, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
 _APART = 0.03
@@ -28,18 +28,18 @@ def contradiction(first: PlanarScan, first_pose: Floats, second: PlanarScan, sec
         second_pose: the robot's pose at the second scan, in the same frame.
     """
     return max(
-        _looked_through(first, second, between(first_pose, second_pose)),
-        _looked_through(second, first, between(second_pose, first_pose)),
+        _share_passed_through(first, second, relative_pose(first_pose, second_pose)),
+        _share_passed_through(second, first, relative_pose(second_pose, first_pose)),
     )
 
 
-def _looked_through(viewer: PlanarScan, other: PlanarScan, pose: Floats) -> float:
+def _share_passed_through(viewer: PlanarScan, other: PlanarScan, pose: Floats) -> float:
     """Return the share of another scan's points that the viewer's rays pass through.
 
     `pose` is the pose of the other scan in the viewer's frame.
     """
     seen = viewer.points - viewer.origin
-    points = placed(pose, other.points) - viewer.origin
+    points = transform_points(pose, other.points) - viewer.origin
     if len(seen) < _FEWEST or len(points) < _FEWEST:
         return 0.0
     bearings = np.arctan2(seen[:, 1], seen[:, 0])

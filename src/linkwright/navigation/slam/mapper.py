@@ -14,7 +14,7 @@ from linkwright.navigation.slam.contradiction import contradiction
 from linkwright.navigation.slam.matching import Match, match
 from linkwright.navigation.slam.occupancy import OccupancyMap
 from linkwright.navigation.slam.pose_graph import PoseGraph
-from linkwright.navigation.slam.poses import Floats, between, compose, wrapped
+from linkwright.navigation.slam.poses import Floats, compose, relative_pose, wrapped
 from linkwright.navigation.slam.reference import Reference
 from linkwright.navigation.slam.scan import PlanarScan
 from linkwright.navigation.slam.search import Search
@@ -108,7 +108,7 @@ class Mapper:
         elif len(self.graph.poses):
             self._in_map = self.graph.poses[0].copy()
 
-    def wants(self, odometry: Floats, stamp_ns: int, since: tuple[Floats, int] | None = None) -> bool:
+    def should_process(self, odometry: Floats, stamp_ns: int, since: tuple[Floats, int] | None = None) -> bool:
         """Return whether to process a scan: whether the robot moved far enough since the last one.
 
         Args:
@@ -122,7 +122,7 @@ class Mapper:
         pose, before_ns = last
         if stamp_ns - before_ns < self.settings.minimum_time_interval * 1e9:
             return False
-        moved = between(pose, odometry)
+        moved = relative_pose(pose, odometry)
         return bool(
             np.hypot(moved[0], moved[1]) >= _TOLERANCE * self.settings.minimum_travel_distance
             or abs(moved[2]) >= self.settings.minimum_travel_heading
@@ -132,7 +132,7 @@ class Mapper:
         """Return the robot's pose in the map, of shape (3,), from odometry since the last processed scan."""
         if self._in_map is None:
             return odometry
-        return self._in_map if self._last is None else compose(self._in_map, between(self._last[0], odometry))
+        return self._in_map if self._last is None else compose(self._in_map, relative_pose(self._last[0], odometry))
 
     def process(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
         """Add a scan to the graph, in steps.
@@ -144,10 +144,10 @@ class Mapper:
         searched = self._last is None and self._in_map is not None
         guess, moved = self.expected(odometry), None
         if self._last is not None:
-            moved = between(self._last[0], odometry)
+            moved = relative_pose(self._last[0], odometry)
         self._last = odometry, scan.stamp_ns
         if searched and self.scans:
-            return (yield from self._join(scan, guess, odometry))
+            return (yield from self._match_first_scan(scan, guess, odometry))
         uncertain = _odometric_information(moved if moved is not None else np.zeros(3))
         found = None
         buffer = self._buffer(guess)
@@ -157,7 +157,7 @@ class Mapper:
         number = self._add(scan, odometry, pose)
         information = uncertain if found is None else uncertain + found.information
         if moved is not None:
-            self.graph.add_edge(number - 1, number, between(self.graph.poses[number - 1], pose), information)
+            self.graph.add_edge(number - 1, number, relative_pose(self.graph.poses[number - 1], pose), information)
         links = loops = 0
         if self.settings.use_scan_matching and moved is not None:
             links, loops = yield from self._link(number)
@@ -174,10 +174,10 @@ class Mapper:
         """
         searched = self._last is None
         guess = self.expected(odometry)
-        moved = np.zeros(3) if self._last is None else between(self._last[0], odometry)
+        moved = np.zeros(3) if self._last is None else relative_pose(self._last[0], odometry)
         self._last = odometry, scan.stamp_ns
         window = self.settings.loop if searched else self.settings.matching
-        found = yield from self._match(self._around(guess), scan, guess, window)
+        found = yield from self._match(self._nearest_scans(guess), scan, guess, window)
         self._in_map = guess if found is None else found.pose
         information = _odometric_information(moved)
         if found is not None:
@@ -190,7 +190,7 @@ class Mapper:
         for number, scan in enumerate(self.scans):
             pose, drawn = self.graph.poses[number], self.occupancy.drawn_at(number)
             if drawn is not None:
-                away = between(drawn, pose)
+                away = relative_pose(drawn, pose)
                 if np.hypot(away[0], away[1]) + _FAR_POINT * abs(away[2]) < tolerance:
                     continue
             self.occupancy.draw(number, scan, pose)
@@ -201,9 +201,9 @@ class Mapper:
         self.odometry.append(odometry)
         return self.graph.add_node(pose)
 
-    def _join(self, scan: PlanarScan, guess: Floats, odometry: Floats) -> Steps[Outcome]:
+    def _match_first_scan(self, scan: PlanarScan, guess: Floats, odometry: Floats) -> Steps[Outcome]:
         """Match the first scan of a new session against scans of earlier sessions."""
-        nodes = self._around(guess)
+        nodes = self._nearest_scans(guess)
         found = yield from self._match(nodes, scan, guess, self.settings.loop)
         pose = guess if found is None else found.pose
         number = self._add(scan, odometry, pose)
@@ -211,7 +211,7 @@ class Mapper:
         if found is not None:
             information = information + found.information
         nearest = self._nearest(nodes, pose) if nodes else number - 1
-        self.graph.add_edge(nearest, number, between(self.graph.poses[nearest], pose), information)
+        self.graph.add_edge(nearest, number, relative_pose(self.graph.poses[nearest], pose), information)
         self._in_map = pose.copy()
         yield from self.redraw()
         return _outcome(pose, information, found)
@@ -222,7 +222,7 @@ class Mapper:
         near = self._distances(pose) <= self.settings.scan_buffer_maximum_scan_distance
         return [number for number in range(begin, len(self.scans)) if near[number]]
 
-    def _around(self, pose: Floats) -> list[int]:
+    def _nearest_scans(self, pose: Floats) -> list[int]:
         """Return the nearest scans of all sessions."""
         order = np.argsort(self._distances(pose), kind="stable")
         return [int(index) for index in order[: 2 * self.settings.scan_buffer_size]]
@@ -317,7 +317,7 @@ class Mapper:
         if contradiction(self.scans[nearest], pose, scan, found.pose) > _MOST_CONTRADICTION:
             return None
         information = found.information + _NOTHING * np.eye(3)
-        self.graph.add_edge(nearest, number, between(pose, found.pose), information, doubtful=True)
+        self.graph.add_edge(nearest, number, relative_pose(pose, found.pose), information, doubtful=True)
         return found
 
 

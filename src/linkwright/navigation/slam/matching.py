@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 
-from linkwright.navigation.slam.poses import Floats, placed, wrapped
+from linkwright.navigation.slam.poses import Floats, transform_points, wrapped
 from linkwright.navigation.slam.reference import Likelihood, Reference
 from linkwright.navigation.slam.scan import PlanarScan
 from linkwright.navigation.slam.search import Search, best_pose
@@ -133,9 +133,9 @@ def _equations(
         their
         error in metres.
     """
-    points = placed(pose, scan.points)
+    points = transform_points(pose, scan.points)
     distances, _, places, normals, flatness = reference.nearest(points)
-    view = placed(pose, scan.origin[None])[0]
+    view = transform_points(pose, scan.origin[None])[0]
     ahead = np.einsum("ni,ni->n", normals, view - places) > 0  # Ignore the other side of a thin wall.
     chosen = (distances < farthest) & ahead & (flatness > 0.3)
     if not chosen.any():

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
-from linkwright.navigation.slam.poses import Floats, placed
+from linkwright.navigation.slam.poses import Floats, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
 _MARGIN = 64
@@ -112,8 +112,8 @@ class OccupancyMap:
 
     def _traced(self, scan: PlanarScan, pose: Floats) -> _Trace:
         """Count the cells along all rays of a scan."""
-        ends = placed(pose, np.concatenate((scan.points, scan.passed)))
-        origin = placed(pose, scan.origin[None])[0] / self.resolution
+        ends = transform_points(pose, np.concatenate((scan.points, scan.passed)))
+        origin = transform_points(pose, scan.origin[None])[0] / self.resolution
         away = ends / self.resolution - origin
         counts = np.maximum(np.ceil(np.abs(away).max(axis=1)).astype(np.int64), 1)
         first = np.cumsum(counts) - counts

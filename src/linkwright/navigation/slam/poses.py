@@ -33,12 +33,12 @@ def inverse(b_in_a: Floats) -> Floats:
     return result
 
 
-def between(b_in_a: Floats, c_in_a: Floats) -> Floats:
+def relative_pose(b_in_a: Floats, c_in_a: Floats) -> Floats:
     """Return the pose of c in b from the poses of b and c in a, of shape (..., 3)."""
     return compose(inverse(b_in_a), c_in_a)
 
 
-def placed(pose: Floats, points: Floats) -> Floats:
+def transform_points(pose: Floats, points: Floats) -> Floats:
     """Transform points of shape (n, 2) by a pose of shape (3,)."""
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     result: Floats = points @ np.array(((cos, sin), (-sin, cos))) + pose[:2]

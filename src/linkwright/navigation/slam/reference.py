@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.grids.library import load_scipy
-from linkwright.navigation.slam.poses import Floats, placed
+from linkwright.navigation.slam.poses import Floats, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
 _THINNING = 0.05
@@ -33,9 +33,9 @@ class Reference:
         self.points: Floats = np.zeros((0, 2))
         self._seen_from: Floats = np.zeros((0, 2))
         if pairs:
-            points = np.concatenate([placed(pose, scan.points) for scan, pose in pairs])
+            points = np.concatenate([transform_points(pose, scan.points) for scan, pose in pairs])
             views = np.concatenate(
-                [np.broadcast_to(placed(pose, scan.origin[None]), scan.points.shape) for scan, pose in pairs]
+                [np.broadcast_to(transform_points(pose, scan.origin[None]), scan.points.shape) for scan, pose in pairs]
             )
             self._thin(points, views)
 

@@ -8,7 +8,7 @@ from math import nan, radians, tan
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.perception.scans.scan import Flags, Lookup, Scan, ScanFilter, cleared
+from linkwright.perception.scans.scan import Flags, Lookup, Scan, ScanFilter, clear_ranges
 
 
 @dataclass(slots=True)
@@ -43,7 +43,7 @@ class ScanShadowsFilter(ScanFilter):
             here, there = _pairs(len(ranges), shift)
             behind = edges[here] & (ranges[here] < ranges[there])
             scan.ranges[there][behind] = nan
-        return cleared(scan, edges) if self.remove_shadow_start_point else scan
+        return clear_ranges(scan, edges) if self.remove_shadow_start_point else scan
 
     def _edges(self, ranges: np.ndarray[tuple[int, ...], np.dtype[np.float64]], increment: float) -> Flags:
         least, most = abs(tan(radians(self.min_angle))), -abs(tan(radians(self.max_angle)))
@@ -93,7 +93,7 @@ class SpeckleFilter(ScanFilter):
         starts = np.flatnonzero(together[: len(ranges) - window + 1])
         for shift in range(window):
             kept[starts + shift] = True
-        return cleared(scan, ~kept)
+        return clear_ranges(scan, ~kept)
 
     def _differ_little(self, ranges: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Flags:
         together: Flags = ~np.isnan(ranges)

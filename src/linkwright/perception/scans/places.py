@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.polygon import within_polygon
-from linkwright.perception.scans.scan import Flags, Lookup, Scan, ScanFilter, cleared
+from linkwright.perception.scans.scan import Flags, Lookup, Scan, ScanFilter, clear_ranges
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
@@ -47,7 +47,7 @@ class AngularBoundsInPlaceFilter(ScanFilter):
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
         angles = scan.angles
-        return _beyond(scan, (angles > self.lower_angle) & (angles < self.upper_angle))
+        return _set_beyond_range(scan, (angles > self.lower_angle) & (angles < self.upper_angle))
 
 
 @dataclass(slots=True)
@@ -67,7 +67,7 @@ class SectorFilter(ScanFilter):
             width += tau
             offset = np.where(offset < 0.0, offset + tau, offset)
         inside = (offset > 0.0) & (offset < width) & (scan.ranges > self.range_min) & (scan.ranges < self.range_max)
-        return _beyond(scan, inside == (self.clear_inside and not self.invert))
+        return _set_beyond_range(scan, inside == (self.clear_inside and not self.invert))
 
 
 @dataclass(slots=True)
@@ -89,7 +89,7 @@ class BoxFilter(ScanFilter):
             return None
         least, most = np.array((self.min_x, self.min_y, self.min_z)), np.array((self.max_x, self.max_y, self.max_z))
         inside = ((points > least) & (points < most)).all(axis=-1)
-        return cleared(scan, (inside != self.invert) & scan.measured)
+        return clear_ranges(scan, (inside != self.invert) & scan.measured)
 
 
 @dataclass(slots=True)
@@ -102,7 +102,7 @@ class FootprintFilter(ScanFilter):
         points = scan.points("base_link", lookup)
         if points is None:
             return None
-        return cleared(scan, (np.abs(points[:, :2]) <= self.inscribed_radius).all(axis=-1) & scan.measured)
+        return clear_ranges(scan, (np.abs(points[:, :2]) <= self.inscribed_radius).all(axis=-1) & scan.measured)
 
 
 @dataclass(slots=True)
@@ -129,11 +129,11 @@ class PolygonFilter(ScanFilter):
         points = scan.points(self.polygon_frame, lookup)
         if points is None:
             return None
-        return cleared(scan, (within_polygon(points, self._corners) != self.invert) & scan.measured)
+        return clear_ranges(scan, (within_polygon(points, self._corners) != self.invert) & scan.measured)
 
 
-def _beyond(scan: Scan, which: Flags) -> Scan:
+def _set_beyond_range(scan: Scan, which: Flags) -> Scan:
     """Return the scan with some ranges set beyond the maximum, and their intensities set to 0."""
     if len(scan.intensities) == len(which):
         scan.intensities[which] = 0.0
-    return cleared(scan, which, scan.range_max + 1.0)
+    return clear_ranges(scan, which, scan.range_max + 1.0)

@@ -89,7 +89,7 @@ class ScanFilter(ABC):
         """Filter a scan, which may be changed in place; return None to drop it."""
 
 
-def cleared(scan: Scan, which: Flags, value: float = float("nan")) -> Scan:
+def clear_ranges(scan: Scan, which: Flags, value: float = float("nan")) -> Scan:
     """Return the scan with some ranges, shape (n,), replaced."""
     scan.ranges[which] = value
     return scan

@@ -13,7 +13,7 @@ from typing import Any
 
 from linkwright.control.odometry import OdometryTopics, planar_variances, planar_velocity, transforms_topic
 from linkwright.diagnostics import phrase
-from linkwright.kinematics.drives import steered_apart
+from linkwright.kinematics.drives import ackermann_angles
 from linkwright.messages import get_message
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
@@ -156,6 +156,6 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         for motor in self._motors:
             motor.target = self._speed / self._radius
         slope = tan(self._angle)
-        angles = steered_apart(slope, self._separation / self._base * slope)
+        angles = ackermann_angles(slope, self._separation / self._base * slope)
         for servo, angle in zip(self._servos, angles, strict=True):
             servo.move(angle, seconds)

@@ -11,7 +11,7 @@ from math import atan, copysign, cos, sin, tan
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.kinematics.drives import steered_apart
+from linkwright.kinematics.drives import ackermann_angles
 from linkwright.kinematics.planar import PlanarPose
 from linkwright.simulation.plugins.gz_drive import (
     GZ_RATE,
@@ -143,7 +143,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         curvature = self._curvature(forward, angular)
         half = parameters.wheel_separation / 2.0 * curvature
         self._turn_wheels(forward * (1.0 - half), forward * (1.0 + half))
-        self._steer(*steered_apart(parameters.wheel_base * curvature, parameters.kingpin_width * curvature))
+        self._steer(*ackermann_angles(parameters.wheel_base * curvature, parameters.kingpin_width * curvature))
 
     def _curvature(self, forward: float, angular: float) -> float:
         """Return the commanded curvature in 1/m, positive to the left, no tighter than the limit."""

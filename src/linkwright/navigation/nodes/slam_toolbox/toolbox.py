@@ -193,9 +193,9 @@ class Toolbox:
         self._stamp_ns = message.header.stamp.nanoseconds
         if self._seen % self.settings.throttle_scans == 0 and self._pending is None:
             self._pending = (message, self.node.get_clock().now_ns())
-            self._look()
+            self._accept_scan()
 
-    def _look(self) -> None:
+    def _accept_scan(self) -> None:
         """Accept the waiting scan once its transform is known."""
         if self._pending is None:
             return
@@ -221,7 +221,7 @@ class Toolbox:
         if busy and not self._keeps_all:
             return
         since = (self.queue[-1][1], self.queue[-1][0].stamp_ns) if self.queue else None
-        if not self.mapper.wants(odometry, message.header.stamp.nanoseconds, since):
+        if not self.mapper.should_process(odometry, message.header.stamp.nanoseconds, since):
             return
         self.queue.append((self._scan_of(message, laser), odometry))
         if len(self.queue) > _LONG_QUEUE:
@@ -322,7 +322,7 @@ class Toolbox:
             self._graphs.publish(graph_markers(self.mapper.graph, self.settings.map_frame, message.header.stamp))
 
     def _tick(self) -> None:
-        self._look()
+        self._accept_scan()
         if self._stamp_ns is None or not self.settings.transform_period:
             return
         x, y, yaw = (float(value) for value in self._map_to_odom)
