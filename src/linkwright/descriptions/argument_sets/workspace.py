@@ -61,8 +61,9 @@ class CallingFiles:
     def _of_others(
         self, name: str, folder: Path, folders: tuple[Path, ...], *, using: bool
     ) -> Iterator[tuple[str, CallingFile]]:
-        """Yield the calling files of other packages that depend on a package, or, unless `using`, of packages that do
-        not.
+        """Yield the calling files of the other packages that depend on a package.
+
+        Unless `using`, yield those of the packages that do not.
         """
         for other, place in self._near(folder, folders).items():
             if other != name and (name in self._manifest(place)) is using:
