@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.lint import engine
+from linkwright.lint import checking
 from linkwright.lint.engine import examine
 from linkwright.lint.package import PackageContext
 from linkwright.lint.subject import Subject
@@ -187,7 +187,7 @@ def test_nothing_stays_of_a_robot_that_was_checked(here, monkeypatch):
         alive.append(sum(isinstance(each, Subject) for each in gc.get_objects()))
         return examine(*arguments, **options)
 
-    monkeypatch.setattr(engine, "examine", counted)
+    monkeypatch.setattr(checking, "examine", counted)
     gc.collect()
     gc.disable()
     try:

@@ -365,7 +365,7 @@ class NodeHost:
             self._speaking = before
 
     def _process_of(self, logger: str) -> str:
-        """Return the process of a logger, or of its nearest ancestor, or the node that made it."""
+        """Return the process of a logger, found by its name, its ancestors' names or the node that created it."""
         makers = {} if self._graph is None else dict(self._graph.creators)
         while logger:
             if logger in self._process_of_logger:

@@ -91,7 +91,7 @@ def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
     present = from_inertial(link.inertial)
     shapes = link.collisions if found.kind == "collision" else link.visuals
     comparison = None if found.properties is None else compare(present, found.properties)
-    computed = found.properties if found.shapes == len(shapes) else None  # a part of them tells nothing
+    computed = found.properties if found.shapes == len(shapes) else None  # some of the shapes alone are not conclusive
     alone = not bodies.includes_massless_links(link)
     reasons = [_Reason(Standing.IMPOSSIBLE, words) for words in problems(present)]
     density = None

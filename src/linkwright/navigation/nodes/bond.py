@@ -59,7 +59,7 @@ class Bond:
         self.broken = False
         self._publisher = node.create_publisher(status, TOPIC, _DEPTH)
         self._subscription = node.create_subscription(status, TOPIC, self._receive, _DEPTH)
-        self._subscription.deliver_in_batches()  # this topic carries the heartbeats of all bonds of a system
+        self._subscription.deliver_in_batches()  # This topic carries the heartbeats of all bonds in a system.
         self._timer = node.create_timer(period, self._tick, clock=self._clock)
         self._send(active=True)
 

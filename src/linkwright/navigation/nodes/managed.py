@@ -74,7 +74,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
 
     @property
     def is_cycling(self) -> bool:
-        """Whether cycles are running, started by `begin_cycles`."""
+        """Whether cycles are running: `begin_cycles` was called, and `end_cycles` was not called since."""
         return self._timer is not None
 
     def begin_cycles(self, period: float, cycle: Callable[[], object]) -> None:

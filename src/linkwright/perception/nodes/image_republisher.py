@@ -1,8 +1,9 @@
 """republish of image_transport: converts images between the transports raw, compressed and compressedDepth.
 
 Sources: image_transport 3.1 (ROS 2 Humble) and later, compressed_image_transport, compressed_depth_image_transport. The
-transport of the input is the first argument or the parameter ``in_transport``, that of the output the second argument
-or ``out_transport``. If none is given, all transports are used. The topics are ``in`` and ``out`` with the name of the
+transport of the input is the first argument or the parameter ``in_transport``, by default raw. That of the output is
+the
+second argument or ``out_transport``, by default all transports. The topics are ``in`` and ``out`` with the name of the
 transport appended. Remappings of either form apply: ``in:=/camera/image_raw``, as in Jazzy, and
 ``in/compressed:=...``, as in Humble.
 """

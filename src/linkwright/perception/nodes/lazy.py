@@ -9,7 +9,7 @@ from linkwright.graph import Graph, Node, Publisher, Subscription
 
 
 class LazySubscriptions:
-    """Opens subscriptions while any of some publishers has a subscriber.
+    """Keeps subscriptions open while at least one of some publishers has a subscriber.
 
     Args:
         graph: the graph, which reports changes.

@@ -1,0 +1,174 @@
+"""Checks of files and packages with one set of settings, as `linkwright check` and editors run them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, Span
+from linkwright.lint.argument_sets import SetCheck
+from linkwright.lint.configuration import read_settings, settings_for
+from linkwright.lint.contexts import Contexts
+from linkwright.lint.engine import Checked, examine, examine_package
+from linkwright.lint.finding import without_element
+from linkwright.lint.folders import MISSING_PACKAGE, Examined, reported, reported_of_package
+from linkwright.lint.rule import Scope
+from linkwright.lint.selector_words import canonical
+from linkwright.lint.settings import Settings
+from linkwright.lint.targets import Targets
+from linkwright.loading.lean_dataclasses import dataclass, field
+from linkwright.loading.lean_typing import TYPE_CHECKING
+from linkwright.packages import PackageFinder
+from linkwright.packages.manifest import MANIFEST
+from linkwright.xmltree import Overlay
+
+if TYPE_CHECKING:
+    from linkwright.descriptions.argument_sets import ArgumentSet, ArgumentSets
+
+
+class UniqueFindings:
+    """Findings without duplicates: a file that two robots include has the same findings twice."""
+
+    def __init__(self) -> None:
+        self._found: dict[tuple[str, Span | None, str], Diagnostic] = {}
+
+    def add(self, more: Iterable[Diagnostic]) -> None:
+        """Add the findings that are new."""
+        for diagnostic in more:
+            key = (diagnostic.code, _place(diagnostic), diagnostic.message)
+            if key not in self._found:
+                self._found[key] = without_element(diagnostic)
+
+    def all(self) -> list[Diagnostic]:
+        """Return the findings in the order in which they were added."""
+        return list(self._found.values())
+
+
+def _place(diagnostic: Diagnostic) -> Span | None:
+    """Return the location of a finding, whether its file was named or included."""
+    span = diagnostic.span
+    if span is None or diagnostic.code == MISSING_PACKAGE:
+        return None  # one fix is enough, however many files name it
+    return span._replace(file=str(Path(span.file).resolve()))
+
+
+@dataclass(frozen=True, slots=True)
+class Checker:
+    """Checks files and packages; packages and the callers of descriptions are found once.
+
+    Attributes:
+        values: the values of arguments; if there are none, those of the settings or of callers are used.
+        select: the rules to report instead of those of the settings; None for those of the settings.
+        ignore: the rules not to report, in addition to those of the settings.
+        config: the settings file to use instead of the nearest one.
+        folders: the folders to search for packages, in addition to those around each file.
+    """
+
+    values: Mapping[str, str] = field(default_factory=dict)
+    select: tuple[str, ...] | None = None
+    ignore: tuple[str, ...] = ()
+    config: Path | None = None
+    folders: tuple[Path, ...] = ()
+    _finders: dict[Path, PackageFinder] = field(default_factory=dict)
+    _callers: list[ArgumentSets] = field(default_factory=list)
+
+    def finder(self, file: Path) -> PackageFinder:
+        """Return the package finder for a file.
+
+        There is one finder per folder, and all of them share a single search of each source tree.
+        """
+        folder = file.absolute().parent
+        if folder not in self._finders:
+            start = [folder, *self.folders, Path.cwd()]
+            first = next(iter(self._finders.values()), None)
+            self._finders[folder] = (
+                first.starting_at(start) if first else PackageFinder(start=start, sources_first=True)
+            )
+        return self._finders[folder]
+
+    def settings(self, path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
+        """Return the settings for a file or folder, with the findings about their text."""
+        settings, trouble = settings_for(path) if self.config is None else read_settings(self.config)
+        select = None if self.select is None else tuple(map(canonical, self.select))
+        return settings.with_words(select, tuple(map(canonical, self.ignore))), trouble
+
+    def check(self, targets: Targets, paths: Sequence[Path]) -> tuple[list[Diagnostic], Checked | None]:
+        """Check files and packages.
+
+        Args:
+            targets: the files and packages.
+            paths: the files and folders that the user named.
+
+        Returns:
+            All findings without duplicates, and the result of the last file; None if there is no file.
+        """
+        found, contexts = UniqueFindings(), Contexts()
+        checked = None
+        examined: list[Examined] = []
+        of_settings: list[tuple[Diagnostic, ...]] = []
+        for file in targets.files:
+            checked, trouble = self.check_file(file, targets, contexts=contexts)
+            examined.append(Examined.of(checked, file))
+            of_settings.append(trouble)
+        for result, trouble in zip(examined, of_settings, strict=True):
+            found.add((*trouble, *reported(result, examined, targets, paths)))
+        for folder in targets.packages:
+            diagnostics, trouble = self.check_package(folder, contexts=contexts)
+            found.add((*trouble, *reported_of_package(diagnostics, paths)))
+        return found.all(), checked
+
+    def check_file(
+        self, file: Path, targets: Targets, overlay: Overlay | None = None, contexts: Contexts | None = None
+    ) -> tuple[Checked, tuple[Diagnostic, ...]]:
+        """Check a file with the given arguments, or else with those of its callers.
+
+        Args:
+            file: the file.
+            targets: what is checked; its packages are searched for callers.
+            overlay: texts that replace those of files.
+            contexts: data that checks share at one moment.
+
+        Returns:
+            The result, and the findings about the settings.
+        """
+        settings, trouble = self.settings(file)
+        finder = self.finder(file)
+
+        def with_values(values: Mapping[str, str], xacro: bool | None = None) -> Checked:
+            return examine(
+                file,
+                arguments=values,
+                packages=finder,
+                settings=settings,
+                overlay=overlay,
+                scopes=(Scope.DESCRIPTION,),
+                xacro=xacro,
+                contexts=contexts,
+            )
+
+        if self.values:
+            return with_values(self.values), trouble
+        check = SetCheck(file, finder, settings, with_values, is_named=file in targets.named)
+        configured = settings.arguments_of(file)
+        if configured:
+            return check.with_configured(configured), trouble
+        return check.with_callers(lambda: self._sets(file, targets.packages)), trouble
+
+    def check_package(
+        self, folder: Path, overlay: Overlay | None = None, contexts: Contexts | None = None
+    ) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
+        """Check a package without its descriptions; return its findings, and those about the settings."""
+        settings, trouble = self.settings(folder)
+        checked = examine_package(folder, settings, self.finder(folder / MANIFEST), overlay, contexts)
+        return checked.diagnostics, trouble
+
+    def _sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
+        """Return the values that callers give to a file's arguments.
+
+        The callers are read only once for all files.
+        """
+        from linkwright.descriptions.argument_sets import ArgumentSets
+
+        if not self._callers:
+            self._callers.append(ArgumentSets(packages))
+        return self._callers[0].of(file, self.finder(file))
