@@ -45,7 +45,8 @@ GROUPS = {
         "multicast": "send or receive a datagram, to test multicast on the network",
         "daemon": "accepted for compatibility with ros2; Linkwright has no daemon",
     },
-    "shell": {
+    "shell and editors": {
+        "lsp": "serve editors: findings as you type, symbols, formatting",
         "shell": "open a shell with ros2, launch_test, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon",
         "completion": "print the completion script for bash, zsh or fish",
     },

@@ -18,6 +18,7 @@ EXTRAS = {
     "dds": "cyclonedds",
     "diagram": "pygraphviz",
     "image": "PIL",
+    "lsp": "pygls",
     "mesh": "trimesh",
     "navigation": "scipy",
     "parquet": "pyarrow",
@@ -30,7 +31,7 @@ EXTRAS = {
 }
 """Name of the extra -> the module that is missing without it."""
 
-_BY_MODULE = {**{module: extra for extra, module in EXTRAS.items()}, "cv2": "vision"}
+_BY_MODULE = {**{module: extra for extra, module in EXTRAS.items()}, "cv2": "vision", "lsprotocol": "lsp"}
 
 
 _VERSION = sys.version_info[:2]

@@ -18,7 +18,9 @@ from linkwright.xmltree.tinyxml import COMMENT
 _URDF, _XACRO = ".urdf", ".xacro"
 _WHOLE = (_URDF, ".world", ".sdf")
 """Endings of files that describe something by themselves."""
-_XML_FILES = (*_WHOLE, _XACRO, ".srdf", ".launch", ".launch.xml", MANIFEST, "model.config")
+DESCRIPTIONS = (*_WHOLE, _XACRO)
+"""Endings of files with descriptions, or with parts of them."""
+_XML_FILES = (*DESCRIPTIONS, ".srdf", ".launch", ".launch.xml", MANIFEST, "model.config")
 _EMPTY_FILE = "XML105"
 _COMMENT = lazy_pattern(rf"{COMMENT}|<\?xml\s[^>]*\?>")
 _WEB_PAGE = "package.json"
@@ -68,7 +70,7 @@ def find_targets(paths: Iterable[Path], *, around: bool = False) -> Targets:
     packages: dict[Path, None] = {}
     for path in paths:
         if path.is_dir():
-            found, below = _walk(path, (*_WHOLE, _XACRO))
+            found, below = walk(path, DESCRIPTIONS)
             files.update(dict.fromkeys(_entries(found)))
             packages.update(dict.fromkeys(below))
         else:
@@ -89,14 +91,14 @@ def find_xml_files(paths: Iterable[Path]) -> list[Path]:
     files: dict[Path, None] = {}
     for path in paths:
         if path.is_dir():
-            found, _ = _walk(path, _XML_FILES)
+            found, _ = walk(path, _XML_FILES)
             files.update(dict.fromkeys(file for file in found if _EXPANDED not in _text(file)[:_HEAD]))
         else:
             files[path] = None
     return list(files)
 
 
-def _walk(folder: Path, endings: tuple[str, ...]) -> tuple[list[Path], list[Path]]:
+def walk(folder: Path, endings: tuple[str, ...]) -> tuple[list[Path], list[Path]]:
     """Return the files with some extensions and the packages, in and below a folder, sorted by name."""
     found: list[Path] = []
     packages: list[Path] = []
@@ -117,7 +119,7 @@ def _walk(folder: Path, endings: tuple[str, ...]) -> tuple[list[Path], list[Path
 
 
 def _entries(found: list[Path]) -> Iterator[Path]:
-    included = {name for path in found for name in _included_names(_text(path))}
+    included = {name for path in found for name in included_names(_text(path))}
     for path in found:
         if path.name in included or (path.suffix in _WHOLE and _is_part(path)):
             continue
@@ -151,7 +153,7 @@ def _is_empty(path: Path, error: LinkwrightError) -> bool:
     return not _COMMENT.sub("", _text(path).lstrip("\ufeff")).strip()
 
 
-def _included_names(text: str) -> Iterator[str]:
+def included_names(text: str) -> Iterator[str]:
     """Yield the names of the files that a description includes.
 
     Arguments and `$(optenv ...)` have their default values.

@@ -1,0 +1,40 @@
+"""``linkwright lsp``: the language server for editors."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import os
+import sys
+
+from linkwright.cli.endings import FINE
+from linkwright.diagnostics import missing_extra
+
+_LOOPBACK = "127.0.0.1"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    way = parser.add_mutually_exclusive_group()
+    way.add_argument("--stdio", action="store_true", help="use standard input and output (the default)")
+    way.add_argument("--tcp", metavar="PORT", type=int, help="listen on this port of 127.0.0.1 for a connection")
+    way.add_argument("--ws", metavar="PORT", type=int, help="listen on this port of 127.0.0.1 for a WebSocket")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serve an editor until it ends the connection."""
+    try:
+        from linkwright.lsp.server import make_server
+    except ModuleNotFoundError as error:
+        raise missing_extra("CLI307", error) from None
+    logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="linkwright lsp: %(message)s")
+    server = make_server()
+    if arguments.tcp is not None:
+        server.start_tcp(_LOOPBACK, arguments.tcp)
+    elif arguments.ws is not None:
+        server.start_ws(_LOOPBACK, arguments.ws)
+    else:
+        with os.fdopen(os.dup(0), "rb") as requests, os.fdopen(os.dup(1), "wb") as answers:
+            sys.stdout = sys.stderr  # nothing else may be written between the answers
+            server.start_io(requests, answers)
+    return FINE

@@ -1,0 +1,115 @@
+"""The files that an editor works on: its folders, the texts that are not saved yet, and the findings about them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.language.includes import IncludeIndex, real
+from linkwright.lint.checking import Checker, UniqueFindings
+from linkwright.lint.contexts import Contexts
+from linkwright.lint.folders import Examined, reported, reported_of_package
+from linkwright.lint.targets import DESCRIPTIONS, Targets
+from linkwright.packages import enclosing_package
+from linkwright.packages.manifest import MANIFEST
+from linkwright.xmltree import Overlay
+
+_CALLERS = (
+    ".py",
+    ".launch",
+    ".launch.xml",
+    ".yaml",
+    ".yml",
+    "CMakeLists.txt",
+    MANIFEST,
+    "linkwright.toml",
+    "pyproject.toml",
+)
+"""Files that decide how descriptions are checked: what calls them, where packages are, and settings."""
+
+
+class Workspace:
+    """The files below some folders, with the open texts of an editor.
+
+    Paths are those that `linkwright.language.includes.real` returns. Methods that read files or check may be called
+    from another thread, one at a time.
+
+    Args:
+        folders: the folders of the workspace.
+
+    Attributes:
+        index: the descriptions in the folders.
+    """
+
+    def __init__(self, folders: Iterable[Path]) -> None:
+        self._folders = tuple(real(folder) for folder in folders)
+        self.index = IncludeIndex(self._folders)
+        self._checker = Checker(folders=self._folders)
+        self._results: dict[Path, tuple[Diagnostic, ...]] = {}
+
+    def file_saved(self, file: Path) -> None:
+        """Note that a file on the disk was changed, made or removed."""
+        if file.name.endswith(_CALLERS):
+            self._checker = Checker(folders=self._folders)
+
+    def subjects(self, file: Path, texts: Mapping[Path, str]) -> list[Path]:
+        """Return what to check when a file has changed.
+
+        These are the descriptions that include it, and the folder of its package.
+
+        Args:
+            file: the changed file.
+            texts: the texts of the open files.
+        """
+        package = enclosing_package(file.parent)
+        found = self.index.entries(file, texts) if file.name.endswith(DESCRIPTIONS) else []
+        return [*found, *([] if package is None else [real(package[1])])]
+
+    def check(
+        self, subject: Path, texts: Mapping[Path, str], changed: Iterable[Path] = ()
+    ) -> dict[Path, list[Diagnostic]]:
+        """Check a description or package, and return the findings about each file whose findings may have changed.
+
+        Args:
+            subject: a description, or the folder of a package, as `subjects` returns them.
+            texts: the texts of the open files.
+            changed: files that are included in the result even if there is no finding about them.
+        """
+        before = self._results.get(subject, ())
+        found = self._checked(subject, texts)
+        self._results[subject] = found
+        return self._of_files({_file(diagnostic, subject) for diagnostic in (*before, *found)} | {*changed})
+
+    def forget(self, subject: Path) -> dict[Path, list[Diagnostic]]:
+        """Drop the findings about a subject that no longer exists, and return those that remain in its files."""
+        before = self._results.pop(subject, ())
+        return self._of_files({_file(diagnostic, subject) for diagnostic in before})
+
+    def _checked(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
+        overlay = Overlay({str(path): text for path, text in texts.items()})
+        if subject.is_dir():
+            diagnostics, trouble = self._checker.check_package(subject, overlay, Contexts())
+            return (*trouble, *reported_of_package(diagnostics, [subject]))
+        named = frozenset({subject}) if subject in texts else frozenset()
+        targets = Targets((subject,), self.index.packages, named)
+        checked, trouble = self._checker.check_file(subject, targets, overlay, Contexts())
+        examined = Examined.of(checked, subject)
+        return (*trouble, *reported(examined, [examined], targets, [subject]))
+
+    def _of_files(self, files: set[Path]) -> dict[Path, list[Diagnostic]]:
+        """Return the findings about some files, of all subjects, without duplicates."""
+        found = {file: UniqueFindings() for file in files}
+        for subject, diagnostics in self._results.items():
+            for diagnostic in diagnostics:
+                file = _file(diagnostic, subject)
+                if file in found:
+                    found[file].add([diagnostic])
+        return {file: unique.all() for file, unique in found.items()}
+
+
+def _file(diagnostic: Diagnostic, subject: Path) -> Path:
+    """Return the file of a finding; one without a place belongs to its description or manifest."""
+    if diagnostic.span is not None:
+        return real(diagnostic.span.file)
+    return subject / MANIFEST if subject.is_dir() else subject

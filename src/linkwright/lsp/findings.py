@@ -1,0 +1,70 @@
+"""Findings as diagnostics of the protocol."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from lsprotocol import types
+
+from linkwright.diagnostics import Diagnostic, Severity, Span
+from linkwright.diagnostics.translation import localized
+from linkwright.lsp.positions import TextPositions
+
+_SEVERITIES = {
+    Severity.ERROR: types.DiagnosticSeverity.Error,
+    Severity.WARNING: types.DiagnosticSeverity.Warning,
+    Severity.INFO: types.DiagnosticSeverity.Information,
+}
+_UNNECESSARY = ("unused", "unreachable")
+_START = types.Range(types.Position(0, 0), types.Position(0, 0))
+
+Positions = Callable[[Path], "TextPositions | None"]
+"""Returns the positions of a file's text; None if it cannot be read."""
+
+
+def as_diagnostics(
+    findings: Iterable[Diagnostic], positions: Positions, uri: Callable[[Path], str]
+) -> list[types.Diagnostic]:
+    """Convert the findings about a file.
+
+    Args:
+        findings: the findings.
+        positions: the texts of files.
+        uri: returns the URI that the editor has for a file.
+    """
+    return [_diagnostic(finding, positions, uri) for finding in findings]
+
+
+def _diagnostic(finding: Diagnostic, positions: Positions, uri: Callable[[Path], str]) -> types.Diagnostic:
+    hint = f"\n{localized(finding.hint)}" if finding.hint else ""
+    notes = [f"\n{localized(note.message)}" for note in finding.notes if note.span is None]
+    related = [
+        types.DiagnosticRelatedInformation(
+            types.Location(uri(Path(note.span.file)), _range(note.span, positions)), localized(note.message)
+        )
+        for note in finding.notes
+        if note.span is not None
+    ]
+    return types.Diagnostic(
+        _START if finding.span is None else _range(finding.span, positions),
+        localized(finding.message) + hint + "".join(notes),
+        _SEVERITIES[finding.severity],
+        code=finding.code,
+        source="linkwright",
+        tags=_tags(finding) or None,
+        related_information=related or None,
+    )
+
+
+def _range(span: Span, positions: Positions) -> types.Range:
+    found = positions(Path(span.file))
+    return _START if found is None else found.range_of(span)
+
+
+def _tags(finding: Diagnostic) -> list[types.DiagnosticTag]:
+    from linkwright.lint.registry import find_rule
+
+    rule = find_rule(finding.code)
+    is_unnecessary = rule is not None and any(word in rule.name for word in _UNNECESSARY)
+    return [types.DiagnosticTag.Unnecessary] if is_unnecessary else []

@@ -1,0 +1,200 @@
+"""The language server: open texts, checks in the background, and the requests of an editor."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+from typing import TypeVar
+from urllib.parse import unquote, urlsplit
+from urllib.request import url2pathname
+
+from lsprotocol import types
+from pygls.lsp.server import LanguageServer
+
+from linkwright._version import __version__
+from linkwright.diagnostics import LinkwrightError
+from linkwright.language.includes import real
+from linkwright.language.workspace import Workspace
+from linkwright.lsp.findings import as_diagnostics
+from linkwright.lsp.positions import UTF_16, TextPositions
+from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.reader import read_bytes
+
+T = TypeVar("T")
+
+_log = logging.getLogger(__name__)
+_KEPT_TEXTS = 200
+"""The number of files on the disk whose lines are kept, for the places of findings."""
+
+
+class LinkwrightServer(LanguageServer):
+    """Serves one editor.
+
+    Attributes:
+        project: the files of the editor's folders; None before it has named them.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("linkwright", __version__)
+        self.project: Workspace | None = None
+        self._uris: dict[Path, str] = {}
+        self._files: dict[Path, tuple[int, TextPositions]] = {}
+        self._changed: dict[Path, None] = {}
+        self._has_changes = asyncio.Event()
+        self._thread = ThreadPoolExecutor(1, thread_name_prefix="check")
+        self._work: asyncio.Task[None] | None = None
+
+    # --- files ------------------------------------------------------------------------------------------------
+
+    def begin(self, folders: Iterable[Path]) -> None:
+        """Open the folders of the editor, and check what changes from now on."""
+        self.project = Workspace(folders)
+        self._work = asyncio.get_running_loop().create_task(self._check_changes(self.project))
+
+    def end(self) -> None:
+        """Stop checking."""
+        if self._work is not None:
+            self._work.cancel()
+        self._thread.shutdown(wait=False, cancel_futures=True)
+
+    def file_opened(self, uri: str) -> None:
+        """Remember the URI that the editor has for a file, and check the file."""
+        path = path_of(uri)
+        if path is not None:
+            self._uris[real(path)] = uri
+            self.file_changed(uri)
+
+    def file_changed(self, uri: str) -> None:
+        """Check a file soon, with what includes it."""
+        path = path_of(uri)
+        if path is not None:
+            self._changed[real(path)] = None
+            self._has_changes.set()
+
+    def file_saved(self, uri: str) -> None:
+        """Note that a file on the disk has changed."""
+        path = path_of(uri)
+        if path is not None and self.project is not None:
+            self.project.file_saved(real(path))
+            self.file_changed(uri)
+
+    def positions(self, path: Path) -> TextPositions | None:
+        """Return the positions of a file's text, that of the editor if it is open; None if it cannot be read."""
+        file = real(path)
+        encoding = self.workspace.position_encoding or UTF_16
+        uri = self._uris.get(file)
+        if uri is not None and uri in self.workspace.text_documents:
+            return TextPositions(self.workspace.text_documents[uri].source, encoding)
+        try:
+            changed_ns = file.stat().st_mtime_ns
+            known = self._files.get(file)
+            if known is None or known[0] != changed_ns:
+                known = changed_ns, TextPositions(decode(read_bytes(file), str(file)), encoding)
+                self._files[file] = known
+                if len(self._files) > _KEPT_TEXTS:
+                    del self._files[next(iter(self._files))]
+        except (OSError, LinkwrightError):
+            return None
+        return known[1]
+
+    def uri_of(self, path: Path) -> str:
+        """Return the URI of a file, the one that the editor uses if it has opened it."""
+        file = real(path)
+        return self._uris.get(file) or file.as_uri()
+
+    def _texts(self) -> dict[Path, str]:
+        """Return the texts of the open files."""
+        found = {path: self.workspace.text_documents.get(uri) for path, uri in self._uris.items()}
+        return {path: document.source for path, document in found.items() if document is not None}
+
+    # --- checks -----------------------------------------------------------------------------------------------
+
+    async def _check_changes(self, project: Workspace) -> None:
+        """Check files as they change, the newest change first; a subject that still waits is checked once."""
+        await self._in_thread(project.index.refresh)
+        pending: dict[Path, set[Path]] = {}
+        while True:
+            if not pending:
+                await self._has_changes.wait()
+            self._has_changes.clear()
+            changed, self._changed = self._changed, {}
+            texts = self._texts()
+            for file in changed:
+                subjects = await self._in_thread(partial(project.subjects, file, texts))
+                pending = {subject: pending.get(subject, set()) for subject in (*subjects, *pending)}
+                for subject in subjects or [file]:
+                    pending.setdefault(subject, set()).add(file)
+            if pending:
+                subject = next(iter(pending))
+                await self._check(project, subject, texts, pending.pop(subject))
+
+    async def _check(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
+        """Check one subject, and publish its findings; a fault of ours is logged, and the server goes on."""
+        try:
+            found = await self._in_thread(partial(project.check, subject, texts, changed))
+        except Exception:  # the editor works on, and the log has the reason
+            _log.exception("The check of '%s' failed", subject)
+            return
+        for file, findings in found.items():
+            uri = self.uri_of(file)
+            document = self.workspace.text_documents.get(uri)
+            if document is not None and texts.get(file) != document.source:
+                continue  # the text has changed since: its next check comes
+            self.text_document_publish_diagnostics(
+                types.PublishDiagnosticsParams(
+                    uri,
+                    as_diagnostics(findings, self.positions, self.uri_of),
+                    None if document is None else document.version,
+                )
+            )
+
+    async def _in_thread(self, work: Callable[[], T]) -> T:
+        return await asyncio.get_running_loop().run_in_executor(self._thread, work)
+
+
+def path_of(uri: str) -> Path | None:
+    """Return the path of a file's URI; None for other URIs."""
+    parts = urlsplit(uri)
+    return Path(url2pathname(unquote(parts.path))) if parts.scheme == "file" else None
+
+
+def make_server() -> LinkwrightServer:
+    """Return a server with all features."""
+    server = LinkwrightServer()
+
+    @server.feature(types.INITIALIZED)
+    async def initialized(server: LinkwrightServer, _: types.InitializedParams) -> None:
+        folders = [path for uri in server.workspace.folders if (path := path_of(uri)) is not None]
+        root = path_of(server.workspace.root_uri) if server.workspace.root_uri else None
+        server.begin(folders or ([root] if root else []))
+
+    @server.feature(types.SHUTDOWN)
+    def shutdown(server: LinkwrightServer, _: None) -> None:
+        server.end()
+
+    @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
+    def did_open(server: LinkwrightServer, opened: types.DidOpenTextDocumentParams) -> None:
+        server.file_opened(opened.text_document.uri)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
+    def did_change(server: LinkwrightServer, changed: types.DidChangeTextDocumentParams) -> None:
+        server.file_changed(changed.text_document.uri)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
+    def did_close(server: LinkwrightServer, closed: types.DidCloseTextDocumentParams) -> None:
+        server.file_changed(closed.text_document.uri)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
+    def did_save(server: LinkwrightServer, saved: types.DidSaveTextDocumentParams) -> None:
+        server.file_saved(saved.text_document.uri)
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
+    def did_change_watched_files(server: LinkwrightServer, watched: types.DidChangeWatchedFilesParams) -> None:
+        for change in watched.changes:
+            server.file_saved(change.uri)
+
+    return server

@@ -1,0 +1,129 @@
+"""An editor's side of the connection, and a package to work on."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+import pytest_asyncio
+from lsprotocol import types
+from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
+
+from tests.waiting import SECONDS
+
+MAIN = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:include filename="parts.xacro"/>
+  <link name="base"/>
+  <xacro:bar name="upper" length="0.4"/>
+</robot>
+"""
+PARTS = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="bar" params="name length">
+    <link name="${name}"/>
+    <joint name="${name}_joint" type="continuous">
+      <parent link="base"/>
+      <child link="${name}"/>
+      <axis xyz="0 0 1"/>
+    </joint>
+  </xacro:macro>
+</robot>
+"""
+MANIFEST = """<?xml version="1.0"?>
+<package format="3">
+  <name>arm_description</name>
+  <version>0.1.0</version>
+  <description>An arm.</description>
+  <maintainer email="a@example.org">A</maintainer>
+  <license>Apache-2.0</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <export><build_type>ament_cmake</build_type></export>
+</package>
+"""
+
+
+class Editor:
+    """An editor with open files.
+
+    Args:
+        client: its connection.
+        folder: the folder that it has opened.
+    """
+
+    def __init__(self, client: LanguageClient, folder: Path) -> None:
+        self.client = client
+        self.folder = folder
+        self._versions: dict[str, int] = {}
+
+    def uri(self, name: str) -> str:
+        """Return the URI of a file."""
+        return (self.folder / name).as_uri()
+
+    def document(self, name: str) -> types.TextDocumentIdentifier:
+        """Return how requests name a file."""
+        return types.TextDocumentIdentifier(self.uri(name))
+
+    def open(self, name: str, text: str | None = None) -> None:
+        """Open a file, with its text on the disk or another one."""
+        uri = self.uri(name)
+        self._versions[uri] = 1
+        content = (self.folder / name).read_text(encoding="utf-8") if text is None else text
+        self.client.text_document_did_open(
+            types.DidOpenTextDocumentParams(types.TextDocumentItem(uri, "xml", 1, content))
+        )
+
+    def change(self, name: str, text: str) -> None:
+        """Replace the text of an open file."""
+        uri = self.uri(name)
+        self._versions[uri] += 1
+        self.client.text_document_did_change(
+            types.DidChangeTextDocumentParams(
+                types.VersionedTextDocumentIdentifier(version=self._versions[uri], uri=uri),
+                [types.TextDocumentContentChangeWholeDocument(text)],
+            )
+        )
+
+    def codes(self, name: str) -> list[str]:
+        """Return the codes of the current findings about a file."""
+        return [str(diagnostic.code) for diagnostic in self.client.diagnostics.get(self.uri(name), ())]
+
+    async def until(self, name: str, *codes: str) -> list[types.Diagnostic]:
+        """Wait until a file has exactly these findings, and return them."""
+        for _ in range(int(SECONDS / 0.02)):
+            if self.uri(name) in self.client.diagnostics and sorted(self.codes(name)) == sorted(codes):
+                return list(self.client.diagnostics[self.uri(name)])
+            await asyncio.sleep(0.02)
+        raise AssertionError(f"{name} has {self.codes(name)}")
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    folder = tmp_path / "arm_description"
+    folder.mkdir()
+    (folder / "package.xml").write_text(MANIFEST)
+    (folder / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.8)\nproject(arm_description)\nfind_package(ament_cmake REQUIRED)\n"
+        "install(DIRECTORY urdf DESTINATION share/${PROJECT_NAME})\nament_package()\n"
+    )
+    (folder / "linkwright.toml").write_text('select = ["LW802"]\n')
+    (folder / "urdf").mkdir()
+    (folder / "urdf" / "arm.urdf.xacro").write_text(MAIN)
+    (folder / "urdf" / "parts.xacro").write_text(PARTS)
+    return folder
+
+
+@pytest_asyncio.fixture
+async def editor(package: Path) -> AsyncIterator[Editor]:
+    client = make_test_lsp_client()
+    await client.start_io(sys.executable, "-m", "linkwright", "lsp")
+    await client.initialize_session(
+        types.InitializeParams(
+            capabilities=client_capabilities("visual-studio-code"),
+            workspace_folders=[types.WorkspaceFolder(package.as_uri(), package.name)],
+        )
+    )
+    yield Editor(client, package)
+    await client.shutdown_session()
+    await client.stop()

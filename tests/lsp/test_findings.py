@@ -1,0 +1,49 @@
+"""Findings as somebody types: those of a check, in the files that are open and in those that they include."""
+
+from __future__ import annotations
+
+from tests.lsp.conftest import MAIN, PARTS
+
+MAIN_FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
+
+
+async def test_a_mistake_is_found_when_it_is_typed_and_goes_when_it_is_mended(editor):
+    editor.open(MAIN_FILE)
+    await editor.until(MAIN_FILE)
+    editor.change(MAIN_FILE, MAIN.replace("xacro:bar", "xacro:barr"))
+    (found,) = await editor.until(MAIN_FILE, "XAC401")
+    assert (found.range.start.line, found.range.start.character) == (3, 2)
+    assert found.message.startswith("there is no macro 'barr'\n")
+    assert "did you mean" in found.message
+    editor.change(MAIN_FILE, MAIN)
+    await editor.until(MAIN_FILE)
+
+
+async def test_what_is_wrong_in_an_included_file_is_found_there_with_the_call(editor):
+    editor.open(PARTS_FILE)
+    await editor.until(PARTS_FILE)
+    editor.change(PARTS_FILE, PARTS.replace('link="base"', 'link="bsae"'))
+    (found,) = await editor.until(PARTS_FILE, "URDF150")
+    assert found.range.start.line == 4
+    calls = [related.location for related in found.related_information]
+    assert (editor.uri(MAIN_FILE), 3) in [(call.uri, call.range.start.line) for call in calls]
+
+
+async def test_a_text_that_is_no_xml_is_reported_where_it_ends(editor):
+    editor.open(MAIN_FILE, MAIN.replace("</robot>", ""))
+    (found,) = await editor.until(MAIN_FILE, "XML202")
+    assert found.range.start.line == 0
+
+
+async def test_positions_count_utf_16(editor):
+    before = "  <!-- 🤖机器人 --> "
+    editor.open(MAIN_FILE, MAIN.replace('  <link name="base"/>', before + '<xacro:nothing/><link name="base"/>'))
+    (found,) = await editor.until(MAIN_FILE, "XAC401")
+    assert found.range.start.character == len(before.encode("utf-16-le")) // 2 == len(before) + 1
+
+
+async def test_the_manifest_is_checked(editor):
+    text = (editor.folder / "package.xml").read_text()
+    editor.open("package.xml", text.replace("<license>Apache-2.0</license>", ""))
+    (found,) = await editor.until("package.xml", "LW802")
+    assert "license" in found.message
