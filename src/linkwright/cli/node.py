@@ -54,7 +54,7 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
 
 
 def run_info(arguments: argparse.Namespace) -> int:
-    """Print the node's topics, services and actions, as ros2 does."""
+    """Print the topics, services and actions of a node, as ros2 does."""
     full = absolute_or_given(arguments.node_name)
     hidden = arguments.include_hidden
 

@@ -1,4 +1,4 @@
-"""Number types of options."""
+"""Parsers for the numbers in command-line options."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ def positive_int(text: str) -> int:
     """Parse a positive integer.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not such a number.
+        argparse.ArgumentTypeError: the text is not a positive integer.
     """
     value = unsigned_int(text)
     if value == 0:
@@ -21,7 +21,7 @@ def unsigned_int(text: str) -> int:
     """Parse a non-negative integer.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not such a number.
+        argparse.ArgumentTypeError: the text is not a non-negative integer.
     """
     if text.isascii() and text.isdigit():
         return int(text)
@@ -32,7 +32,7 @@ def positive_float(text: str) -> float:
     """Parse a positive number.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not such a number.
+        argparse.ArgumentTypeError: the text is not a positive number.
     """
     try:
         value = float(text)
@@ -47,7 +47,7 @@ def share(text: str) -> float:
     """Parse a number from 0 to 1.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not such a number.
+        argparse.ArgumentTypeError: the text is not a number from 0 to 1.
     """
     try:
         value = float(text)

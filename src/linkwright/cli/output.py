@@ -1,4 +1,4 @@
-"""Write the result files of commands."""
+"""Writing of the result files of commands."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
 
 def write_output(path: Path, content: str | bytes) -> None:
-    """Write a result file completely or not at all, creating its folder.
+    """Write a result file completely or not at all, and create its folder if necessary.
 
     Raises:
-        LinkwrightError: CLI201, it cannot be written.
+        LinkwrightError: CLI201, the file cannot be written.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -38,7 +38,7 @@ _USAGE = 2
 
 
 def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
-    """Declare the node and how long to wait for it."""
+    """Declare the arguments for the node and for the time to wait for it."""
     add_session_arguments(parser)
     if optional:
         parser.add_argument(
@@ -68,7 +68,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the parameters' names below the name of their node."""
+    """Print the names of parameters, grouped below the name of their node."""
     try:
         pattern = re.compile(arguments.filter or "")
     except re.error as error:
@@ -127,7 +127,7 @@ def configure_get(parser: argparse.ArgumentParser) -> None:
 
 
 def run_get(arguments: argparse.Namespace) -> int:
-    """Print the value, as ros2 does."""
+    """Print the value of a parameter, as ros2 does."""
 
     async def job(session: Session) -> int:
         parameters = await RemoteParameters.of(session, arguments)
@@ -151,7 +151,7 @@ def configure_describe(parser: argparse.ArgumentParser) -> None:
 
 
 def run_describe(arguments: argparse.Namespace) -> int:
-    """Print the descriptions of the parameters, as ros2 does."""
+    """Print the descriptions of parameters, as ros2 does."""
 
     async def job(session: Session) -> int:
         parameters = await RemoteParameters.of(session, arguments)
@@ -164,7 +164,7 @@ def run_describe(arguments: argparse.Namespace) -> int:
 
 
 def _description(descriptor: Any) -> list[str]:
-    """Return the text of a rcl_interfaces/msg/ParameterDescriptor."""
+    """Return the lines that describe a rcl_interfaces/msg/ParameterDescriptor."""
     lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES.get(descriptor.type, 'unknown')}"]
     if descriptor.description:
         lines.append(f"  Description: {descriptor.description}")
@@ -220,7 +220,7 @@ def configure_delete(parser: argparse.ArgumentParser) -> None:
 
 
 def run_delete(arguments: argparse.Namespace) -> int:
-    """Delete the parameter, and print whether it was deleted."""
+    """Delete a parameter, and print whether it was deleted."""
     from linkwright.graph.parameters.parameter import Parameter, ParameterType
 
     async def job(session: Session) -> int:
@@ -246,7 +246,7 @@ def configure_dump(parser: argparse.ArgumentParser) -> None:
 
 
 def run_dump(arguments: argparse.Namespace) -> int:
-    """Print or write the parameter file."""
+    """Print the parameters of a node as a parameter file, or write them to one."""
 
     async def job(session: Session) -> int:
         from linkwright.graph.parameters.files import parameter_file_text, plain_value
@@ -280,7 +280,7 @@ def configure_load(parser: argparse.ArgumentParser) -> None:
 
 
 def run_load(arguments: argparse.Namespace) -> int:
-    """Set the parameters, and print whether each was set."""
+    """Set the parameters in a parameter file, and print whether each was set."""
     from linkwright.graph.parameters.files import read_parameter_file
     from linkwright.graph.parameters.parameter import Parameter
 

@@ -1,4 +1,4 @@
-"""The argument parsers of commands: argparse with hints and translation."""
+"""The argument parsers of commands, which extend argparse with hints and translation."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ def make_parser(
 class _Parser(argparse.ArgumentParser):
     """Suggests options for misspelt ones, and reports help texts that cannot be written.
 
-    argparse ignores errors of writing the help, and from version 3.15 on, Python does too.
+    argparse ignores errors in writing the help; from version 3.15 on, Python does, too.
     """
 
     def error(self, message: str) -> NoReturn:
-        """Print a usage error and end the process."""
+        """Print a usage error, and end the process."""
         meant = None
         unrecognised = translate_help("unrecognized arguments: %s").removesuffix("%s")
         if message.startswith(f"{unrecognised}-"):
@@ -52,7 +52,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _options_below(parser: argparse.ArgumentParser) -> Iterator[str]:
-    """Yield the long options of a parser and of its subparsers."""
+    """Yield the long options of a parser and its subparsers."""
     for action in parser._actions:
         yield from (name for name in action.option_strings if name.startswith("--"))
         if isinstance(action, argparse._SubParsersAction):
@@ -61,7 +61,10 @@ def _options_below(parser: argparse.ArgumentParser) -> Iterator[str]:
 
 
 def _formatter(prog: str) -> argparse.HelpFormatter:
-    """Return a help formatter as wide as the terminal; argparse itself would import much only to get the width."""
+    """Return a help formatter as wide as the terminal.
+
+    argparse would import many modules to get the width.
+    """
     try:
         columns = int(os.environ.get("COLUMNS", "0")) or os.get_terminal_size().columns
     except (ValueError, OSError):
@@ -69,13 +72,13 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
     return argparse.HelpFormatter(prog, width=columns - 2)
 
 
-# The function with which argparse translates its own texts, such as "the following arguments are required". By default
-# it is gettext's, which searches for catalogues that do not exist and imports `locale` for that.
+# Replace the function with which argparse translates its own texts, such as "the following arguments are required". The
+# default is gettext's function, which searches for catalogues that do not exist and imports `locale` to do so.
 argparse._ = translate_help  # type: ignore[attr-defined]  # argparse imports it so
 
 
 def _translate_help(parser: argparse.ArgumentParser) -> None:
-    """Translate the texts of a parser and of its subparsers into the user's language."""
+    """Translate the texts of a parser and its subparsers into the user's language."""
     if language() != "en":
         _translate(parser)
 

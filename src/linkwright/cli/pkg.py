@@ -123,7 +123,10 @@ def _create(arguments: argparse.Namespace) -> int:
 
 
 def _maintainer(name: str | None, email: str | None) -> Maintainer:
-    """Return the maintainer; missing parts come from git's configuration, then from the login name."""
+    """Return the maintainer.
+
+    Missing parts are taken from git's configuration or else from the login name.
+    """
     from linkwright.packages.creation.request import Maintainer
     from linkwright.packages.naming import is_email
 
@@ -131,14 +134,17 @@ def _maintainer(name: str | None, email: str | None) -> Maintainer:
     if not name:
         name = _git("user.name") or login
     if not email:
-        # colcon would reject an address without a domain, which git itself may generate.
+        # git may generate an address without a domain, which colcon would reject
         configured = _git("user.email")
         email = configured if is_email(configured) else f"{_address_part(login)}@todo.todo"
     return Maintainer(name, email)
 
 
 def _git(key: str) -> str:
-    """Return a value of git's configuration, or an empty string if there is no git or no such value."""
+    """Return a value of git's configuration.
+
+    The result is empty if there is no git or no such value.
+    """
     try:
         result = subprocess.run(  # noqa: S603 - fixed words, no shell
             ["git", "config", key],  # noqa: S607 - the user's own git, found as the shell finds it
@@ -158,7 +164,7 @@ def _login() -> str:
 
     try:
         return getpass.getuser()
-    except (OSError, KeyError, ImportError):  # a container's user id without a name
+    except (OSError, KeyError, ImportError):  # in a container, a user ID may have no name
         return "user"
 
 

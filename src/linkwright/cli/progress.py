@@ -9,14 +9,17 @@ from linkwright.diagnostics.translation import localized
 
 
 class ProgressLine:
-    """A line that is overwritten on each update; nothing is written if standard error is not a terminal."""
+    """A line that is overwritten on each update.
+
+    Nothing is written if standard error is not a terminal.
+    """
 
     def __init__(self) -> None:
         self.shown = sys.stderr.isatty()
         self._written = False
 
     def show(self, text: Phrase) -> None:
-        """Rewrite the line."""
+        """Replace the text of the line."""
         if self.shown:
             sys.stderr.write(f"\r{localized(text)}\x1b[K")
             sys.stderr.flush()

@@ -1,4 +1,7 @@
-"""The options ``--qos-...`` of ``topic echo``, ``pub`` and others, and the profile that they set."""
+"""The options ``--qos-...`` of ``topic echo``, ``pub`` and others.
+
+They set a QoS profile.
+"""
 
 from __future__ import annotations
 
@@ -80,7 +83,7 @@ def _add_arguments(
 
 
 def profile(arguments: argparse.Namespace) -> QoSProfile:
-    """Return the profile that the options set."""
+    """Return the QoS profile that the options set."""
     from linkwright.graph.qos import profile as qos
     from linkwright.graph.time.values import Duration
 
@@ -104,10 +107,11 @@ def profile(arguments: argparse.Namespace) -> QoSProfile:
 
 
 def fitting_profile(node: Node, topic: str, arguments: argparse.Namespace) -> QoSProfile:
-    """Return the profile to subscribe with: as the options set it, else the strictest that all publishers offer.
+    """Return the QoS profile to subscribe with.
 
-    As in ros2cli, it is reliable and transient local if all publishers are, so that a message published once is shown.
-    The default queue is longer than ros2's, so that a burst is counted and shown completely.
+    It has the values of the options, or else the strictest that all publishers offer. As in ros2cli, it is reliable and
+    transient local if all publishers are, so that a message published once is shown. The default queue is longer than
+    ros2's, so that a burst is counted and shown completely.
     """
     from linkwright.graph.qos.compatibility import fit
 

@@ -1,4 +1,7 @@
-"""The parameters of a running node, read through its services, and their values as text."""
+"""The parameters of a running node, and their values as text.
+
+They are accessed through the services of the node.
+"""
 
 from __future__ import annotations
 
@@ -29,12 +32,12 @@ TYPE_NAMES = {
 
 
 class RemoteParameters:
-    """The parameters of one node.
+    """The parameters of a running node.
 
     Args:
         session: the session of the command.
         node: the node's full name.
-        timeout: how long to wait for each response, in seconds; None for no limit.
+        timeout: the time in seconds to wait for each response; None for no limit.
     """
 
     def __init__(self, session: Session, node: str, timeout: float | None = None) -> None:
@@ -55,17 +58,26 @@ class RemoteParameters:
         return cls(session, node, arguments.service_timeout)
 
     async def names(self, prefixes: Sequence[str] = ()) -> list[str]:
-        """Return the names of the declared parameters, sorted, optionally only those with one of the prefixes."""
+        """Return the sorted names of the declared parameters.
+
+        If prefixes are given, only names with one of them are returned.
+        """
         response = await self._call("list_parameters", prefixes=list(prefixes))
         return sorted(response.result.names)
 
     async def values(self, names: Sequence[str]) -> list[Any]:
-        """Return the values (rcl_interfaces/msg/ParameterValue) in the order of the names."""
+        """Return the values of parameters in the order of the names.
+
+        They are rcl_interfaces/msg/ParameterValue messages.
+        """
         response = await self._call("get_parameters", names=list(names))
         return list(response.values)
 
     async def descriptors(self, names: Sequence[str]) -> list[Any]:
-        """Return the descriptors (rcl_interfaces/msg/ParameterDescriptor) in the order of the names."""
+        """Return the descriptors of parameters in the order of the names.
+
+        They are rcl_interfaces/msg/ParameterDescriptor messages.
+        """
         response = await self._call("describe_parameters", names=list(names))
         return list(response.descriptors)
 
@@ -75,7 +87,7 @@ class RemoteParameters:
         return list(response.results)
 
     async def set_together(self, parameters: Sequence[Any]) -> Any:
-        """Set all parameters or none, and return the result."""
+        """Set all parameters atomically, and return the result."""
         response = await self._call("set_parameters_atomically", parameters=list(parameters))
         return response.result
 
@@ -83,7 +95,7 @@ class RemoteParameters:
         """Check that parameters are declared.
 
         Raises:
-            LinkwrightError: CLI424 for each that is not declared.
+            LinkwrightError: CLI424, for each parameter that is not declared.
         """
         there = await self.names()
         missing = [
@@ -108,7 +120,10 @@ class RemoteParameters:
 
 
 def parameter_of(name: str, text: str) -> Any:
-    """Return a parameter (rcl_interfaces/msg/Parameter) with a value that is read as YAML, as ros2 does."""
+    """Return a parameter whose value is read as YAML, as ros2 does.
+
+    It is a rcl_interfaces/msg/Parameter.
+    """
     import yaml
 
     from linkwright.graph.parameters.parameter import Parameter, ParameterType
@@ -132,6 +147,6 @@ def parameter_of(name: str, text: str) -> Any:
 
 
 def print_result(result: Any, good: str, bad: str) -> None:
-    """Print one of two texts for success and failure, with the reason if there is one."""
+    """Print the text for success or the text for failure, with the reason if there is one."""
     text = good if result.successful else bad
     print(f"{text}: {result.reason}" if result.reason else text, file=sys.stdout if result.successful else sys.stderr)

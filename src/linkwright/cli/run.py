@@ -27,7 +27,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the executable and return its exit status; it replaces this process and thus gets the signals."""
+    """Run an executable in place of this process, and return its exit status.
+
+    Replacing this process lets the executable receive the signals.
+    """
     from linkwright import standins
     from linkwright.launch import LaunchOptions, find_program, is_viewer, run_viewer
     from linkwright.packages import PackageFinder

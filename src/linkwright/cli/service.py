@@ -32,7 +32,7 @@ _AT_ONCE = 0.2
 
 
 def add_service_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the service, and whether hidden services count."""
+    """Declare the arguments for the service and for including hidden services."""
     add_session_arguments(parser)
     parser.add_argument("service_name", metavar="SERVICE", help="the service, such as /add_two_ints")
     add_hidden_argument(parser, "--include-hidden-services", hidden_help="consider hidden services as well")
@@ -55,7 +55,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the services' names, as ros2 does."""
+    """Print the names of services, as ros2 does."""
 
     async def job(session: Session) -> int:
         services = visible(session.node.get_service_names_and_types(), hidden=arguments.include_hidden_services)
@@ -74,7 +74,7 @@ def configure_find(parser: argparse.ArgumentParser) -> None:
 
 
 def run_find(arguments: argparse.Namespace) -> int:
-    """Print the names of the services."""
+    """Print the names of the services of a type."""
     return _SERVICES.print_of_type(arguments, arguments.service_type, hidden=arguments.include_hidden_services)
 
 
@@ -84,7 +84,7 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
 
 
 def run_info(arguments: argparse.Namespace) -> int:
-    """Print information on the service, as ros2 does."""
+    """Print information about a service, as ros2 does."""
     name = absolute(arguments.service_name)
 
     async def job(session: Session) -> int:
@@ -103,7 +103,7 @@ def configure_type(parser: argparse.ArgumentParser) -> None:
 
 
 def run_type(arguments: argparse.Namespace) -> int:
-    """Print the types of the service, one per line."""
+    """Print the types of a service, one per line."""
     return _SERVICES.print_types(arguments, arguments.service_name)
 
 
@@ -166,7 +166,7 @@ def run_call(arguments: argparse.Namespace) -> int:
 
 
 def _check_type(session: Session, name: str, asked: str) -> None:
-    """Report a service with another type, instead of waiting for it in vain."""
+    """Check the type of a service, instead of waiting in vain for a service of another type."""
     from linkwright.graph.endpoints.base import EndpointKind
 
     servers = [
@@ -196,7 +196,7 @@ def configure_echo(parser: argparse.ArgumentParser) -> None:
 
 
 def run_echo(arguments: argparse.Namespace) -> int:
-    """Print events until the user interrupts it, as ros2 does."""
+    """Print service events until the user interrupts the command, as ros2 does."""
     name = absolute(arguments.service_name)
     form = EchoFormat.of(arguments)
 
@@ -223,7 +223,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
 
 
 def _event_text(event: Any, form: EchoFormat) -> str:
-    """Return an event as ros2 prints it: in YAML, with the name of its kind."""
+    """Format a service event as ros2 does: in YAML, with the name of its kind."""
     from linkwright.graph.endpoints.service import EventType
 
     kind = event.info.event_type

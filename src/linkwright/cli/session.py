@@ -1,7 +1,8 @@
-"""The session of a command on running nodes: a graph that is joined over DDS or Zenoh, and a hidden node.
+"""The session of a command that works on running nodes.
 
-A command passes a coroutine to `run_in_graph`. Ctrl-C cancels it, the graph is left cleanly, and the command exits with
-status 130. If the reader of its output exits, the command ends quietly.
+It has a graph that is joined over DDS or Zenoh, and a hidden node. A command passes a coroutine to `run_in_graph`.
+Ctrl-C cancels it, the graph is left cleanly, and the command exits with status 130. If the reader of its output exits,
+the command ends quietly.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ _POLL = 0.01
 
 
 def add_session_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of every ros2 command on the graph."""
+    """Declare the options that every ros2 command on the graph has."""
     group = parser.add_argument_group(title="ROS graph")
     group.add_argument(
         "--spin-time",
@@ -52,9 +53,7 @@ def add_session_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 class Session:
-    """The graph and the node of a running command.
-
-    A `SignalWatch` can end it.
+    """The graph and the node of a running command, which a `SignalWatch` can end.
 
     Attributes:
         graph: the graph, joined with other processes.
@@ -72,23 +71,26 @@ class Session:
         self._outcome: asyncio.Future[int] = self.loop.create_future()
 
     def finish(self, status: int = 0) -> None:
-        """Make `finished` return a status."""
+        """End the command: `finished` returns the status."""
         if not self._outcome.done():
             self._outcome.set_result(status)
 
     def interrupt(self, _reason: str) -> None:
-        """Make `finished` return 0, on the user's request."""
+        """End the command because the user interrupted it: `finished` returns 0."""
         self.finish()
 
     def seconds_to_end(self) -> float:
-        """Return 0: there are no processes."""
+        """Return 0, because there are no processes to wait for."""
         return 0.0
 
     def kill_all(self) -> None:
-        """Do nothing: there are no processes to kill."""
+        """Do nothing, because there are no processes to kill."""
 
     def guarded(self, callback: Callable[..., object]) -> Callable[..., None]:
-        """Return a callback whose errors end the command; the graph itself would log them and continue."""
+        """Return a callback whose errors end the command.
+
+        The graph itself would log them and continue.
+        """
 
         def call(*arguments: Any) -> None:
             if self._outcome.done():
@@ -102,9 +104,9 @@ class Session:
         return call
 
     def receiver(self, callback: Callable[..., object]) -> Callable[..., None]:
-        """Return a guarded callback for a subscription, with the same number of arguments.
+        """Return a guarded callback for a subscription, with the same number of parameters.
 
-        From their number, the graph knows whether the callback takes only the message, or its metadata too.
+        The graph determines from this number whether the callback takes only the message, or also its metadata.
         """
         guarded = self.guarded(callback)
 
@@ -133,12 +135,15 @@ class Session:
         loop.call_at(due, call)
 
     async def finished(self, timeout: float | None = None) -> int | None:
-        """Wait for the end of the command, and return its status, or None after `timeout` seconds."""
+        """Wait for the command to end, and return its status, or None after `timeout` seconds."""
         done, _ = await asyncio.wait([self._outcome], timeout=timeout)
         return self._outcome.result() if done else None
 
     async def until(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
-        """Poll a condition until it holds; return False after `timeout` seconds."""
+        """Poll a condition until it holds, and return whether it held.
+
+        The result is False if the command ends, or `timeout` seconds pass, before it holds.
+        """
         loop = asyncio.get_running_loop()
         end = None if timeout is None else loop.time() + timeout
         while not condition():
@@ -148,7 +153,10 @@ class Session:
         return True
 
     async def answer(self, future: Future[T], timeout: float | None = None) -> T | None:
-        """Wait for a future of the graph and return its result, or None after `timeout` seconds."""
+        """Wait for a future of the graph, and return its result.
+
+        The result is None if the command ends, or `timeout` seconds pass, before the future is done.
+        """
         loop = asyncio.get_running_loop()
         ended = asyncio.Event()
         future.add_waiter(lambda: loop.call_soon_threadsafe(ended.set))
@@ -170,14 +178,14 @@ async def graph_session(
     remappings: Sequence[tuple[str, str]] = (),
     only_looks: bool = False,
 ) -> AsyncIterator[Session]:
-    """Join the graph, with a hidden node, until the block ends.
+    """Join the graph with a hidden node for the duration of a block.
 
     Args:
         node_name: the node's name; unique to the process if omitted.
         spin_time: seconds to wait for discovery; if omitted, until the other participants have been discovered.
         use_sim_time: whether the node uses ``/clock``.
         remappings: rules ``(from, to)`` for the names that the node uses.
-        only_looks: whether the command only reads the graph; its node is invisible to others then.
+        only_looks: whether the command only reads the graph, in which case its node is invisible to others.
 
     Raises:
         LinkwrightError: see `join_others`.
@@ -208,7 +216,7 @@ def run_in_graph(
     """Run a command's coroutine in the graph, and return its result as the exit status.
 
     Args:
-        arguments: the parsed arguments; those of `add_session_arguments` may be missing.
+        arguments: the parsed arguments; the arguments of `add_session_arguments` may be missing.
         job: the coroutine function of the command.
         node_name: see `graph_session`.
         remappings: see `graph_session`.
@@ -245,7 +253,7 @@ def open_graph() -> Graph:
 
 
 async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool = False) -> None:
-    """Join the graph with other processes, and wait until they are discovered.
+    """Join the graph with other processes, and wait until these are discovered.
 
     Raises:
         LinkwrightError: CLI401, neither DDS nor Zenoh is available; DDS101, ROS_DOMAIN_ID is not a domain; DDS111, a
@@ -254,7 +262,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
     from linkwright.wire.joining import available, check_settings, join, why_not
 
     if available():
-        check_settings()  # raises errors that joining would only log
+        check_settings()  # raise the errors that joining would only log
     transport = join(graph, only_looks=only_looks, must_join=True) if available() else None
     if transport is None:
         raise LinkwrightError(
@@ -266,7 +274,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
             )
         )
     while not await asyncio.to_thread(transport.wait_until_ready, _LONGEST_JOINING) and transport.waits:
-        pass  # it logs what it waits for
+        pass  # the transport logs what it is waiting for
     if transport.problem is not None:
         raise transport.problem
     if spin_time is not None:
@@ -276,7 +284,10 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
 
 
 class TerminationEnds:
-    """Makes SIGTERM end the process as Ctrl-C does while it is entered, so that the graph is left cleanly."""
+    """A context in which SIGTERM ends the process as Ctrl-C does.
+
+    The graph is then left cleanly.
+    """
 
     def __enter__(self) -> None:
         self._before: Any = None

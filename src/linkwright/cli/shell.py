@@ -18,7 +18,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the shell or the command, and return its exit status."""
+    """Run a shell or a command in one, and return its exit status."""
     from linkwright.cli.completion.scripts import shell_script
     from linkwright.shell import run_shell
     from linkwright.shell.instead import INSTEAD

@@ -37,7 +37,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Simulate until the user interrupts it; return 1 if the world or the robot has errors."""
+    """Simulate until the user interrupts the command.
+
+    Return 1 if the world or the robot has errors.
+    """
     from linkwright.hosting.plans import HostOptions
     from linkwright.hosting.simulated import SimulatedWorld, run_simulated
     from linkwright.packages import PackageFinder
@@ -45,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.simulation.server.worlds import load_world
 
     load_mujoco()
-    load_world(arguments.world)  # report a missing world at once, not in the middle of a log
+    load_world(arguments.world)  # report a missing world now, before the log begins
     path = Path(arguments.robot or arguments.world).absolute()
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     world = SimulatedWorld(

@@ -1,4 +1,4 @@
-"""Options that ``linkwright sim``, ``drive`` and ``spawn`` share, and the models of a simulation."""
+"""The options that ``linkwright sim``, ``drive`` and ``spawn`` share, and their models."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def positive(text: str) -> float:
     """Parse a positive number of seconds.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not such a number.
+        argparse.ArgumentTypeError: the text is not a positive number.
     """
     try:
         value = float(text)
@@ -69,7 +69,7 @@ def _rate(text: str) -> float:
 
 
 def add_place_options(parser: argparse.ArgumentParser) -> None:
-    """Declare the initial pose of a robot."""
+    """Declare the options for the initial pose of a robot."""
     group = parser.add_argument_group(title="initial pose")
     group.add_argument("-x", metavar="M", type=float, default=0.0, help="the initial x of the robot (m)")
     group.add_argument("-y", metavar="M", type=float, default=0.0, help="the initial y (m)")
@@ -78,7 +78,7 @@ def add_place_options(parser: argparse.ArgumentParser) -> None:
 
 
 def recording(arguments: argparse.Namespace) -> AbstractContextManager[BagWriter | None]:
-    """Open the recording that `add_simulation_options` declares until the end of the block, or return None.
+    """Return a context that opens the recording that the options request, or a context of None.
 
     Raises:
         LinkwrightError: BAG105, the folder or file exists or cannot be created; BAG107, `rosbags` is not installed.
@@ -105,7 +105,7 @@ class LoadedModel(NamedTuple):
 
 
 def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> LoadedModel | None:
-    """Read a robot or model; return None for one with errors, which are printed.
+    """Read a robot or model; print its errors and return None if it has any.
 
     Args:
         path: a URDF, xacro or SDF file.
@@ -134,7 +134,10 @@ def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> 
 
 
 def _found_beside(model: Model, folder: Path, finder: PackageFinder) -> Model:
-    """Return a model whose URIs that only its own folder resolves are absolute, because a text has no folder."""
+    """Return the model with absolute URIs where only its own folder resolves them.
+
+    The model is passed on as a text, which has no folder.
+    """
     from linkwright.descriptions.conversion import with_addresses
     from linkwright.packages import PackageFinder
     from linkwright.sdf.resources import Missing, ResourceFinder

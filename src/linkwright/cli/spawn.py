@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Ask the simulation to add the model; return 1 if the file has errors.
 
     Raises:
-        LinkwrightError: CLI332, there is no simulation; CLI333, it rejects the model.
+        LinkwrightError: CLI332, no simulation is running; CLI333, the simulation rejects the model.
     """
     from linkwright.packages import PackageFinder
     from linkwright.simulation.nodes.spawner import SPAWN_SERVICE, Entity, spawn_request

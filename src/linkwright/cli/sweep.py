@@ -1,4 +1,4 @@
-"""``linkwright sweep``: run a scenario over parameters and seeds."""
+"""``linkwright sweep``: run a scenario with several parameter values and seeds."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
     scenario = with_values(prepare(path), parse_assignments(arguments.values), arguments.seeds)
     if arguments.rerun is not None:
         return _rerun(scenario, arguments.rerun)
-    os.chdir(began_in)  # the processes run in the folder of the scenario
+    os.chdir(began_in)  # undo the change of `prepare` to the scenario's folder
     words = ["linkwright", "sweep", arguments.file, *arguments.values]
     if arguments.seeds is not None:
         words += ["--seeds", str(arguments.seeds)]
@@ -133,12 +133,12 @@ class _Progress:
         self._line = ProgressLine()
 
     def show(self, done: int, count: int, failed: int) -> None:
-        """Show the number of finished runs."""
+        """Show how many runs have finished and how many of them failed."""
         self.made += 1
         self._line.show(phrase("{done} of {count} runs, {failed} failed", done=done, count=count, failed=failed))
 
     def end(self) -> None:
-        """End the line."""
+        """End the progress line."""
         self._line.end()
 
 

@@ -1,4 +1,7 @@
-"""Values that a user types for a message, a request or a goal: YAML that is checked against the type."""
+"""Values that a user types for a message, a request or a goal.
+
+They are YAML that is checked against the type.
+"""
 
 from __future__ import annotations
 
@@ -32,15 +35,15 @@ _AUTOMATIC = ("auto", "now")
 
 
 def add_values_arguments(parser: argparse.ArgumentParser, *, values_help: str, metavar: str = "VALUES") -> Any:
-    """Declare the values, and the option to read them from standard input.
+    """Declare the argument for the values, and the option to read them from standard input.
 
     Args:
         parser: the parser of the command.
         values_help: the help text, with an example.
-        metavar: the name in the help.
+        metavar: the name of the argument in the help.
 
     Returns:
-        The group in which another source of the values may be declared.
+        The argument group, in which another source of the values may be declared.
     """
     group = parser.add_mutually_exclusive_group()
     group.add_argument("values", metavar=metavar, nargs="?", default="{}", help=values_help)
@@ -70,7 +73,7 @@ def parse_values(text: str) -> list[dict[str, Any]]:
     """Return the mappings in a text: one, or one for each document of a YAML stream.
 
     Raises:
-        LinkwrightError: CLI402, it is not YAML; CLI403, it is not a mapping.
+        LinkwrightError: CLI402, the text is not YAML; CLI403, it is not a mapping.
     """
     import yaml
 
@@ -117,12 +120,12 @@ def _no_mapping(document: object, source: SourceText) -> Diagnostic:
 
 
 def check_values(message: Message, values: Mapping[str, Any], text: str = "") -> None:
-    """Check that values fit a message, and report all that do not fit together.
+    """Check that values fit a message, and report all that do not in one error.
 
     Args:
         message: a message of the type; it is not changed.
-        values: the result of `parse_values`.
-        text: their source, to show locations in it.
+        values: a mapping from `parse_values`.
+        text: the source of the values, to show locations in it.
 
     Raises:
         LinkwrightError: CLI405, there is no such field; CLI406, a value is invalid for its field.
@@ -136,11 +139,11 @@ def check_values(message: Message, values: Mapping[str, Any], text: str = "") ->
 def fill(message: Message, values: Mapping[str, Any], text: str = "") -> list[Callable[[Any], None]]:
     """Set the fields of a message.
 
-    ``header: auto`` and ``stamp: now`` (of a std_msgs/Header and a builtin_interfaces/Time) insert the time of
-    publishing, as in ``ros2 topic pub``.
+    As in ``ros2 topic pub``, ``header: auto`` (for a std_msgs/Header) and ``stamp: now`` (for a
+    builtin_interfaces/Time) insert the time of publishing.
 
     Returns:
-        Functions that set those stamps, to call with a Time message.
+        Functions that set these stamps, to be called with a Time message.
     """
     from linkwright.messages import set_fields
 
@@ -151,7 +154,10 @@ def fill(message: Message, values: Mapping[str, Any], text: str = "") -> list[Ca
 
 
 def _split(message: Any, values: dict[str, Any]) -> tuple[dict[str, Any], list[Callable[[Any], None]]]:
-    """Return the values without those for the time of publishing, and the functions that set the latter."""
+    """Return the values without placeholders for the time of publishing.
+
+    The second result is a list of functions that set these stamps.
+    """
     setters: list[Callable[[Any], None]] = []
     plain: dict[str, Any] = {}
     for name, value in values.items():
@@ -174,7 +180,7 @@ def _setter(owner: Any, name: str) -> Callable[[Any], None]:
 
 
 class _Places:
-    """Finds the location of a value in the text by its path of names and indices."""
+    """Finds the location of a value in the text, given its path of names and indices."""
 
     def __init__(self, text: str) -> None:
         self.source = SourceText(_NAME, text)
@@ -184,7 +190,7 @@ class _Places:
 
             try:
                 self._root = yaml.compose(text, yaml.SafeLoader)
-            except yaml.YAMLError:  # several documents have no locations
+            except yaml.YAMLError:  # locations in several documents are not supported
                 self._root = None
 
     def span(self, path: tuple[str | int, ...], *, key: bool = False) -> Span | None:

@@ -62,7 +62,7 @@ def size(text: str) -> int:
     """Parse a number of bytes, such as ``256MB``.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not valid.
+        argparse.ArgumentTypeError: the text is not a number of bytes.
     """
     found = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,3})?) ?([KMG]?B)?", text, re.ASCII | re.IGNORECASE)
     if found is None:
@@ -74,7 +74,7 @@ def port(text: str) -> int:
     """Parse a TCP port.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not valid.
+        argparse.ArgumentTypeError: the text is not a TCP port.
     """
     if text.isascii() and text.isdigit() and 0 < int(text) < 65536:
         return int(text)
@@ -82,7 +82,7 @@ def port(text: str) -> int:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Show the model, or the differences of two, until the user interrupts it."""
+    """Show a model, or the differences between two, until the user interrupts the command."""
     from linkwright.bag import is_recording
     from linkwright.hosting.plans import HostOptions
 
@@ -127,10 +127,10 @@ def _run_bag(arguments: argparse.Namespace, options: HostOptions) -> int:
 
 
 def _readable(rviz: Path) -> Path:
-    """Return the path of the .rviz file.
+    """Return the absolute path of a .rviz file after checking that it can be read.
 
     Raises:
-        LinkwrightError: it cannot be read; see `linkwright.viewer.RvizConfig.load`.
+        LinkwrightError: the file cannot be read; see `linkwright.viewer.RvizConfig.load`.
     """
     from linkwright.rviz import RvizConfig
 

@@ -69,17 +69,19 @@ def run_try(arguments: argparse.Namespace) -> int:
 
 
 class _Trial:
-    """Feeds recordings to an engine as a microphone would, one after another, and prints the results.
+    """Feeds recordings to an engine as a microphone would, and prints the results.
+
+    The recordings are fed one after another.
 
     Args:
-        engine: the engine.
+        engine: the speech engine.
         commands: the commands to match.
         partials: whether to print partial results.
     """
 
     def __init__(self, engine: SpeechEngine, commands: CommandSet, *, partials: bool) -> None:
         self._engine, self._commands, self._partials = engine, commands, partials
-        self._given = 0  # samples
+        self._given = 0  # in samples
 
     def hear(self, file: str, samples: Samples) -> None:
         """Print the results for a recording, one per line."""
@@ -88,7 +90,7 @@ class _Trial:
         from linkwright.speech.sound.samples import BLOCK, RATE
 
         began = self._given / RATE
-        sound = np.concatenate((samples, np.zeros(RATE, np.int16)))  # engines end an utterance at silence
+        sound = np.concatenate((samples, np.zeros(RATE, np.int16)))  # append silence, at which engines end an utterance
         finals = 0
         for first in range(0, len(sound), BLOCK):
             block = sound[first : first + BLOCK]
@@ -133,7 +135,7 @@ def configure_enrol(parser: argparse.ArgumentParser) -> None:
 
 
 def run_enrol(arguments: argparse.Namespace) -> int:
-    """Enrol a word from recordings; one unusable recording rejects all of them."""
+    """Enrol a word from recordings; if one of them is unusable, all are rejected."""
     from linkwright.speech.enrolled.enrolment import enrol
     from linkwright.speech.enrolled.words import TAKES
     from linkwright.speech.sound.wav import read_wav
@@ -162,7 +164,7 @@ def configure_words(parser: argparse.ArgumentParser) -> None:
 
 
 def run_words(arguments: argparse.Namespace) -> int:
-    """List the enrolled words."""
+    """Print the enrolled words."""
     path = _path(arguments)
     words = _read(path)
     for name in words.names:
@@ -197,7 +199,7 @@ def configure_engines(parser: argparse.ArgumentParser) -> None:
 
 
 def run_engines(_: argparse.Namespace) -> int:
-    """Try to create each engine in each language, and print what it lacks."""
+    """Try to create each engine in each language, and print what is missing."""
     from linkwright.speech.engine import engine_names
 
     for name in engine_names():
@@ -251,7 +253,7 @@ VERBS = {
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the commands."""
+    """Declare the subcommands."""
     configure_nested(parser, VERBS)
 
 

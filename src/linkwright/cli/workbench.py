@@ -1,4 +1,4 @@
-"""The commands beside those of the engine (`linkwright.cli.command.COMMANDS`)."""
+"""The commands in addition to the engine's commands (`linkwright.cli.command.COMMANDS`)."""
 
 GROUPS = {
     "robot descriptions": {

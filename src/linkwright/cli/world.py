@@ -20,7 +20,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the worlds to open, and the models to include by name."""
+    """Print the worlds that can be opened, and the models that can be included by name."""
     from linkwright.packages import PackageFinder
     from linkwright.sdf.resources import ResourceFinder
 
@@ -56,7 +56,7 @@ def configure_new(parser: argparse.ArgumentParser) -> None:
 
 
 def run_new(arguments: argparse.Namespace) -> int:
-    """Write a small world to start from."""
+    """Write a small world file as a starting point."""
     from linkwright.descriptions import is_world
     from linkwright.sdf.starting_world import starting_world
 
@@ -81,7 +81,7 @@ VERBS = {
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the commands."""
+    """Declare the subcommands."""
     configure_nested(parser, VERBS)
 
 

@@ -87,12 +87,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def without_options(words: list[str]) -> SimpleNamespace | None:
-    """Return the arguments for a file and values, or None if there is no file."""
+    """Return the parsed arguments for a command line without options.
+
+    The result is None if it names no file.
+    """
     return SimpleNamespace(file=words[0], values=words[1:], **_DEFAULTS) if words else None
 
 
 def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
-    """Run the command; findings go to standard error, results to standard output or the file."""
+    """Run the command.
+
+    Findings are written to standard error, results to standard output or a file.
+    """
     from linkwright.xacro.inputs import Inputs
     from linkwright.xacro.limits import Limits
 
@@ -132,7 +138,10 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
 
 
 def _values(words: list[str]) -> tuple[dict[str, str], list[Diagnostic]]:
-    """Return the arguments, and remarks on those that xacro ignores: empty values and ROS parameters (``_name:=``)."""
+    """Return the xacro arguments, and remarks on ignored ones.
+
+    Empty values and ROS parameters (``_name:=``) are ignored.
+    """
     values = parse_assignments(words)
     ignored = []
     for name, value in list(values.items()):

@@ -1,4 +1,4 @@
-"""``python -m linkwright.cli.tools NAME ARGUMENTS``: one of the commands of ROS 2."""
+"""``python -m linkwright.cli.tools NAME ARGUMENTS``: runs one of the commands of ROS 2."""
 
 from __future__ import annotations
 

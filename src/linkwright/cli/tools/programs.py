@@ -1,4 +1,4 @@
-"""The programs of ROS 2's commands; arguments, output and exit statuses are those of the originals."""
+"""The commands of ROS 2, with the same arguments, output and exit statuses as the originals."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FAILED = 255
 
 
 def main(name: str, words: Sequence[str]) -> int:
-    """Run one of the commands.
+    """Run one of the commands of ROS 2.
 
     Args:
         name: a key of `TOOLS`.
@@ -33,7 +33,10 @@ def _xacro(words: Sequence[str]) -> int:
 
 
 def _check_urdf(words: Sequence[str]) -> int:
-    """Print the output of urdfdom's program; other findings are left to ``linkwright check``."""
+    """Print the output of urdfdom's ``check_urdf``.
+
+    Other findings are left to ``linkwright check``.
+    """
     if not words:
         print("Expect URDF xml file to parse", file=sys.stderr)
         return _FAILED

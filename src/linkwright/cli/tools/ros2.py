@@ -1,4 +1,4 @@
-"""The command ``ros2``: each of its commands is one of ours."""
+"""The command ``ros2``, whose subcommands are Linkwright's commands."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _ONLY_IN_ROS = {
 
 
 def ros2(words: Sequence[str]) -> int:
-    """Run a command of ``ros2``, and return its exit status."""
+    """Run a subcommand of ``ros2``, and return its exit status."""
     rest = [word for word in words if word != "--use-python-default-buffering"]
     if not rest or rest[0] in ("-h", "--help"):
         print(_overview())

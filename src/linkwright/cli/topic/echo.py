@@ -1,4 +1,4 @@
-"""``linkwright topic echo``."""
+"""``linkwright topic echo``: print the messages of a topic."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def configure_echo(parser: argparse.ArgumentParser) -> None:
 
 
 def run_echo(arguments: argparse.Namespace) -> int:
-    """Print messages until the user interrupts it."""
+    """Print messages until the user interrupts the command."""
     name = absolute(arguments.topic_name)
     fits = None if arguments.filter is None else compile_filter(arguments.filter)
     field = () if arguments.raw else field_path(arguments.field)
@@ -96,7 +96,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
 
 
 def lost_text(event: Any) -> str:
-    """Return the text for lost messages (rclpy ``QoSMessageLostInfo``)."""
+    """Return the text that reports lost messages (rclpy ``QoSMessageLostInfo``)."""
     return (
         "A message was lost!!!\n"
         f"\ttotal count change:{event.total_count_change}\n"

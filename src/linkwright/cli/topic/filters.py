@@ -25,8 +25,8 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
     underscore.
 
     Raises:
-        LinkwrightError: CLI407, it is not a valid expression. The predicate raises it too, if it cannot be evaluated
-            for a message.
+        LinkwrightError: CLI407, the expression is not valid. The predicate raises this error, too, if the expression
+            cannot be evaluated for a message.
     """
     source = SourceText(_NAME, text)
 
@@ -61,7 +61,7 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
 
     def fits(message: Any) -> bool:
         try:
-            # The tree was checked above: no private names, and only the listed functions.
+            # The syntax tree was checked above: it contains no private names, and only the listed functions.
             return bool(eval(code, {"__builtins__": {}, **_NAMES, "m": message}))  # noqa: S307
         except Exception as error:  # noqa: BLE001 - the user's expression may raise anything
             raise fault(phrase("the filter failed: {error}", error=foreign(error))) from None

@@ -1,4 +1,4 @@
-"""``linkwright topic hz``, ``bw`` and ``delay``: measure the rate, bandwidth and delay of messages."""
+"""``linkwright topic hz``, ``bw`` and ``delay``: measure rate, bandwidth and delay."""
 
 from __future__ import annotations
 
@@ -46,7 +46,10 @@ def configure_hz(parser: argparse.ArgumentParser) -> None:
 
 
 def run_hz(arguments: argparse.Namespace) -> int:
-    """Print the rate each second until the user interrupts it; messages are deserialized only for the filter."""
+    """Print the rate each second until the user interrupts the command.
+
+    Messages are deserialized only if there is a filter.
+    """
     names = list(dict.fromkeys(map(absolute, arguments.topic_name)))
     fits = None if arguments.filter is None else compile_filter(arguments.filter)
 
@@ -54,7 +57,7 @@ def run_hz(arguments: argparse.Namespace) -> int:
         from linkwright.cli.topic.rates import RateWindow, rate_table, rate_text
 
         windows = {name: RateWindow(arguments.window) for name in names}
-        # The node's clock is used only if it may differ from the computer's: reading it costs more than counting.
+        # Use the node's clock only if it may differ from the computer's, because reading it takes longer than counting.
         clock = session.node.get_clock()
         now_ns = clock.now_ns if arguments.use_sim_time and not arguments.wall_time else time.monotonic_ns
 
@@ -91,7 +94,7 @@ def configure_delay(parser: argparse.ArgumentParser) -> None:
 
 
 def run_delay(arguments: argparse.Namespace) -> int:
-    """Print the delay each second until the user interrupts it."""
+    """Print the delay each second until the user interrupts the command."""
     name = absolute(arguments.topic_name)
 
     async def job(session: Session) -> int:
@@ -105,7 +108,7 @@ def run_delay(arguments: argparse.Namespace) -> int:
             )
             hint = phrase("only messages with a std_msgs/Header have a time stamp")
             raise LinkwrightError(Diagnostic("CLI413", message, hint=hint))
-        # If the header is the first field, its stamp is read from the bytes without deserializing the rest.
+        # If the header is the first field, its stamp can be read from the bytes without deserializing the rest.
         raw = next(iter(fields)) == "header"
         window = DelayWindow(arguments.window)
         clock = session.node.get_clock()
@@ -132,7 +135,10 @@ def configure_bw(parser: argparse.ArgumentParser) -> None:
 
 
 def run_bw(arguments: argparse.Namespace) -> int:
-    """Print the bandwidth each second until the user interrupts it; messages are not deserialized."""
+    """Print the bandwidth each second until the user interrupts the command.
+
+    Messages are not deserialized.
+    """
     name = absolute(arguments.topic_name)
 
     async def job(session: Session) -> int:
@@ -152,7 +158,7 @@ def run_bw(arguments: argparse.Namespace) -> int:
 
 
 def _add_window_argument(parser: argparse.ArgumentParser, default: int) -> None:
-    """Declare the number of messages to measure over."""
+    """Declare the option for the number of messages in the window."""
     parser.add_argument(
         "-w",
         "--window",
@@ -172,22 +178,22 @@ def _subscribe(
     *,
     raw: bool,
 ) -> None:
-    """Subscribe to a topic with the requested QoS, or with that of its publishers.
+    """Subscribe to a topic with the requested QoS, or else with the QoS of its publishers.
 
     Args:
         session: the session of the command.
-        arguments: the parsed arguments, with those of `add_subscription_qos_arguments`.
+        arguments: the parsed arguments, including the arguments of `add_subscription_qos_arguments`.
         message_type: the class of the messages.
-        name: the absolute name.
+        name: the absolute name of the topic.
         callback: receives each message, and its metadata if it has a second parameter; its errors end the command.
-        raw: whether the callback gets the bytes instead of messages.
+        raw: whether the callback receives bytes instead of messages.
     """
     profile = fitting_profile(session.node, name, arguments)
     session.node.create_subscription(message_type, name, session.receiver(callback), profile, raw=raw)
 
 
 async def _report_until_finished(session: Session, text: Callable[[], str | None]) -> int:
-    """Print a text, if there is one, each second until the command ends; return the exit status."""
+    """Print a text each second, if there is one, until the command ends; return the exit status."""
 
     def report() -> None:
         line = text()

@@ -1,4 +1,4 @@
-"""``linkwright topic list``, ``info``, ``find`` and ``type``: the topics and their types."""
+"""``linkwright topic list``, ``info``, ``find`` and ``type``: show topics and their types."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the topics' names, as ros2 does."""
+    """Print the names of topics, as ros2 does."""
 
     async def job(session: Session) -> int:
         node = session.node
@@ -79,7 +79,7 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
 
 
 def run_info(arguments: argparse.Namespace) -> int:
-    """Print information on the topic, as ros2 does."""
+    """Print information about a topic, as ros2 does."""
     name = absolute(arguments.topic_name)
 
     async def job(session: Session) -> int:
@@ -109,7 +109,7 @@ def configure_find(parser: argparse.ArgumentParser) -> None:
 
 
 def run_find(arguments: argparse.Namespace) -> int:
-    """Print the names of the topics."""
+    """Print the names of the topics of a type."""
     return _TOPICS.print_of_type(arguments, arguments.topic_type, hidden=arguments.include_hidden_topics)
 
 
@@ -120,14 +120,14 @@ def configure_type(parser: argparse.ArgumentParser) -> None:
 
 
 def run_type(arguments: argparse.Namespace) -> int:
-    """Print the types in use on the topic, one per line."""
+    """Print the types in use on a topic, one per line."""
     return _TOPICS.print_types(arguments, arguments.topic_name, hidden=arguments.include_hidden_topics)
 
 
 def endpoint_text(info: Any) -> str:
-    """Return the description of an endpoint (rclpy ``TopicEndpointInfo``), in several lines.
+    """Format an endpoint (rclpy ``TopicEndpointInfo``) as a text of several lines.
 
-    The type hash is shown if the other side announces it; Humble does not.
+    The type hash is shown if the other side announces it, which Humble does not.
     """
     lines = [
         f"Node name: {info.node_name}",
@@ -146,7 +146,7 @@ def endpoint_text(info: Any) -> str:
 
 
 def qos_lines(qos: QoSProfile) -> list[str]:
-    """Return the policies of a profile, one per line."""
+    """Return lines that show the policies of a QoS profile, one per line."""
     history = qos.history.name
     if history == "KEEP_LAST":
         history = f"{history} ({qos.depth})"

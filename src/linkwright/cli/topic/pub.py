@@ -1,4 +1,4 @@
-"""``linkwright topic pub``."""
+"""``linkwright topic pub``: publish messages on a topic."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def configure_pub(parser: argparse.ArgumentParser) -> None:
 
 
 def run_pub(arguments: argparse.Namespace) -> int:
-    """Publish until the user interrupts it, or the requested number of times."""
+    """Publish until the user interrupts the command, or the requested number of times."""
     from linkwright.messages import get_message
 
     name = absolute(arguments.topic_name)
@@ -104,7 +104,7 @@ def run_pub(arguments: argparse.Namespace) -> int:
 
 
 async def _wait_for(session: Session, publisher: Publisher[Any], wanted: int, longest: float | None) -> bool:
-    """Wait for subscriptions, with a message each second."""
+    """Wait for subscriptions, and print a message each second."""
     waited = 0.0
     while publisher.get_subscription_count() < wanted:
         if longest is not None and waited >= longest:

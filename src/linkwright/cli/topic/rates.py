@@ -1,4 +1,4 @@
-"""The statistics of ``topic hz``, ``topic delay`` and ``topic bw``, and their texts."""
+"""The statistics that ``topic hz``, ``topic delay`` and ``topic bw`` print, and their texts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Spread:
     """The statistics of a window of durations, in nanoseconds.
 
     Attributes:
-        mean: the average.
+        mean: the average duration.
         least: the shortest duration.
         most: the longest duration.
         deviation: the standard deviation.
@@ -31,7 +31,7 @@ class Spread:
 
     @classmethod
     def of(cls, durations: Iterable[float]) -> Spread:
-        """Return the statistics of one or more durations."""
+        """Compute the statistics of one or more durations."""
         values = list(durations)
         mean = sum(values) / len(values)
         deviation = math.sqrt(sum((value - mean) ** 2 for value in values) / len(values))
@@ -39,11 +39,11 @@ class Spread:
 
     @property
     def rate(self) -> float:
-        """Return the rate in hertz, taking the durations as times between messages."""
+        """The rate in hertz, if the durations are the times between messages."""
         return NANOSECONDS_PER_SECOND / self.mean if self.mean > 0 else 0.0
 
     def bounds(self) -> str:
-        """Return the second line of ``topic hz`` and ``topic delay``."""
+        """Return the second line of the output of ``topic hz`` and ``topic delay``."""
         return (
             f"\tmin: {self.least / NANOSECONDS_PER_SECOND:.3f}s max: {self.most / NANOSECONDS_PER_SECOND:.3f}s "
             f"std dev: {self.deviation / NANOSECONDS_PER_SECOND:.5f}s window: {self.count}"
@@ -51,7 +51,7 @@ class Spread:
 
 
 class RateWindow:
-    """The times between the last messages of a topic.
+    """The times between the most recent messages of a topic.
 
     Args:
         size: the number of messages in the window.
@@ -63,7 +63,7 @@ class RateWindow:
         self._new = False
 
     def add(self, now_ns: int) -> bool:
-        """Count a message; return True if time jumped back and the window was reset."""
+        """Count a message, and return whether time jumped back and the window was reset."""
         last, self._last, self._new = self._last, now_ns, True
         if last is None:
             return False
@@ -82,7 +82,7 @@ class RateWindow:
 
 
 class DelayWindow:
-    """The delays of the last messages of a topic.
+    """The delays of the most recent messages of a topic.
 
     Args:
         size: the number of messages in the window.
@@ -94,14 +94,14 @@ class DelayWindow:
         self._new = False
 
     def add(self, now_ns: int, stamp_ns: int) -> None:
-        """Count a message."""
+        """Add the delay of a message."""
         if self._last is not None and now_ns < self._last:
             self._delays.clear()
         self._last, self._new = now_ns, True
         self._delays.append(now_ns - stamp_ns)
 
     def text(self) -> str | None:
-        """Return the line of ``topic delay``, or None before the first message."""
+        """Return the output of ``topic delay``, or None before the first message."""
         if not self._delays:
             return None
         if not self._new:
@@ -112,10 +112,10 @@ class DelayWindow:
 
 
 class BandwidthWindow(TrafficWindow):
-    """The sizes of the last messages of a topic, for ``topic bw``."""
+    """The sizes of the most recent messages of a topic, for ``topic bw``."""
 
     def text(self, now_ns: int) -> str | None:
-        """Return the line of ``topic bw``, or None with fewer than two messages."""
+        """Return the output of ``topic bw``, or None with fewer than two messages."""
         traffic = self.traffic(now_ns)
         if traffic is None:
             return None
@@ -135,7 +135,7 @@ _UNITS = ((1e3, (1.0, 0, "B")), (1e6, (1e3, 2, "KB")), (math.inf, (1e6, 2, "MB")
 
 
 def rate_text(spread: Spread) -> str:
-    """Return the line of ``topic hz`` for one topic."""
+    """Return the output of ``topic hz`` for one topic."""
     return f"average rate: {spread.rate:.3f}\n{spread.bounds()}"
 
 

@@ -1,4 +1,4 @@
-"""``linkwright vision``: try detectors on images."""
+"""``linkwright vision``: run, train and evaluate detectors."""
 
 from linkwright.cli.vision.verb import VERBS, configure, run
 

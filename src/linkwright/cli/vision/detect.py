@@ -50,7 +50,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the detections in each image. An image that cannot be read is reported and skipped."""
+    """Print the detections in each image; images that cannot be read are reported and skipped."""
     from linkwright.vision.detector import Limits
     from linkwright.vision.detectors.markers import MarkerDetector
     from linkwright.vision.detectors.options import DetectorOptions
@@ -98,7 +98,7 @@ def _known_classes(detector: Detector, wanted: list[str]) -> frozenset[str]:
 
 
 def _read(name: str) -> NDArray[np.uint8]:
-    """Return the pixels of a file, shape (height, width, 3)."""
+    """Return the pixels of an image file, shape (height, width, 3)."""
     import numpy as np
 
     from linkwright.files.input_files import read_file
@@ -147,7 +147,7 @@ def _draw(image: NDArray[np.uint8], found: Detections, folder: Path, stem: str) 
 
 
 def _unused(stem: str, written: set[str]) -> str:
-    """Return an unused name for a result."""
+    """Return a name for a result file that is not yet used."""
     name, number = stem, 2
     while name in written:
         name, number = f"{stem}-{number}", number + 1

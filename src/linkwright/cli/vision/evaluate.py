@@ -22,7 +22,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the evaluation."""
+    """Print the evaluation of a detector."""
     from linkwright.vision.training.card import confusion, table
     from linkwright.vision.training.teaching import judge
 

@@ -1,4 +1,4 @@
-"""The verb ``vision`` and the verbs below it."""
+"""The command ``vision`` and its subcommands."""
 
 from __future__ import annotations
 
